@@ -1,0 +1,2 @@
+//! The `roughcast` program.
+fn main() {}

@@ -1,0 +1,196 @@
+//! Images in memory: interleaved samples in the type in which they are stored.
+
+use half::f16;
+
+/// The samples of an [`Image`], interleaved, row by row from the top.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Samples {
+    /// 8-bit unsigned normalised: 0 ..= 255 stands for 0 ..= 1.
+    U8(Vec<u8>),
+    /// 16-bit unsigned normalised: 0 ..= 65535 stands for 0 ..= 1.
+    U16(Vec<u16>),
+    /// Half float, the value itself.
+    F16(Vec<f16>),
+    /// Single float, the value itself.
+    F32(Vec<f32>),
+}
+
+/// The storage type of samples, without the samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SampleType {
+    /// 8-bit unsigned normalised.
+    U8,
+    /// 16-bit unsigned normalised.
+    U16,
+    /// Half float.
+    F16,
+    /// Single float.
+    F32,
+}
+
+impl SampleType {
+    /// Bytes of one sample.
+    pub fn bytes(self) -> usize {
+        match self {
+            SampleType::U8 => 1,
+            SampleType::U16 | SampleType::F16 => 2,
+            SampleType::F32 => 4,
+        }
+    }
+
+    /// Whether the samples are floats, that is, need no scale and bias to hold signed values.
+    pub fn is_float(self) -> bool {
+        matches!(self, SampleType::F16 | SampleType::F32)
+    }
+}
+
+impl Samples {
+    /// `len` samples of zero.
+    pub fn zeros(sample_type: SampleType, len: usize) -> Self {
+        match sample_type {
+            SampleType::U8 => Samples::U8(vec![0; len]),
+            SampleType::U16 => Samples::U16(vec![0; len]),
+            SampleType::F16 => Samples::F16(vec![f16::ZERO; len]),
+            SampleType::F32 => Samples::F32(vec![0.0; len]),
+        }
+    }
+
+    /// How they are stored.
+    pub fn sample_type(&self) -> SampleType {
+        match self {
+            Samples::U8(_) => SampleType::U8,
+            Samples::U16(_) => SampleType::U16,
+            Samples::F16(_) => SampleType::F16,
+            Samples::F32(_) => SampleType::F32,
+        }
+    }
+
+    /// Number of samples (not pixels).
+    pub fn len(&self) -> usize {
+        match self {
+            Samples::U8(v) => v.len(),
+            Samples::U16(v) => v.len(),
+            Samples::F16(v) => v.len(),
+            Samples::F32(v) => v.len(),
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Sample `index` as a float: unsigned types as 0 ..= 1, floats as they are.
+    pub fn get(&self, index: usize) -> f32 {
+        match self {
+            Samples::U8(v) => f32::from(v[index]) / 255.0,
+            Samples::U16(v) => f32::from(v[index]) / 65535.0,
+            Samples::F16(v) => v[index].to_f32(),
+            Samples::F32(v) => v[index],
+        }
+    }
+}
+
+/// An image of `height` rows of `width` pixels of `channels` interleaved samples. Row 0 is the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image {
+    width: usize,
+    height: usize,
+    channels: usize,
+    samples: Samples,
+}
+
+/// Why samples do not make an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ImageError {
+    /// A side or the number of channels is zero.
+    #[error(
+        "an image needs at least one pixel and one channel, not {width}x{height} with {channels} channels"
+    )]
+    Empty {
+        /// Pixels in a row.
+        width: usize,
+        /// Rows.
+        height: usize,
+        /// Samples in a pixel.
+        channels: usize,
+    },
+    /// The number of samples does not match the size.
+    #[error("{width}x{height} pixels of {channels} channels need {expected} samples, not {got}")]
+    Length {
+        /// Pixels in a row.
+        width: usize,
+        /// Rows.
+        height: usize,
+        /// Samples in a pixel.
+        channels: usize,
+        /// `width * height * channels`.
+        expected: usize,
+        /// Samples given.
+        got: usize,
+    },
+}
+
+impl Image {
+    /// Makes an image of samples, in rows from the top.
+    ///
+    /// # Errors
+    /// [`ImageError`] where a side is zero or the number of samples is not `width * height * channels`.
+    pub fn new(width: usize, height: usize, channels: usize, samples: Samples) -> Result<Self, ImageError> {
+        let expected =
+            width.checked_mul(height).and_then(|pixels| pixels.checked_mul(channels)).unwrap_or(usize::MAX);
+        if expected == 0 {
+            return Err(ImageError::Empty { width, height, channels });
+        }
+        if samples.len() != expected {
+            let got = samples.len();
+            return Err(ImageError::Length { width, height, channels, expected, got });
+        }
+        Ok(Self { width, height, channels, samples })
+    }
+
+    /// An image of zeros.
+    ///
+    /// # Panics
+    /// Where a side or the number of channels is zero.
+    pub fn zeros(width: usize, height: usize, channels: usize, sample_type: SampleType) -> Self {
+        let samples = Samples::zeros(sample_type, width * height * channels);
+        Self::new(width, height, channels, samples).expect("the length is computed from the size")
+    }
+
+    /// Pixels in a row.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// Samples in a pixel.
+    pub fn channels(&self) -> usize {
+        self.channels
+    }
+
+    /// The samples.
+    pub fn samples(&self) -> &Samples {
+        &self.samples
+    }
+
+    /// The samples, to write to. Their number cannot change through a slice pattern; replacing the vector by one of
+    /// another length is a mistake that the next use of the image shows as a panic.
+    pub fn samples_mut(&mut self) -> &mut Samples {
+        &mut self.samples
+    }
+
+    /// The samples, taken out.
+    pub fn into_samples(self) -> Samples {
+        self.samples
+    }
+
+    /// One sample as a float: unsigned types as 0 ..= 1, floats as they are.
+    pub fn get(&self, x: usize, y: usize, channel: usize) -> f32 {
+        self.samples.get((y * self.width + x) * self.channels + channel)
+    }
+}

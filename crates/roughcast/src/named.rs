@@ -1,0 +1,56 @@
+//! Enums whose variants have a name: the one that the command line, the files' metadata and Python all use.
+
+/// Declares an enum with `ALL`, `name()`, `Display` and `FromStr`, from one list of variants.
+macro_rules! named_enum {
+    (
+        $(#[$meta:meta])*
+        pub enum $type:ident: $what:literal {
+            $( $(#[$variant_meta:meta])* $variant:ident = $name:literal ),+ $(,)?
+        }
+    ) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum $type { $( $(#[$variant_meta])* $variant ),+ }
+
+        impl $type {
+            /// Every variant, in the order of declaration.
+            pub const ALL: &'static [Self] = &[ $( Self::$variant ),+ ];
+
+            /// The name by which the command line, the metadata of files and Python know it.
+            pub const fn name(self) -> &'static str {
+                match self { $( Self::$variant => $name ),+ }
+            }
+        }
+
+        impl std::fmt::Display for $type {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.pad(self.name())
+            }
+        }
+
+        impl std::str::FromStr for $type {
+            type Err = $crate::UnknownName;
+            fn from_str(name: &str) -> Result<Self, Self::Err> {
+                Self::ALL.iter().copied().find(|v| v.name() == name).ok_or_else(|| $crate::UnknownName {
+                    what: $what,
+                    got: name.to_owned(),
+                    known: Self::ALL.iter().map(|v| v.name()).collect::<Vec<_>>().join(", "),
+                })
+            }
+        }
+    };
+}
+
+/// A name that stands for no variant.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no {what} is called '{got}': choose one of {known}")]
+pub struct UnknownName {
+    /// What was looked for.
+    pub what: &'static str,
+    /// The name given.
+    pub got: String,
+    /// The names there are.
+    pub known: String,
+}
+
+pub(crate) use named_enum;

@@ -1,0 +1,294 @@
+//! What a file says of the texels that it holds: the layout, its scales, and which roughness is in it already.
+//!
+//! KTX2 and EXR keep it as pairs of strings, DDS as the eleven reserved words of its header.
+
+use std::collections::BTreeMap;
+
+use crate::named::named_enum;
+
+named_enum! {
+    /// The layouts in which moments are stored, one file each in [`crate::texture`].
+    pub enum Layout: "layout" {
+        /// LEAN mapping: mean normal, mean slope and second moments in two RGBA layers.
+        Lean = "lean",
+        /// CLEAN mapping: mean slope and the trace of the second moments.
+        Clean = "clean",
+        /// Schilling's bump and roughness pyramid: mean slope and a triangular factor of the covariance.
+        Schilling = "schilling",
+        /// Schilling's isotropic pyramid: mean slope and the larger standard deviation.
+        SchillingIsotropic = "schilling-isotropic",
+        /// Mean slope and the variance along each axis.
+        Variance = "variance",
+        /// Toksvig: the unnormalised averaged normal and its gloss factor.
+        Toksvig = "toksvig",
+        /// The six channels of OpenImageIO's and RenderMan's bump slopes.
+        BumpSlopes = "bump-slopes",
+        /// Normal and roughness textures of a physically based material.
+        Pbr = "pbr",
+        /// The moments themselves, as floats.
+        Moments = "moments",
+    }
+}
+
+named_enum! {
+    /// Which of a layout's files this is; layouts whose textures share one format have a single part.
+    pub enum Part: "part" {
+        /// The only file of the layout.
+        Whole = "whole",
+        /// The normal of the mean slope.
+        Normal = "normal",
+        /// Roughness alone.
+        Roughness = "roughness",
+        /// Occlusion, roughness and metalness, as glTF packs them.
+        OcclusionRoughnessMetallic = "orm",
+        /// Direction and strength of KHR_materials_anisotropy.
+        Anisotropy = "anisotropy",
+        /// Toksvig's gloss factor alone.
+        Gloss = "gloss",
+    }
+}
+
+named_enum! {
+    /// Whether the base roughness of the material is in the second moments already.
+    pub enum Base: "base" {
+        /// Not in: add it once, at shading.
+        None = "none",
+        /// Folded in when the map was made (LEAN Eq. 6): add nothing at shading.
+        Baked = "baked",
+    }
+}
+
+named_enum! {
+    /// The lobe for which a stored roughness is meant.
+    pub enum Brdf: "BRDF" {
+        /// GGX, by the convention `alpha^2 = alpha0^2 + 2 sigma^2`: it has no finite slope variance of its own.
+        Ggx = "ggx",
+        /// Beckmann, where `alpha^2 = 2 sigma^2` exactly.
+        Beckmann = "beckmann",
+        /// Blinn-Phong, where `sigma^2 = 1 / s`.
+        BlinnPhong = "blinn-phong",
+    }
+}
+
+named_enum! {
+    /// The quantity by which a roughness is stored. `alpha` is the width of the lobe.
+    pub enum RoughnessStored: "way to store roughness" {
+        /// glTF's perceptual roughness, `sqrt(alpha)`.
+        Perceptual = "perceptual",
+        /// The width itself.
+        Alpha = "alpha",
+        /// The square of the width.
+        AlphaSquared = "alpha-squared",
+        /// One minus the perceptual roughness.
+        Gloss = "gloss",
+        /// A Blinn-Phong exponent, `2 / alpha^2`.
+        SpecularPower = "specular-power",
+    }
+}
+
+/// What the texels of a file mean.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TextureInfo {
+    /// The layout.
+    pub layout: Layout,
+    /// Which of its files.
+    pub part: Part,
+    /// Slopes are stored over `-scale ..= scale`, second moments over `scale^2`. One in float files, which hold values as they are.
+    pub scale: f32,
+    /// Full scale of a stored variance, or of a stored deviation for Schilling's layouts. One in float files.
+    pub variance_scale: f32,
+    /// Whether base roughness is in the second moments.
+    pub base: Base,
+    /// Slope variance of the base roughness per axis, `alpha^2 / 2`; 0 without one, NaN where it varies over the map.
+    pub base_variance: f32,
+    /// The lobe for which the roughness is meant.
+    pub brdf: Brdf,
+    /// How a roughness is stored.
+    pub roughness_stored: RoughnessStored,
+}
+
+/// Why the metadata of a file could not be read.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum InfoError {
+    /// It is not a file of ours, or its metadata was stripped.
+    #[error(
+        "it holds no roughcast metadata ('{0}' is missing): it was not written by roughcast, or the metadata was stripped"
+    )]
+    Missing(&'static str),
+    /// A value makes no sense.
+    #[error("its metadata '{key}' has the value '{value}', which is not valid: bake it anew")]
+    Invalid {
+        /// The key.
+        key: &'static str,
+        /// The value found.
+        value: String,
+    },
+}
+
+const LAYOUT: &str = "roughcast.layout";
+const PART: &str = "roughcast.part";
+const SCALE: &str = "roughcast.scale";
+const VARIANCE_SCALE: &str = "roughcast.variance-scale";
+const BASE: &str = "roughcast.base";
+const BASE_VARIANCE: &str = "roughcast.base-variance";
+const BRDF: &str = "roughcast.brdf";
+const ROUGHNESS_STORED: &str = "roughcast.roughness-stored";
+
+/// First of the eleven reserved words of a DDS header: "RGHC" in the file.
+pub const DDS_MAGIC: u32 = u32::from_le_bytes(*b"RGHC");
+const DDS_VERSION: u32 = 1;
+
+impl TextureInfo {
+    /// The plain meaning of a layout: unit scales, no base roughness, perceptual GGX roughness.
+    pub fn new(layout: Layout, part: Part) -> Self {
+        Self {
+            layout,
+            part,
+            scale: 1.0,
+            variance_scale: 1.0,
+            base: Base::None,
+            base_variance: 0.0,
+            brdf: Brdf::Ggx,
+            roughness_stored: RoughnessStored::Perceptual,
+        }
+    }
+
+    /// The pairs that KTX2 and EXR files keep. Floats are written so that they read back bit for bit.
+    pub fn to_pairs(&self) -> BTreeMap<String, String> {
+        let pairs = [
+            (LAYOUT, self.layout.name().to_owned()),
+            (PART, self.part.name().to_owned()),
+            (SCALE, self.scale.to_string()),
+            (VARIANCE_SCALE, self.variance_scale.to_string()),
+            (BASE, self.base.name().to_owned()),
+            (BASE_VARIANCE, self.base_variance.to_string()),
+            (BRDF, self.brdf.name().to_owned()),
+            (ROUGHNESS_STORED, self.roughness_stored.name().to_owned()),
+        ];
+        pairs.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+    }
+
+    /// Reads [`TextureInfo::to_pairs`] back; keys of others are passed over.
+    ///
+    /// # Errors
+    /// [`InfoError`] where a key is missing or its value is not valid.
+    pub fn from_pairs(pairs: &BTreeMap<String, String>) -> Result<Self, InfoError> {
+        fn value<T: std::str::FromStr>(
+            pairs: &BTreeMap<String, String>,
+            key: &'static str,
+        ) -> Result<T, InfoError> {
+            let text = pairs.get(key).ok_or(InfoError::Missing(key))?;
+            text.parse().map_err(|_| InfoError::Invalid { key, value: text.clone() })
+        }
+        Self {
+            layout: value(pairs, LAYOUT)?,
+            part: value(pairs, PART)?,
+            scale: value(pairs, SCALE)?,
+            variance_scale: value(pairs, VARIANCE_SCALE)?,
+            base: value(pairs, BASE)?,
+            base_variance: value(pairs, BASE_VARIANCE)?,
+            brdf: value(pairs, BRDF)?,
+            roughness_stored: value(pairs, ROUGHNESS_STORED)?,
+        }
+        .checked()
+    }
+
+    /// The eleven words that a DDS header keeps for its writer.
+    pub fn to_words(&self) -> [u32; 11] {
+        let mut words = [0; 11];
+        words[0] = DDS_MAGIC;
+        words[1] = DDS_VERSION;
+        words[2] = index_of(Layout::ALL, self.layout) | index_of(Part::ALL, self.part) << 8;
+        words[3] = self.scale.to_bits();
+        words[4] = self.variance_scale.to_bits();
+        words[5] = index_of(Base::ALL, self.base)
+            | index_of(Brdf::ALL, self.brdf) << 8
+            | index_of(RoughnessStored::ALL, self.roughness_stored) << 16;
+        words[6] = self.base_variance.to_bits();
+        words
+    }
+
+    /// Reads [`TextureInfo::to_words`] back.
+    ///
+    /// # Errors
+    /// [`InfoError`] where the words are not ours or make no sense.
+    pub fn from_words(words: &[u32; 11]) -> Result<Self, InfoError> {
+        if words[0] != DDS_MAGIC {
+            return Err(InfoError::Missing(LAYOUT));
+        }
+        if words[1] != DDS_VERSION {
+            return Err(InfoError::Invalid { key: "version", value: words[1].to_string() });
+        }
+        Self {
+            layout: variant_at(Layout::ALL, words[2] & 0xff, LAYOUT)?,
+            part: variant_at(Part::ALL, words[2] >> 8 & 0xff, PART)?,
+            scale: f32::from_bits(words[3]),
+            variance_scale: f32::from_bits(words[4]),
+            base: variant_at(Base::ALL, words[5] & 0xff, BASE)?,
+            brdf: variant_at(Brdf::ALL, words[5] >> 8 & 0xff, BRDF)?,
+            roughness_stored: variant_at(RoughnessStored::ALL, words[5] >> 16 & 0xff, ROUGHNESS_STORED)?,
+            base_variance: f32::from_bits(words[6]),
+        }
+        .checked()
+    }
+
+    /// Scales come from files, and a scale of zero or NaN would decode into nonsense without a word.
+    fn checked(self) -> Result<Self, InfoError> {
+        for (key, value) in [(SCALE, self.scale), (VARIANCE_SCALE, self.variance_scale)] {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(InfoError::Invalid { key, value: value.to_string() });
+            }
+        }
+        // NaN is allowed: it marks a base that varies over the map.
+        if self.base_variance < 0.0 || self.base_variance.is_infinite() {
+            return Err(InfoError::Invalid { key: BASE_VARIANCE, value: self.base_variance.to_string() });
+        }
+        Ok(self)
+    }
+}
+
+fn index_of<T: PartialEq>(all: &[T], variant: T) -> u32 {
+    all.iter().position(|v| *v == variant).expect("ALL lists every variant") as u32
+}
+
+fn variant_at<T: Copy>(all: &[T], index: u32, key: &'static str) -> Result<T, InfoError> {
+    all.get(index as usize).copied().ok_or(InfoError::Invalid { key, value: index.to_string() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn odd() -> TextureInfo {
+        TextureInfo {
+            scale: 1.234_567_9,
+            variance_scale: 3.3e-5,
+            base: Base::Baked,
+            base_variance: 1.0 / 13777.0,
+            brdf: Brdf::BlinnPhong,
+            roughness_stored: RoughnessStored::SpecularPower,
+            ..TextureInfo::new(Layout::Toksvig, Part::Gloss)
+        }
+    }
+
+    #[test]
+    fn pairs_and_words_read_back_bit_for_bit() {
+        assert_eq!(TextureInfo::from_pairs(&odd().to_pairs()), Ok(odd()));
+        assert_eq!(TextureInfo::from_words(&odd().to_words()), Ok(odd()));
+    }
+
+    #[test]
+    fn a_broken_scale_is_refused() {
+        for scale in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+            let info = TextureInfo { scale, ..odd() };
+            assert!(TextureInfo::from_pairs(&info.to_pairs()).is_err(), "{scale}");
+            assert!(TextureInfo::from_words(&info.to_words()).is_err(), "{scale}");
+        }
+    }
+
+    #[test]
+    fn foreign_metadata_is_named_as_such() {
+        assert!(matches!(TextureInfo::from_pairs(&BTreeMap::new()), Err(InfoError::Missing(LAYOUT))));
+        assert!(matches!(TextureInfo::from_words(&[0; 11]), Err(InfoError::Missing(LAYOUT))));
+    }
+}
