@@ -1,1 +1,20 @@
 //! Files in and out: images, and textures with their levels.
+
+#![forbid(unsafe_code)]
+
+mod error;
+mod file_info;
+
+pub use error::{ReadError, WriteError};
+pub use file_info::{FileInfo, Limits, ValueRange};
+
+use roughcast::Image;
+
+/// An image as it was read: level 0 of layer 0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Decoded {
+    /// The pixels.
+    pub image: Image,
+    /// What the file says of itself.
+    pub info: FileInfo,
+}

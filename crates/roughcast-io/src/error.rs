@@ -1,0 +1,61 @@
+//! Why a file could not be read or written. The caller adds the path.
+
+/// Why bytes do not make an image or a texture, with the mend where there is one.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// The file could not be opened or read.
+    #[error(transparent)]
+    Io(#[from] std::io::Error),
+    /// Neither the first bytes nor the extension name a format that is read here.
+    #[error("not an image that roughcast reads (PNG, JPEG, TGA, BMP, WebP, TIFF, HDR, EXR, KTX2, DDS)")]
+    UnknownFormat,
+    /// The format is known, but this kind of it is not read.
+    #[error("{format}: {what} is not supported: {mend}")]
+    Unsupported {
+        /// The container: `KTX2`, `DDS` ...
+        format: &'static str,
+        /// What is not supported: `BasisLZ supercompression`, `a cube map` ...
+        what: String,
+        /// What the user can do.
+        mend: &'static str,
+    },
+    /// The bytes break the rules of their format.
+    #[error("{format}: broken file: {fault}")]
+    Malformed {
+        /// The container.
+        format: &'static str,
+        /// What is wrong, in one line.
+        fault: String,
+    },
+    /// More pixels than the caller allows.
+    #[error("{width}x{height} pixels are more than the limit of {max_pixels}: raise it with --max-pixels")]
+    TooLarge {
+        /// Pixels in a row, as the file states.
+        width: u64,
+        /// Rows, as the file states.
+        height: u64,
+        /// [`crate::Limits::max_pixels`].
+        max_pixels: u64,
+    },
+    /// A texture file without, or with unreadable, roughcast metadata.
+    #[error(transparent)]
+    Info(#[from] roughcast::texture::InfoError),
+}
+
+/// Why a texture could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteError {
+    /// The disk says no.
+    #[error(transparent)]
+    Io(#[from] std::io::Error),
+    /// The container cannot hold these texels.
+    #[error("{container} cannot hold {what}: {mend}")]
+    Unsupported {
+        /// The container.
+        container: &'static str,
+        /// What it cannot hold.
+        what: String,
+        /// What the user can do.
+        mend: &'static str,
+    },
+}

@@ -1,0 +1,51 @@
+//! What a file says of itself, and how much of it may be read.
+
+use std::collections::BTreeMap;
+
+/// How much a reader may allocate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Largest number of pixels of level 0, summed over layers. Checked before anything of that size is allocated.
+    pub max_pixels: u64,
+}
+
+impl Default for Limits {
+    /// 2^29 pixels: 32768 x 16384.
+    fn default() -> Self {
+        Self { max_pixels: 1 << 29 }
+    }
+}
+
+/// What the numbers of an image mean before any convention of normal maps is applied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ValueRange {
+    /// Unsigned normalised, 0 ..= 1.
+    Unorm,
+    /// Signed normalised, -1 ..= 1, stored here as floats.
+    Snorm,
+    /// Floats, of which the file does not say what range they use.
+    Float,
+}
+
+/// What a file holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileInfo {
+    /// `PNG`, `JPEG`, `TGA`, `BMP`, `WebP`, `TIFF`, `HDR`, `EXR`, `KTX2` or `DDS`.
+    pub container: &'static str,
+    /// The pixel format in the container's own words: `RGB 16-bit`, `BC5_UNORM`, `half R, G, B` ...
+    pub format: String,
+    /// Pixels in a row of level 0.
+    pub width: usize,
+    /// Rows of level 0.
+    pub height: usize,
+    /// Array layers; 1 for a plain image.
+    pub layers: usize,
+    /// Levels; 1 for a plain image.
+    pub levels: usize,
+    /// The meaning of the numbers.
+    pub range: ValueRange,
+    /// Name of each channel of the image that is read: `R`, `G`, `B`, `A`, `Y`, or EXR's own.
+    pub channels: Vec<String>,
+    /// Pairs that the file keeps beside the pixels (KTX2 key-value data, EXR text attributes, PNG text, DDS words).
+    pub metadata: BTreeMap<String, String>,
+}
