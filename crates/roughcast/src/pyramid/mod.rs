@@ -1,7 +1,7 @@
 //! The pyramid: every level is a weighted average of the one before, and nothing is lost on the way.
 //!
 //! Level k+1 has `max(1, floor(n / 2))` texels each way. With the box filter each texel is the exact area average of
-//! the texels that it covers, for every size; whatever the filter, weights are balanced so that a constant stays
+//! the texels that it covers, for every size; whatever the filter, weights are such that a constant stays
 //! constant and the mean of every level is the mean of level 0 ([`weights`]).
 //!
 //! Sources: LEAN mapping, 3.3; Schilling, "The roughness pyramid".

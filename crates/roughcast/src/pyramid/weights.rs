@@ -9,10 +9,6 @@ pub(crate) struct Taps {
     pub taps: Vec<(usize, f32)>,
 }
 
-/// Rounds of balancing. B-splines are balanced from the start but for edges that are clamped and sizes of a few texels;
-/// what is off there is local and shrinks by a factor of two or more a round, to below f32 rounding.
-const BALANCING_ROUNDS: usize = 64;
-
 /// Kernel integrated up to `t`, with `t` in widths of the coarser texel from its centre; runs from 0 to 1.
 ///
 /// The three are the B-splines of order one to three. Copies of a B-spline, one for each coarser texel, add up to one
@@ -50,8 +46,9 @@ fn wrapped(index: isize, size: usize, wrap: Wrap) -> usize {
     let size_i = size as isize;
     match wrap {
         Wrap::Repeat => index.rem_euclid(size_i) as usize,
-        Wrap::Clamp => index.clamp(0, size_i - 1) as usize,
-        Wrap::Mirror => {
+        // An edge texel that goes on for ever would count more than the others, and means would drift from level to
+        // level; mirrored, every texel counts the same, and the first one beyond the edge is the edge texel as well.
+        Wrap::Clamp | Wrap::Mirror => {
             let folded = index.rem_euclid(2 * size_i);
             (if folded < size_i { folded } else { 2 * size_i - 1 - folded }) as usize
         }
@@ -60,17 +57,14 @@ fn wrapped(index: isize, size: usize, wrap: Wrap) -> usize {
 
 /// Weights from a line of `from` texels to one of `max(1, from / 2)`.
 ///
-/// Each texel's weights are the kernel integrated over the texels of the finer line (for the box: coverage). They are
-/// then balanced, rows to 1 and columns to `to / from`, so that a constant stays constant *and* every texel counts
-/// equally in the mean, whatever the size, the filter and the wrap mode.
+/// Each texel's weights are the kernel integrated over the texels of the finer line; for the box that is coverage.
+/// Every texel's weights sum to 1, so a constant stays constant, and every finer texel counts `to / from` in all, so
+/// means are kept, whatever the size, the filter and the wrap mode.
 pub(crate) fn halving(from: usize, filter: PyramidFilter, wrap: Wrap) -> Vec<Taps> {
     let to = (from / 2).max(1);
     let ratio = from as f64 / to as f64;
-    let mut lines: Vec<Vec<(usize, f64)>> =
-        (0..to).map(|j| kernel_weights(j, ratio, from, filter, wrap)).collect();
-    balance(&mut lines, from);
-    lines
-        .into_iter()
+    (0..to)
+        .map(|j| kernel_weights(j, ratio, from, filter, wrap))
         .map(|line| Taps { taps: line.into_iter().map(|(i, w)| (i, w as f32)).collect() })
         .collect()
 }
@@ -95,21 +89,6 @@ fn kernel_weights(j: usize, ratio: f64, from: usize, filter: PyramidFilter, wrap
         }
     }
     line
-}
-
-fn balance(lines: &mut [Vec<(usize, f64)>], from: usize) {
-    let wanted_column = lines.len() as f64 / from as f64;
-    for _ in 0..BALANCING_ROUNDS {
-        let mut columns = vec![0.0; from];
-        lines.iter().flatten().for_each(|(i, w)| columns[*i] += w);
-        for (i, w) in lines.iter_mut().flatten() {
-            *w *= wanted_column / columns[*i];
-        }
-        for line in lines.iter_mut() {
-            let sum: f64 = line.iter().map(|(_, w)| w).sum();
-            line.iter_mut().for_each(|(_, w)| *w /= sum);
-        }
-    }
 }
 
 #[cfg(test)]

@@ -25,9 +25,9 @@ impl RowEncoder for Encoder {
         let (slope, stored_trace) = (self.0.slope(), self.0.trace());
         map1(bx, row.bx, |x| slope.store(x));
         map1(by, row.by, |y| slope.store(y));
-        for i in 0..row.width() {
+        for (i, out) in trace.iter_mut().enumerate() {
             let m = row.xx[i] + row.yy[i] + row.bx[i] * row.bx[i] + row.by[i] * row.by[i];
-            trace[i] = stored_trace.store(m);
+            *out = stored_trace.store(m);
         }
         one.fill(1.0);
     }

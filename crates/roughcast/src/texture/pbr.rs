@@ -60,13 +60,13 @@ impl RowEncoder for Encoder {
                 1
             }
         };
-        for i in 0..row.width() {
+        for (i, out) in roughness[roughness_at].iter_mut().enumerate() {
             let covariance = Covariance { xx: row.xx[i], yy: row.yy[i], xy: row.xy[i] };
             let variance = match self.lobe {
                 Lobe::Isotropic => 0.5 * covariance.trace(),
                 Lobe::Anisotropic => covariance.eigenvalues().1.max(0.0),
             };
-            roughness[roughness_at][i] = stored_from_variance(variance, self.stored);
+            *out = stored_from_variance(variance, self.stored);
         }
         if self.lobe == Lobe::Anisotropic {
             self.encode_anisotropy(row, anisotropy);

@@ -112,9 +112,9 @@ impl RowEncoder for IsotropicEncoder {
         let (slope, deviation) = (self.0.slope(), self.0.variance());
         map1(bx, row.bx, |x| slope.store(x));
         map1(by, row.by, |y| slope.store(y));
-        for i in 0..row.width() {
+        for (i, out) in sigma.iter_mut().enumerate() {
             let covariance = Covariance { xx: row.xx[i], yy: row.yy[i], xy: row.xy[i] };
-            sigma[i] = deviation.store(covariance.eigenvalues().0.max(0.0).sqrt());
+            *out = deviation.store(covariance.eigenvalues().0.max(0.0).sqrt());
         }
         one.fill(1.0);
     }
