@@ -14,7 +14,7 @@ mod source;
 mod survey;
 pub mod texture;
 
-pub use bake::{BakeError, BakeReport, Baked, ScaleAdvice, bake, refuse_filter};
+pub use bake::{BakeError, BakeReport, Baked, ScaleAdvice, bake, bake_reusing, refuse_filter};
 pub use image::{Image, ImageError, SampleType, Samples};
 pub use moments::{Covariance, Moments};
 pub use named::UnknownName;

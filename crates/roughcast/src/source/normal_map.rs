@@ -47,14 +47,7 @@ pub(super) fn fill(
             *z = (1.0 - x * x - y * y).max(0.0).sqrt();
         }
     }
-    // A z that is not above zero gives NaN, which no comparison accepts, so one test finds every unusable texel.
-    for ((((bx, by), nx), ny), nz) in
-        bx.iter_mut().zip(by.iter_mut()).zip(nx.iter()).zip(ny.iter()).zip(nz.iter())
-    {
-        let inverse = if *nz > 0.0 { 1.0 / nz } else { f32::NAN };
-        *bx = nx * inverse;
-        *by = ny * inverse;
-    }
+    divide_by_z(nx, ny, nz, bx, by);
     if count_unusable(bx, by, options.max_slope) == 0 {
         return SourceCounts::default();
     }
@@ -62,6 +55,18 @@ pub(super) fn fill(
         let outside = z_from_xy && nx[i] * nx[i] + ny[i] * ny[i] > INVALID_XY_SQUARED;
         (!outside).then_some([nx[i], ny[i], nz[i]])
     })
+}
+
+/// Slopes of normals. A z that is not above zero gives NaN, which no comparison accepts, so that one test afterwards
+/// finds every unusable texel.
+fn divide_by_z(nx: &[f32], ny: &[f32], nz: &[f32], bx: &mut [f32], by: &mut [f32]) {
+    let n = nx.len();
+    let (ny, nz, bx, by) = (&ny[..n], &nz[..n], &mut bx[..n], &mut by[..n]);
+    for i in 0..n {
+        let inverse = if nz[i] > 0.0 { 1.0 / nz[i] } else { f32::NAN };
+        bx[i] = nx[i] * inverse;
+        by[i] = ny[i] * inverse;
+    }
 }
 
 /// Splits the pixels into planes of components, -1 ..= 1 for unorm data.
