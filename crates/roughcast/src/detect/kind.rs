@@ -16,13 +16,13 @@ const GREY_QUANTILE: f64 = 0.999;
 
 /// Largest mean spread of a grey picture over its mean brightness, 0.07 for the real grey maps. The spread itself is small in
 /// dark pictures, too.
-const GREY_SATURATION: f32 = 0.15;
+const GREY_SATURATION: f64 = 0.15;
 
 /// Of float images the full scale is the value that this share of the texels does not exceed.
 const FULL_SCALE_QUANTILE: f64 = 0.99;
 
-/// Lengths that are called near 1. Of real maps some are filtered without renormalising (5 % of the vectors of one are as
-/// short as 0.4), some went through lossy compression (1 % are as long as 1.23).
+/// Lengths that are called near 1. Some real maps were filtered without renormalising (3 % of the vectors of one are
+/// shorter than 0.5), some went through lossy compression (1 % of another are longer than 1.23).
 const NEAR_UNIT: std::ops::RangeInclusive<f32> = 0.5..=1.3;
 
 /// The share of texels that must be as they should. The real normal maps have at least 0.95 near unit length and outward,
@@ -42,7 +42,7 @@ pub enum KindGuess {
     Certain(Kind),
     /// It may be neither: the user has to say.
     Doubtful {
-        /// What was seen, in one short clause: `its colours are neither grey nor unit vectors ...`.
+        /// What was seen, in one short clause: `it has 6 channels beside alpha`.
         reason: String,
     },
 }
@@ -147,10 +147,10 @@ fn guess_constant(stored: [f32; 3], scale: f32, range: NormalRange) -> KindGuess
 
 fn is_grey(stored: &[[f32; 3]], scale: f32) -> bool {
     let mut spreads: Vec<f32> = stored.iter().map(|texel| spread(*texel)).collect();
-    let mean_spread = spreads.iter().sum::<f32>() / stored.len() as f32;
-    let brightness =
-        stored.iter().flatten().map(|value| value.abs()).sum::<f32>() / (3 * stored.len()) as f32;
-    mean_spread <= GREY_SATURATION * brightness
+    // Sums, both over the same texels.
+    let total_spread: f64 = spreads.iter().copied().map(f64::from).sum();
+    let brightness: f64 = stored.iter().flatten().map(|value| f64::from(value.abs()) / 3.0).sum();
+    total_spread <= GREY_SATURATION * brightness
         && quantile(&mut spreads, GREY_QUANTILE) <= GREY_SPREAD * scale
 }
 

@@ -2,7 +2,7 @@
 
 use crate::Image;
 
-/// Most texels that are looked at: enough for any statistic here, and gathered in some 10 ms.
+/// Most texels that are looked at: enough for any statistic here.
 const MAX_TEXELS: usize = 1 << 20;
 
 /// The smallest odd step for which at most `max_points` grid points lie in `width` x `height`. Odd, because patterns of
