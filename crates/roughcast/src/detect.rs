@@ -1,7 +1,7 @@
 //! Decides from pixels what a map is: normals or heights, which components and range, green up or down.
 //!
-//! The statements are made for the caller to act on or to overrule: where the pixels do not tell, the answer says so.
-//! All of it is deterministic; large images are judged by a regular sample of their texels.
+//! The statements are made for the caller to act on or to overrule: where the pixels do not tell, the answer
+//! says so. All of it is deterministic; large images are judged by a regular sample of their texels.
 
 mod components;
 mod green;

@@ -1,4 +1,5 @@
-//! The detection of `roughcast::detect` on real maps: what MANIFEST.tsv says of each must be what the pixels say.
+//! The detection of `roughcast::detect` on real maps: what MANIFEST.tsv says of each must be what the pixels
+//! say.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -38,8 +39,8 @@ fn is_picture(path: &str) -> bool {
     [".png", ".jpg", ".webp", ".tga", ".exr", ".hdr"].iter().any(|ending| path.ends_with(ending))
 }
 
-/// The image as stored, and the names of its channels. `None` for the EXR files whose compression or channels the
-/// decoder of these tests does not read.
+/// The image as stored, and the names of its channels. `None` for the EXR files whose compression or channels
+/// the decoder of these tests does not read.
 fn load(path: &str) -> Option<(Image, Vec<&'static str>)> {
     let mut reader = image::ImageReader::open(data().join(path)).unwrap_or_else(|e| panic!("{path}: {e}"));
     reader.no_limits();
@@ -91,7 +92,8 @@ fn guess(path: &str) -> Option<KindGuess> {
     Some(guess_kind(&image, &channels, guess_range(&image)))
 }
 
-/// Checks that every file of a kind is guessed as `expected`, and that at least `fewest` of them could be read.
+/// Checks that every file of a kind is guessed as `expected`, and that at least `fewest` of them could be
+/// read.
 fn assert_kind(kind: &str, expected: Kind, fewest: usize) {
     let guesses: Vec<_> =
         rows(kind).into_iter().filter_map(|row| Some((guess(&row["path"])?, row["path"].clone()))).collect();
@@ -138,7 +140,8 @@ fn other_pictures_in_colour_are_doubtful() {
     assert!(doubtful >= 20, "only {doubtful} pictures in colour were read");
 }
 
-/// Blue holds z in all of the maps but two: one keeps z there without scale and bias, one 255 nearly throughout.
+/// Blue holds z in all of the maps but two: one keeps z there without scale and bias, one 255 nearly
+/// throughout.
 #[test]
 fn blue_that_holds_no_z_is_found() {
     for row in rows("normal") {
@@ -167,8 +170,8 @@ fn the_range_of_float_normals_is_found() {
     assert_eq!(guess_kind(&as_signed, &channels, NormalRange::Signed), KindGuess::Certain(Kind::Normal));
 }
 
-/// The direction that MANIFEST.tsv states, which was measured in another way: against the height map of the same
-/// material, or by the curl of the whole map.
+/// The direction that MANIFEST.tsv states, which was measured in another way: against the height map of the
+/// same material, or by the curl of the whole map.
 fn stated_direction(row: &Row) -> Option<GreenVerdict> {
     let convention = row["convention"].as_str();
     match convention.split_whitespace().next() {
@@ -178,8 +181,8 @@ fn stated_direction(row: &Row) -> Option<GreenVerdict> {
     }
 }
 
-/// JPEG has destroyed the red channel of this map: it has nothing to do with the height map any more (correlation 0.07,
-/// green's is 0.94), so no curl can be measured. Undecided is the right answer.
+/// JPEG has destroyed the red channel of this map: it has nothing to do with the height map any more
+/// (correlation 0.07, green's is 0.94), so no curl can be measured. Undecided is the right answer.
 const RED_IS_LOST: &str = "materials/woodfloor043/WoodFloor043_1K_Normal.jpg";
 
 #[test]

@@ -225,8 +225,8 @@ fn verdict(width: usize, height: usize, slope: impl Fn(usize, usize) -> [f32; 2]
     test_green(&bx, &by, width, height).map(|test| test.verdict())
 }
 
-/// Central differences of a sinusoid of frequency w fall short of its derivative by the factor sin(w)/w, at most 2 % apart
-/// between the two axes of the waves: their products come within this of their energies.
+/// Central differences of a sinusoid of frequency w fall short of its derivative by the factor sin(w)/w, at
+/// most 2 % apart between the two axes of the waves: their products come within this of their energies.
 const WAVE_TOLERANCE: f64 = 1e-2;
 
 #[test]

@@ -5,8 +5,8 @@ use super::sample::{quantile, share, texels};
 use super::vectors::{MAX_MEAN_TILT, MAX_XY_LENGTH, UNIT, decoded, length, mean_xy};
 use crate::{Image, NormalComponents, NormalRange, Samples};
 
-/// A blue whose z varies by less than this, but for 1 % at each end, is constant: 8 of 255 steps, since a JPEG mixes red
-/// and green into a constant blue.
+/// A blue whose z varies by less than this, but for 1 % at each end, is constant: 8 of 255 steps, since a
+/// JPEG mixes red and green into a constant blue.
 const CONSTANT_BLUE: f32 = 16.0 / 255.0;
 
 /// Constant blues that stand for no z: nothing, the middle, or everything stored.
@@ -18,14 +18,15 @@ const WRONG_Z: f32 = 0.1;
 /// A constant blue is no z if this share of the texels has the wrong z. One real map has, its blue being 255.
 const WRONG_Z_SHARE: f64 = 0.01;
 
-/// Texels with z below this, but not quite at the horizon, tell how blue stands for z: where z is near 1, all ways agree.
+/// Texels with z below this, but not quite at the horizon, tell how blue stands for z: where z is near 1, all
+/// ways agree.
 const TILTED: std::ops::Range<f32> = 0.15..0.9;
 
 /// Fewest texels of a map that must be tilted, as a share.
 const TILTED_SHARE: f64 = 0.01;
 
-/// Blue is z itself if the median difference of the two is below this. The real map where it is has 0.004, the smallest
-/// of the others 0.03.
+/// Blue is z itself if the median difference of the two is below this. The real map where it is has 0.004,
+/// the smallest of the others 0.03.
 const PLAIN_Z_ERROR: f32 = 0.012;
 
 /// Share of the texels whose x and y must be those of a normal.
@@ -34,7 +35,8 @@ const NEARLY_ALL: f64 = 0.99;
 /// A negative value below this is more than the rounding of a zero.
 const NEGATIVE: f32 = -1.0 / 255.0;
 
-/// A larger share of texels with a negative value means a signed map; a smaller one the overshoot of a resampling filter.
+/// A larger share of texels with a negative value means a signed map; a smaller one the overshoot of a
+/// resampling filter.
 const NEGATIVE_SHARE: f64 = 0.01;
 
 /// Slopes are taken from normals with z no smaller than this: the test of slopes cuts long ones anyway.
@@ -45,8 +47,8 @@ const CURL_CROP: usize = 1024;
 
 /// Which components the colour channels of a normal map hold, and by which it should thus be read.
 ///
-/// One or two channels hold x and y. So do three whose blue is not z with scale and bias, as that of x and y is: maps exist
-/// with a blue that is constant (0, 128 or 255), and with z itself over 0 ..= 1.
+/// One or two channels hold x and y. So do three whose blue is not z with scale and bias, as that of x and y
+/// is: maps exist with a blue that is constant (0, 128 or 255), and with z itself over 0 ..= 1.
 ///
 /// `channels` and `range` as for [`crate::detect::guess_kind`].
 pub fn guess_components(image: &Image, channels: &[impl AsRef<str>], range: NormalRange) -> NormalComponents {
@@ -61,8 +63,8 @@ pub fn guess_components(image: &Image, channels: &[impl AsRef<str>], range: Norm
 
 /// Whether the components of the normals of a map are stored as they are or with scale and bias.
 ///
-/// For images whose file does not say. Integers always have scale and bias; of floats, negative values tell and, of maps
-/// without any, the reading under which more vectors have unit length.
+/// For images whose file does not say. Integers always have scale and bias; of floats, negative values tell
+/// and, of maps without any, the reading under which more vectors have unit length.
 pub fn guess_range(image: &Image) -> NormalRange {
     if matches!(image.samples(), Samples::U8(_) | Samples::U16(_)) {
         return NormalRange::Unorm;
@@ -128,8 +130,8 @@ fn z_from_xy(x: f32, y: f32) -> f32 {
     (1.0 - x * x - y * y).max(0.0).sqrt()
 }
 
-/// Whether two channels, as x and y of normals, are the slopes of a surface, green up or down: what two channels of an
-/// arbitrary picture are not. Looks at the middle of the map only.
+/// Whether two channels, as x and y of normals, are the slopes of a surface, green up or down: what two
+/// channels of an arbitrary picture are not. Looks at the middle of the map only.
 pub(super) fn looks_like_slopes(image: &Image, channels: [usize; 2], range: NormalRange) -> bool {
     let (width, height) = (image.width().min(CURL_CROP), image.height().min(CURL_CROP));
     let (left, top) = ((image.width() - width) / 2, (image.height() - height) / 2);

@@ -1,13 +1,14 @@
 //! The curl test: does the green channel of a normal map point up (OpenGL) or down (DirectX)?
 //!
-//! The slopes of a height field, with y up, have no curl: d(bx)/dy = d(by)/dx, since both are the mixed second derivative
-//! of the height. Where green was read the wrong way round, the two are equal with opposite signs.
+//! The slopes of a height field, with y up, have no curl: d(bx)/dy = d(by)/dx, since both are the mixed
+//! second derivative of the height. Where green was read the wrong way round, the two are equal with opposite
+//! signs.
 
 use super::sample::{odd_stride, quantile};
 
-/// Sizes of the boxes over which slopes are averaged, in texels. Noise and lossy compression hide the signal between single
-/// texels: of the real maps in WebP, all 14 that have a direction gain by averaging (one goes from 0.37 to 0.65). Beyond 4
-/// most lose it again.
+/// Sizes of the boxes over which slopes are averaged, in texels. Noise and lossy compression hide the signal
+/// between single texels: of the real maps in WebP, all 14 that have a direction gain by averaging (one goes
+/// from 0.37 to 0.65). Beyond 4 most lose it again.
 const BOX_SIZES: [usize; 3] = [1, 2, 4];
 
 /// Most points looked at for each box size: the correlation of unrelated slopes stays below 0.01 then.
@@ -19,28 +20,31 @@ const MIN_POINTS: usize = 144;
 /// Slopes are cut to this length (76 degrees) first: near the horizon slopes are all error.
 const MAX_SLOPE: f32 = 4.0;
 
-/// Derivatives longer than this share of all are cut to that length, so that a few wild texels cannot outvote the rest: with
-/// 1 texel in 1000 replaced by noise, every real map with a direction keeps at least 0.34; without the cut, one sinks to 0.04.
+/// Derivatives longer than this share of all are cut to that length, so that a few wild texels cannot outvote
+/// the rest: with 1 texel in 1000 replaced by noise, every real map with a direction keeps at least 0.34;
+/// without the cut, one sinks to 0.04.
 const CUT_QUANTILE: f64 = 0.99;
 
-/// A change of the slopes counts if it is longer than this: between the rounding of an f32 slope (1e-7) and the steps of a
-/// 16-bit map (3e-5).
+/// A change of the slopes counts if it is longer than this: between the rounding of an f32 slope (1e-7) and
+/// the steps of a 16-bit map (3e-5).
 const MIN_DERIVATIVE: f32 = 1e-5;
 
-/// From here on a correlation decides. Of the real maps in the tests, the 38 with a known direction have at least 0.46;
-/// the two without have 0.01 and 0.15, and one whose red channel was lost to JPEG has 0.03.
+/// From here on a correlation decides. Of the real maps in the tests, the 38 with a known direction have at
+/// least 0.46; the two without have 0.01 and 0.15, and one whose red channel was lost to JPEG has 0.03.
 const DECISIVE_CORRELATION: f64 = 0.3;
 
-/// With few points the correlation must be larger than this over the root of their number: that of unrelated slopes
-/// deviates by about 1 over the root, and by up to 3 where they are smooth over 3 texels; this is twice as much. In 50 000
-/// small maps of unrelated slopes (14 to 64 texels wide, smooth over 1 to 6) it decided, wrongly, in 2.
+/// With few points the correlation must be larger than this over the root of their number: that of unrelated
+/// slopes deviates by about 1 over the root, and by up to 3 where they are smooth over 3 texels; this is
+/// twice as much. In 50 000 small maps of unrelated slopes (14 to 64 texels wide, smooth over 1 to 6) it
+/// decided, wrongly, in 2.
 const DECISIVE_DEVIATIONS: f64 = 6.0;
 
 /// Outcome of [`test_green`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GreenTest {
-    /// How d(bx)/dy agrees with d(by)/dx, -1 ..= 1: +1 where green points up as it was read, -1 where it points down, 0
-    /// where the two have nothing to do with each other. Of several scales, that of the clearest answer.
+    /// How d(bx)/dy agrees with d(by)/dx, -1 ..= 1: +1 where green points up as it was read, -1 where it
+    /// points down, 0 where the two have nothing to do with each other. Of several scales, that of the
+    /// clearest answer.
     pub correlation: f64,
     /// Number of points with any slope change, of that scale.
     pub samples: usize,
@@ -53,7 +57,8 @@ pub enum GreenVerdict {
     Up,
     /// Green points down: the map was read the wrong way round.
     Down,
-    /// The slopes do not tell: noise, a map that is not the slope of any surface, or one spoilt by compression.
+    /// The slopes do not tell: noise, a map that is not the slope of any surface, or one spoilt by
+    /// compression.
     Undecided,
 }
 
@@ -78,8 +83,9 @@ impl GreenTest {
 
 /// Tests whether slopes, read as if green pointed up, are those of a surface.
 ///
-/// `bx` and `by` hold `width * height` slopes each, rows from the top; x to the right, y up. Slopes that are not finite
-/// are passed over. `None` where there is too little to judge by: a flat map, or one of a few texels.
+/// `bx` and `by` hold `width * height` slopes each, rows from the top; x to the right, y up. Slopes that are
+/// not finite are passed over. `None` where there is too little to judge by: a flat map, or one of a few
+/// texels.
 ///
 /// # Panics
 /// Where a slice is not of length `width * height`.
@@ -136,7 +142,8 @@ fn test_scale(field: &Field, columns: usize, rows: usize, size: usize) -> Option
     Some(GreenTest { correlation: product / energy, samples: derivatives.len() })
 }
 
-/// `[d(bx)/dy, d(by)/dx]` in central differences at a regular sample of the boxes; those without any change left out.
+/// `[d(bx)/dy, d(by)/dx]` in central differences at a regular sample of the boxes; those without any change
+/// left out.
 fn mixed_derivatives(field: &Field, columns: usize, rows: usize, size: usize) -> Vec<[f32; 2]> {
     let (inner_columns, inner_rows) = (columns.saturating_sub(2), rows.saturating_sub(2));
     let stride = odd_stride(inner_columns, inner_rows, MAX_POINTS);

@@ -5,32 +5,33 @@ use super::sample::{quantile, share, spread, texels};
 use super::vectors::{MAX_MEAN_TILT, MAX_XY_LENGTH, UNIT, decoded, length, mean_xy};
 use crate::{Image, Kind, NormalRange};
 
-/// Stored values closer than this, of a full scale of 1, are equal but for rounding and lossy compression: two 8-bit
-/// steps, and a little room for the rounding of the comparison.
+/// Stored values closer than this, of a full scale of 1, are equal but for rounding and lossy compression:
+/// two 8-bit steps, and a little room for the rounding of the comparison.
 const SAME: f32 = 2.1 / 255.0;
 
-/// In a grey picture fewer than 1 texel in 1000 has channels further apart than this, of a full scale of 1. Of the real grey
-/// maps 1 in 1000 reaches 5/255 at most; of the greyest coloured albedo 19 in 1000 exceed 10/255.
+/// In a grey picture fewer than 1 texel in 1000 has channels further apart than this, of a full scale of 1.
+/// Of the real grey maps 1 in 1000 reaches 5/255 at most; of the greyest coloured albedo 19 in 1000 exceed
+/// 10/255.
 const GREY_SPREAD: f32 = 10.0 / 255.0;
 const GREY_QUANTILE: f64 = 0.999;
 
-/// Largest mean spread of a grey picture over its mean brightness, 0.07 for the real grey maps. The spread itself is small in
-/// dark pictures, too.
+/// Largest mean spread of a grey picture over its mean brightness, 0.07 for the real grey maps. The spread
+/// itself is small in dark pictures, too.
 const GREY_SATURATION: f64 = 0.15;
 
 /// Of float images the full scale is the value that this share of the texels does not exceed.
 const FULL_SCALE_QUANTILE: f64 = 0.99;
 
-/// Lengths that are called near 1. Some real maps were filtered without renormalising (3 % of the vectors of one are
-/// shorter than 0.5), some went through lossy compression (1 % of another are longer than 1.23).
+/// Lengths that are called near 1. Some real maps were filtered without renormalising (3 % of the vectors of
+/// one are shorter than 0.5), some went through lossy compression (1 % of another are longer than 1.23).
 const NEAR_UNIT: std::ops::RangeInclusive<f32> = 0.5..=1.3;
 
-/// The share of texels that must be as they should. The real normal maps have at least 0.95 near unit length and outward,
-/// albedo at most 0.56, other pictures at most 0.85 (a mask, whose colour is far from upright).
+/// The share of texels that must be as they should. The real normal maps have at least 0.95 near unit length
+/// and outward, albedo at most 0.56, other pictures at most 0.85 (a mask, whose colour is far from upright).
 const MOST: f64 = 0.9;
 
-/// Share of the texels of a two-channel map that must be normals. Backgrounds are often stored as (0, 0), which is
-/// (-1, -1): 40 % of the texels of a real map.
+/// Share of the texels of a two-channel map that must be normals. Backgrounds are often stored as (0, 0),
+/// which is (-1, -1): 40 % of the texels of a real map.
 const SHARE_OF_TWO: f64 = 0.5;
 
 const NOTHING_FINITE: &str = "none of its values is finite";
@@ -55,12 +56,13 @@ impl KindGuess {
 
 /// Whether a map holds normals or heights.
 ///
-/// `channels` names each channel of the image, in order; an alpha (`A`, or a name that ends in `.A`) does not count.
-/// `range` is how the components of normals are stored: ask [`crate::detect::guess_range`] where the file does not say.
+/// `channels` names each channel of the image, in order; an alpha (`A`, or a name that ends in `.A`) does not
+/// count. `range` is how the components of normals are stored: ask [`crate::detect::guess_range`] where the
+/// file does not say.
 ///
-/// One channel is a height, two are a normal's x and y. Three are judged by what is in them: grey is a height, vectors of
-/// about unit length that point out of the surface are normals. Maps of roughness or occlusion are grey, too, and are
-/// taken for heights: no pixel tells the difference.
+/// One channel is a height, two are a normal's x and y. Three are judged by what is in them: grey is a
+/// height, vectors of about unit length that point out of the surface are normals. Maps of roughness or
+/// occlusion are grey, too, and are taken for heights: no pixel tells the difference.
 pub fn guess_kind(image: &Image, channels: &[impl AsRef<str>], range: NormalRange) -> KindGuess {
     match *colour_channels(image, channels) {
         [_] => KindGuess::Certain(Kind::Height),
@@ -73,8 +75,8 @@ pub fn guess_kind(image: &Image, channels: &[impl AsRef<str>], range: NormalRang
     }
 }
 
-/// Whether red and blue are constant while green and the channel beside the three vary: x in alpha, y in green, which
-/// block compression (BC3) stores best.
+/// Whether red and blue are constant while green and the channel beside the three vary: x in alpha, y in
+/// green, which block compression (BC3) stores best.
 fn x_is_in_alpha(image: &Image, [r, g, b]: [usize; 3]) -> bool {
     let Some(alpha) = (0..image.channels()).find(|channel| ![r, g, b].contains(channel)) else {
         return false;

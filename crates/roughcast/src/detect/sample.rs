@@ -5,8 +5,8 @@ use crate::Image;
 /// Most texels that are looked at: enough for any statistic here.
 const MAX_TEXELS: usize = 1 << 20;
 
-/// The smallest odd step for which at most `max_points` grid points lie in `width` x `height`. Odd, because patterns of
-/// power-of-two period are common in textures: an even step would see one phase of them only.
+/// The smallest odd step for which at most `max_points` grid points lie in `width` x `height`. Odd, because
+/// patterns of power-of-two period are common in textures: an even step would see one phase of them only.
 pub(super) fn odd_stride(width: usize, height: usize, max_points: usize) -> usize {
     let mut stride = 1;
     while width.div_ceil(stride).saturating_mul(height.div_ceil(stride)) > max_points {
@@ -30,7 +30,8 @@ pub(super) fn share<T: Copy>(items: &[T], test: impl Fn(T) -> bool) -> f64 {
     items.iter().filter(|item| test(**item)).count() as f64 / items.len().max(1) as f64
 }
 
-/// The value below which the share `quantile`, 0 ..= 1, of `values` lies; 0 where there are none. Reorders them.
+/// The value below which the share `quantile`, 0 ..= 1, of `values` lies; 0 where there are none. Reorders
+/// them.
 pub(super) fn quantile(values: &mut [f32], quantile: f64) -> f32 {
     if values.is_empty() {
         return 0.0;

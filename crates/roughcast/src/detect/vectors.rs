@@ -5,8 +5,8 @@ use crate::NormalRange;
 /// Lengths that a map with lossless, normalised vectors keeps, and that no picture keeps throughout.
 pub(super) const UNIT: std::ops::RangeInclusive<f32> = 0.95..=1.05;
 
-/// The mean normal of a map stands upright, since the surface as a whole is flat: the largest |mean (x, y)| of the real
-/// maps is 0.15. A bluish picture that happens to be of about unit length has no reason to do so.
+/// The mean normal of a map stands upright, since the surface as a whole is flat: the largest |mean (x, y)|
+/// of the real maps is 0.15. A bluish picture that happens to be of about unit length has no reason to do so.
 pub(super) const MAX_MEAN_TILT: f32 = 0.3;
 
 /// Largest |(x, y)| of a normal, with some room for block compression.
