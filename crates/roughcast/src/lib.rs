@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 mod bake;
+pub mod detect;
 mod image;
 mod moments;
 mod named;

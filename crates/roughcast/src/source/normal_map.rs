@@ -3,7 +3,7 @@
 use half::f16;
 
 use super::{count_unusable, mend, unorm8, unorm16};
-use crate::options::{Green, NormalChannels, NormalRange, SourceOptions};
+use crate::options::{Green, NormalChannels, SourceOptions};
 use crate::row::SourceScratch;
 use crate::slope::SourceCounts;
 use crate::{Image, Samples};
@@ -82,8 +82,7 @@ fn load_components(
     let channels = image.channels();
     let start = (y * image.width() + x) * channels;
     let range = start..start + nx.len() * channels;
-    let signed = options.range == NormalRange::Signed;
-    let from_float = |v: f32| if signed { v } else { 2.0 * v - 1.0 };
+    let from_float = |v: f32| options.range.component_from_stored(v);
     let split = Split { channels, order: options.normal_channels };
     match image.samples() {
         Samples::U8(v) => split.write_planes(&v[range], nx, ny, nz, |v| 2.0 * unorm8(v) - 1.0),
