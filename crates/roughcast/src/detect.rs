@@ -10,5 +10,5 @@ mod sample;
 mod vectors;
 
 pub use components::{guess_components, guess_range};
-pub use green::{GreenTest, GreenVerdict, test_green};
+pub use green::{GreenTest, GreenVerdict, test_green, test_green_of_map};
 pub use kind::{KindGuess, guess_kind};
