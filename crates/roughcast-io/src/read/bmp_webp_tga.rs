@@ -1,8 +1,10 @@
 //! The 8-bit formats that the `image` crate reads: BMP, WebP and TGA.
 
+use std::error::Error as _;
 use std::io::Cursor;
 
 use image::codecs::{bmp::BmpDecoder, tga::TgaDecoder, webp::WebPDecoder};
+use image::error::UnsupportedErrorKind;
 use image::{ColorType, ImageDecoder, ImageError};
 use roughcast::{Image, Samples};
 
@@ -80,12 +82,24 @@ fn decode(
 }
 
 fn fault(format: &'static str, error: ImageError) -> ReadError {
+    const SAVE_AS_PNG: &str = "save it as PNG";
     match error {
-        ImageError::Unsupported(error) => unsupported(format, error, "save it as PNG"),
+        ImageError::Unsupported(error) => match error.kind() {
+            UnsupportedErrorKind::Color(color) => {
+                unsupported(format, format_args!("the colour type {color:?}"), SAVE_AS_PNG)
+            }
+            UnsupportedErrorKind::GenericFeature(feature) => unsupported(format, feature, SAVE_AS_PNG),
+            _ => unsupported(format, error, SAVE_AS_PNG),
+        },
         ImageError::Limits(_) => malformed(format, "it needs more memory than its size allows"),
         ImageError::IoError(e) if e.kind() == std::io::ErrorKind::UnexpectedEof => {
             malformed(format, "the file ends too early")
         }
+        // What the decoder says, without the words by which the crate introduces it.
+        ImageError::Decoding(error) => match error.source() {
+            Some(source) => malformed(format, source),
+            None => malformed(format, error),
+        },
         error => malformed(format, error),
     }
 }

@@ -78,7 +78,7 @@ impl<'a> Input<'a> {
     fn line(&mut self) -> Result<String, ReadError> {
         let end = self.0.iter().position(|&byte| byte == b'\n');
         let end = end.ok_or_else(|| malformed(FORMAT, "the file ends within its header"))?;
-        let line = String::from_utf8_lossy(&self.take(end)?).into_owned();
+        let line = String::from_utf8_lossy(self.take(end)?).into_owned();
         self.byte()?;
         Ok(line)
     }

@@ -31,7 +31,11 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> 
         Some(ColorSpace::YCbCr) => (ColorSpace::RGB, &["R", "G", "B"], "YCbCr 8-bit"),
         Some(ColorSpace::RGB) => (ColorSpace::RGB, &["R", "G", "B"], "RGB 8-bit"),
         Some(other) => {
-            return Err(unsupported(FORMAT, format_args!("{other:?} colour"), "save it as RGB or grey"));
+            return Err(unsupported(
+                FORMAT,
+                format_args!("the colour type {other:?}"),
+                "save it as RGB or grey",
+            ));
         }
         None => return Err(malformed(FORMAT, "it does not say how its colours are stored")),
     };
@@ -65,6 +69,8 @@ fn fault(error: DecodeErrors) -> ReadError {
         DecodeErrors::ExhaustedData | DecodeErrors::IoErrors(_) => {
             malformed(FORMAT, "the file ends too early")
         }
+        DecodeErrors::Format(fault) => malformed(FORMAT, fault),
+        DecodeErrors::FormatStatic(fault) => malformed(FORMAT, fault.trim_start_matches("[strict-mode]: ")),
         error => malformed(FORMAT, format_args!("{error:?}")),
     }
 }

@@ -77,7 +77,7 @@ impl Layout {
             ColorType::Multiband { bit_depth, num_samples: 2 } => (&["Y", "A"], bit_depth, "grey and alpha"),
             ColorType::RGB(bits) => (&["R", "G", "B"], bits, "RGB"),
             ColorType::RGBA(bits) => (&["R", "G", "B", "A"], bits, "RGBA"),
-            other => return Err(unsupported(FORMAT, format_args!("{other:?} colour"), SAVE_PLAIN)),
+            other => return Err(unsupported(FORMAT, format_args!("the colour type {other:?}"), SAVE_PLAIN)),
         };
         Ok(Self { channels, bits, words })
     }
@@ -107,7 +107,7 @@ fn check_chunks(
         // The decoder takes the tiles of the second plane for a continuation of the first, and panics.
         return Err(unsupported(
             FORMAT,
-            "planes cut into tiles",
+            "a planar image in tiles",
             "save it in strips, or with interleaved channels",
         ));
     }
@@ -122,7 +122,7 @@ fn check_chunks(
 /// The samples in the image's types. `samples_per_row` counts those of one plane.
 fn convert(decoded: DecodingResult, layout: &Layout, samples_per_row: usize) -> Result<Samples, ReadError> {
     let integers = |signedness: &str| {
-        let what = format!("{signedness} {}-bit integers", layout.bits);
+        let what = format!("the sample type {signedness} {}-bit integer", layout.bits);
         Err(unsupported(FORMAT, what, "save it as unsigned 8 or 16 bits, or as floats"))
     };
     match (decoded, layout.bits) {

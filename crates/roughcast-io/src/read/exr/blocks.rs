@@ -16,7 +16,7 @@ use half::f16;
 use rayon::prelude::*;
 use roughcast::SampleType;
 
-use super::super::memory::{malformed, unsupported};
+use super::super::memory::malformed;
 use super::FORMAT;
 use super::channels::Selection;
 use crate::ReadError;
@@ -137,11 +137,7 @@ impl<'a> Source<'a> {
             }),
         };
         let chunk = Chunk { layer_index: self.part, compressed_block };
-        let block =
-            UncompressedBlock::decompress_chunk(chunk, self.meta, false).map_err(|error| match error {
-                exr::error::Error::NotSupported(what) => unsupported(FORMAT, what, super::SAVE_AS_ZIP),
-                error => malformed(FORMAT, error),
-            })?;
+        let block = UncompressedBlock::decompress_chunk(chunk, self.meta, false).map_err(super::fault)?;
         if block.data.len() != raw_bytes {
             return Err(malformed(FORMAT, "a block does not fill its pixels"));
         }

@@ -55,7 +55,7 @@ pub(super) fn select(list: &ChannelList) -> Result<Selection, ReadError> {
     let (layer, candidates) = first_layer(list);
     let has = |name: &str| candidates.iter().any(|candidate| candidate.is(name));
     if has("RY") || has("BY") {
-        return Err(unsupported(FORMAT, "luminance and chroma", "save it as RGB"));
+        return Err(unsupported(FORMAT, "luminance with chroma", "save it as RGB"));
     }
     // Every block holds every channel: one that is subsampled moves all that follow it.
     if stored.iter().any(|channel| channel.sampling != Vec2(1, 1)) {
@@ -207,7 +207,7 @@ mod tests {
         let integer =
             ChannelList::new([ChannelDescription::named("Z", ExrSample::U32)].into_iter().collect());
         let cases = [
-            (list(&["BY", "RY", "Y"]), "luminance and chroma"),
+            (list(&["BY", "RY", "Y"]), "luminance with chroma"),
             (list(&many), "17 channels"),
             (subsampled, "subsampled"),
             (integer, "integer channel Z"),

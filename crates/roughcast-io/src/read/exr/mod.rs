@@ -137,9 +137,15 @@ fn header_fault(bytes: &[u8], error: exr::error::Error) -> ReadError {
         (Some(&number), _) if number >= FIRST_UNKNOWN_COMPRESSION => {
             unsupported(FORMAT, format_args!("the compression of number {number}"), SAVE_AS_ZIP)
         }
-        (_, exr::error::Error::NotSupported(what)) => {
-            unsupported(FORMAT, what, "save it as a plain flat image")
-        }
-        (_, error) => malformed(FORMAT, error),
+        (_, error) => fault(error),
+    }
+}
+
+fn fault(error: exr::error::Error) -> ReadError {
+    use exr::error::Error;
+    match error {
+        Error::NotSupported(what) => unsupported(FORMAT, what, SAVE_AS_ZIP),
+        Error::Invalid(what) => malformed(FORMAT, what),
+        error => malformed(FORMAT, error),
     }
 }
