@@ -2,11 +2,19 @@
 
 #![forbid(unsafe_code)]
 
+mod blocks;
+pub mod dds;
 mod error;
 mod file_info;
+pub mod ktx2;
+mod metadata;
+mod payload;
+mod texels;
 
+pub use blocks::{BlockArray, BlockFormat, BlockLayer, compress, decompress};
 pub use error::{ReadError, WriteError};
 pub use file_info::{FileInfo, Limits, ValueRange};
+pub use payload::{Payload, Supercompression};
 
 use roughcast::Image;
 
