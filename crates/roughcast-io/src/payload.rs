@@ -207,18 +207,20 @@ type LayerSpec = (&'static str, Vec<&'static str>);
 
 /// Names of the layers and of their channels.
 ///
-/// MERGE: swap the body for `roughcast::texture::layers_of(info)`, with an error where the numbers of layers or channels
-/// differ from `shape`. Until then layers are numbered and channels are called R, G, B, A.
+/// MERGE: take them from `roughcast::texture::layers_of(info)` where its numbers of layers and of channels are those of
+/// the file. Otherwise layers are numbered and channels are called R, G, B, A; the layout's decoder will say what it
+/// misses.
 fn layer_specs(
     container: &'static str,
     _info: &TextureInfo,
     shape: &Shape,
 ) -> Result<Vec<LayerSpec>, ReadError> {
-    const NAMES: [&str; 8] = ["layer0", "layer1", "layer2", "layer3", "layer4", "layer5", "layer6", "layer7"];
-    if shape.layers > NAMES.len() {
+    const NUMBERED: [&str; 8] =
+        ["layer0", "layer1", "layer2", "layer3", "layer4", "layer5", "layer6", "layer7"];
+    if shape.layers > NUMBERED.len() {
         let fault = format!("{} layers are more than any layout has", shape.layers);
         return Err(ReadError::Malformed { format: container, fault });
     }
     let channels = shape.format.channel_names();
-    Ok(NAMES[..shape.layers].iter().map(|&name| (name, channels.to_vec())).collect())
+    Ok(NUMBERED[..shape.layers].iter().map(|&name| (name, channels.to_vec())).collect())
 }

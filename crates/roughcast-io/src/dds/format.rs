@@ -5,7 +5,7 @@ use super::{malformed, unsupported};
 use crate::ReadError;
 use crate::texels::Encoding::{Float16, Float32, Snorm8, Snorm16, Unorm8, Unorm16};
 use crate::texels::Order::{Bgra, Rgba};
-use crate::texels::{BlockCode, Encoding, Order, Packed, Plain, TexelFormat};
+use crate::texels::{BlockCode, Encoding, Order, Packed, Plain, TexelFormat, rgba_names};
 
 /// Number, name without `DXGI_FORMAT_`, channels, encoding, order. `_SRGB` and `_TYPELESS` are read as raw UNORM
 /// numbers, for the reason given with the formats of KTX2.
@@ -142,11 +142,11 @@ fn of_dxgi(number: u32) -> Result<(TexelFormat, String), ReadError> {
 fn not_read(number: u32) -> ReadError {
     let what = match number {
         3 | 4 | 7 | 8 | 12 | 14 | 17 | 18 | 25 | 30 | 32 | 36 | 38 | 42 | 43 | 50 | 52 | 57 | 59 | 62
-        | 64 => "integer texels",
-        19..=22 | 39 | 40 | 44..=47 | 53 | 55 => "depth or stencil texels",
-        26 | 67 => "shared-exponent or 10/11-bit float texels",
+        | 64 => "an integer format",
+        19..=22 | 39 | 40 | 44..=47 | 53 | 55 => "a depth or stencil format",
+        26 | 67 => "a shared-exponent or 10/11-bit float format",
         94..=96 => "BC6H compression",
-        68 | 69 | 100..=112 => "YUV or palette texels",
+        68 | 69 | 100..=112 => "a YUV or palette format",
         _ => "its texel format",
     };
     unsupported(format!("{what} (DXGI format {number})"), CONVERT)
@@ -156,10 +156,12 @@ fn of_four_cc(code: [u8; 4], swizzle_code: [u8; 4]) -> Result<(TexelFormat, Stri
     // ATI2 keeps Y before X, unless the word behind it says otherwise: that is how the NVIDIA tools mark files whose
     // order is that of BC5.
     if code == *b"ATI2" {
-        return Ok(match swizzle_code == *b"A2XY" {
-            true => (TexelFormat::Blocks(BlockCode::Bc5), "ATI2 (BC5_UNORM)".to_owned()),
-            false => (TexelFormat::Blocks(BlockCode::Bc5YThenX), "ATI2 (BC5_UNORM, Y before X)".to_owned()),
-        });
+        let (block, name) = if swizzle_code == *b"A2XY" {
+            (BlockCode::Bc5, "ATI2 (BC5_UNORM)")
+        } else {
+            (BlockCode::Bc5YThenX, "ATI2 (BC5_UNORM, Y before X)")
+        };
+        return Ok((TexelFormat::Blocks(block), name.to_owned()));
     }
     if let Some(&(_, name, block)) = FOUR_CC_BLOCKS.iter().find(|row| row.0 == code) {
         return Ok((TexelFormat::Blocks(block), name.to_owned()));
@@ -169,10 +171,9 @@ fn of_four_cc(code: [u8; 4], swizzle_code: [u8; 4]) -> Result<(TexelFormat, Stri
         return Ok((TexelFormat::Plain(Plain { channels, encoding, order: Rgba }), name.to_owned()));
     }
     Err(match &code {
-        b"DXT2" | b"DXT4" => unsupported(
-            "DXT2 and DXT4 (premultiplied alpha)",
-            "save it as DXT3 or DXT5 without premultiplying",
-        ),
+        b"DXT2" | b"DXT4" => {
+            unsupported("premultiplied alpha (DXT2, DXT4)", "save it as DXT3 or DXT5 without premultiplying")
+        }
         _ if code.iter().all(u8::is_ascii_graphic) => {
             unsupported(format!("FourCC '{}'", code.escape_ascii()), CONVERT)
         }
@@ -186,7 +187,7 @@ fn of_masks(masks: Masks) -> Result<(TexelFormat, String), ReadError> {
         return Err(unsupported("a palette", CONVERT));
     }
     if flags & FLAG_YUV != 0 {
-        return Err(unsupported("YUV texels", CONVERT));
+        return Err(unsupported("a YUV format", CONVERT));
     }
     if flags & FLAG_BUMP_DUDV != 0 {
         return of_bump_masks(masks);
@@ -207,13 +208,14 @@ fn of_masks(masks: Masks) -> Result<(TexelFormat, String), ReadError> {
         return Err(unsupported(format!("a pixel format of flags {flags:#x}"), CONVERT));
     };
     let name = || format!("{bits}-bit {}", names.concat());
-    if let Some(plain) = plain_of_masks(bits, channels) {
+    let is_colour = names == rgba_names(names.len());
+    if let Some(plain) = plain_of_masks(bits, channels).filter(|_| is_colour) {
         return Ok((TexelFormat::Plain(plain), name()));
     }
     let texel_bytes = if bits % 8 == 0 { bits as usize / 8 } else { 0 };
     match Packed::new(texel_bytes, channels, names) {
         Some(packed) => Ok((TexelFormat::Packed(packed), name())),
-        None => Err(malformed(format!("{bits} bits with masks {channels:#x?} are no pixel format"))),
+        None => Err(malformed(format!("{bits} bits with masks {channels:x?} are no pixel format"))),
     }
 }
 

@@ -81,13 +81,13 @@ pub(super) fn texel_format(vk_format: u32) -> Result<(TexelFormat, &'static str)
 fn not_read(vk_format: u32) -> ReadError {
     const TO_PLAIN: &str = "convert it to R8G8, R16G16, BC5 or BC7 UNORM first";
     let (what, mend) = match vk_format {
-        11..=14 | 18..=21 | 25..=28 | 32..=35 | 39..=42 | 46..=49 => ("8-bit integer texels", TO_PLAIN),
-        72..=75 | 79..=82 | 86..=89 | 93..=96 => ("16-bit integer texels", TO_PLAIN),
+        11..=14 | 18..=21 | 25..=28 | 32..=35 | 39..=42 | 46..=49 => ("an 8-bit integer format", TO_PLAIN),
+        72..=75 | 79..=82 | 86..=89 | 93..=96 => ("a 16-bit integer format", TO_PLAIN),
         98 | 99 | 101 | 102 | 104 | 105 | 107 | 108 | 110..=121 => {
-            ("32-bit or 64-bit integer or double texels", TO_PLAIN)
+            ("a 32-bit or 64-bit integer or double format", TO_PLAIN)
         }
-        122 | 123 => ("shared-exponent or 10/11-bit float texels", "convert it to half floats first"),
-        124..=130 => ("depth or stencil texels", "convert it to R16 UNORM or R32 SFLOAT first"),
+        122 | 123 => ("a shared-exponent or 10/11-bit float format", "convert it to half floats first"),
+        124..=130 => ("a depth or stencil format", "convert it to R16 UNORM or R32 SFLOAT first"),
         143 | 144 => ("BC6H compression", "convert it to half floats first"),
         147..=156 => ("ETC2 or EAC compression", TO_PLAIN),
         157..=184 | 1_000_066_000..=1_000_066_013 | 1_000_288_000..=1_000_288_029 => {
