@@ -2,28 +2,24 @@
 
 #![forbid(unsafe_code)]
 
+mod atomic;
+mod blocks;
+pub mod dds;
 mod error;
+pub mod exr;
 mod file_info;
+pub mod ktx2;
+mod metadata;
+mod payload;
+pub mod png_levels;
 mod read;
+mod texels;
 
-/// Placeholder until the KTX2 reader is merged.
-mod ktx2 {
-    use crate::{Decoded, Limits, ReadError};
-    pub(crate) fn read_image(_bytes: &[u8], _limits: &Limits) -> Result<Decoded, ReadError> {
-        Err(ReadError::Unsupported { format: "KTX2", what: "reading".to_owned(), mend: "wait for the merge" })
-    }
-}
-
-/// Placeholder until the DDS reader is merged.
-mod dds {
-    use crate::{Decoded, Limits, ReadError};
-    pub(crate) fn read_image(_bytes: &[u8], _limits: &Limits) -> Result<Decoded, ReadError> {
-        Err(ReadError::Unsupported { format: "DDS", what: "reading".to_owned(), mend: "wait for the merge" })
-    }
-}
-
+pub use atomic::{AtomicFile, AtomicSet};
+pub use blocks::{BlockArray, BlockFormat, BlockLayer, compress, decompress};
 pub use error::{ReadError, WriteError};
 pub use file_info::{FileInfo, Limits, ValueRange};
+pub use payload::{Payload, Supercompression};
 pub use read::{read_image, read_image_file};
 
 use roughcast::Image;
