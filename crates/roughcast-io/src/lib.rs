@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 mod error;
+pub mod exr;
 mod file_info;
 
 pub use error::{ReadError, WriteError};
