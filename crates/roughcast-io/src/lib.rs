@@ -2,10 +2,13 @@
 
 #![forbid(unsafe_code)]
 
+mod atomic;
 mod error;
 pub mod exr;
 mod file_info;
+pub mod png_levels;
 
+pub use atomic::{AtomicFile, AtomicSet};
 pub use error::{ReadError, WriteError};
 pub use file_info::{FileInfo, Limits, ValueRange};
 
