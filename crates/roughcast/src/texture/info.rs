@@ -35,6 +35,8 @@ named_enum! {
     pub enum Part: "part" {
         /// The only file of the layout.
         Whole = "whole",
+        /// The only file, its channels split over two-channel textures for block compression.
+        Split = "split",
         /// The normal of the mean slope.
         Normal = "normal",
         /// Roughness alone.

@@ -2,11 +2,28 @@
 //!
 //! One layout a file: each encodes moments into texels, decodes them, and states the bounds of its error.
 
+mod bump_slopes;
+mod clean;
+pub(crate) mod codec;
+mod decode;
 mod info;
+mod lean;
+mod moments;
+pub(crate) mod pack;
+pub(crate) mod pbr;
+mod schilling;
+mod toksvig;
+mod variance;
 
+pub use codec::{Bounds, LayerSpec, Peaks};
+pub use decode::{DecodeError, MomentLevel, decode};
 pub use info::{Base, Brdf, InfoError, Layout, Part, RoughnessStored, TextureInfo};
+pub use schilling::Factor;
 
+use crate::options::{Lobe, RoughnessTexture};
+use crate::row::Extra;
 use crate::{Image, SampleType};
+use codec::Units;
 
 /// One texture with its levels: level 0 first, each `max(1, floor(n / 2))` of the one before, down to 1x1.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,5 +62,96 @@ impl TextureArray {
     /// Number of levels.
     pub fn level_count(&self) -> usize {
         self.layers[0].levels.len()
+    }
+}
+
+/// The textures of a file with this meaning, in the order of its layers. A block-compressed normal has only the first
+/// two of the channels named here.
+pub fn layers_of(info: &TextureInfo) -> &'static [LayerSpec] {
+    match (info.layout, info.part) {
+        (Layout::Toksvig, Part::Normal) => toksvig::NORMAL_LAYERS,
+        (Layout::Variance, Part::Split) => variance::SPLIT_LAYERS,
+        (_, Part::Normal) => pbr::NORMAL_LAYERS,
+        (_, Part::Roughness) => pbr::ROUGHNESS_LAYERS,
+        (_, Part::OcclusionRoughnessMetallic) => pbr::ORM_LAYERS,
+        (_, Part::Anisotropy) => pbr::ANISOTROPY_LAYERS,
+        (_, Part::Gloss) => toksvig::GLOSS_LAYERS,
+        (layout, Part::Whole | Part::Split) => match layout {
+            Layout::Lean => lean::LAYERS,
+            Layout::Clean => clean::LAYERS,
+            Layout::Schilling => schilling::LAYERS,
+            Layout::SchillingIsotropic => schilling::ISOTROPIC_LAYERS,
+            Layout::Variance => variance::LAYERS,
+            Layout::Toksvig => toksvig::LAYERS,
+            Layout::BumpSlopes => bump_slopes::LAYERS,
+            Layout::Pbr => pbr::NORMAL_LAYERS,
+            Layout::Moments => moments::LAYERS,
+        },
+    }
+}
+
+/// The quantities that a layout averages beside the slopes.
+pub(crate) fn extras_of(layout: Layout, packed: RoughnessTexture) -> Vec<Extra> {
+    match layout {
+        Layout::Lean | Layout::Schilling => codec::NORMAL.to_vec(),
+        Layout::Toksvig => [&codec::NORMAL[..], &[Extra::BaseVariance]].concat(),
+        Layout::BumpSlopes => vec![Extra::Height],
+        Layout::Pbr => match packed {
+            RoughnessTexture::Alone => vec![],
+            RoughnessTexture::Packed => vec![Extra::Occlusion, Extra::Metalness],
+        },
+        Layout::Clean | Layout::SchillingIsotropic | Layout::Variance | Layout::Moments => vec![],
+    }
+}
+
+/// What a layout's encoder has to know beyond the units.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EncoderShape {
+    pub lobe: Lobe,
+    pub roughness_texture: RoughnessTexture,
+    /// The channels of `pbr`'s normal texture.
+    pub normal_channels: usize,
+}
+
+/// The encoder of a layout whose first file has this meaning.
+pub(crate) fn encoder(
+    info: &TextureInfo,
+    sample_type: SampleType,
+    shape: EncoderShape,
+) -> Box<dyn codec::RowEncoder> {
+    let units = Units::new(info, sample_type);
+    match info.layout {
+        Layout::Lean => Box::new(lean::Encoder(units)),
+        Layout::Clean => Box::new(clean::Encoder(units)),
+        Layout::Schilling => Box::new(schilling::Encoder(units)),
+        Layout::SchillingIsotropic => Box::new(schilling::IsotropicEncoder(units)),
+        Layout::Variance => Box::new(variance::Encoder(units)),
+        Layout::Toksvig => Box::new(toksvig::Encoder { units, part: info.part }),
+        Layout::BumpSlopes => Box::new(bump_slopes::Encoder),
+        Layout::Moments => Box::new(moments::Encoder),
+        Layout::Pbr => Box::new(pbr::Encoder {
+            units,
+            normal_channels: shape.normal_channels,
+            stored: info.roughness_stored,
+            lobe: shape.lobe,
+            texture: shape.roughness_texture,
+        }),
+    }
+}
+
+/// What a file with this meaning and sample type can be relied upon to give back, where nothing stored exceeds
+/// `peaks`. Block compression adds errors of its own.
+pub fn bounds(info: &TextureInfo, sample_type: SampleType, peaks: &Peaks) -> Bounds {
+    let units = Units::new(info, sample_type);
+    match info.layout {
+        Layout::Lean => lean::bounds(units, peaks),
+        Layout::Clean => clean::bounds(units, peaks),
+        Layout::Schilling => schilling::bounds(units, peaks),
+        Layout::SchillingIsotropic => schilling::isotropic_bounds(units, peaks),
+        Layout::Variance => variance::bounds(units, peaks),
+        Layout::Toksvig => toksvig::bounds(units, peaks),
+        Layout::BumpSlopes => bump_slopes::bounds(units, peaks),
+        Layout::Moments => moments::bounds(units, peaks),
+        Layout::Pbr => pbr::bounds(units, info, peaks),
     }
 }

@@ -1,0 +1,141 @@
+//! Moments of the slopes under a footprint: the mean and what the lost bumps became, roughness with a direction.
+//!
+//! Source: LEAN mapping, Eq. 2 to 5. Order of second moments everywhere: xx, yy, xy.
+
+use crate::slope::Slope;
+
+/// Mean slope and raw second moments. Linear: any non-negative filter may average them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moments {
+    /// Mean slope `B = E[b]`.
+    pub mean: Slope,
+    /// `E[b.x^2]`.
+    pub xx: f32,
+    /// `E[b.y^2]`.
+    pub yy: f32,
+    /// `E[b.x b.y]`.
+    pub xy: f32,
+}
+
+/// Covariance of slopes, `M - B B^T`: the variance per axis and its mixed term.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Covariance {
+    /// Variance along x.
+    pub xx: f32,
+    /// Variance along y.
+    pub yy: f32,
+    /// Mixed term.
+    pub xy: f32,
+}
+
+impl Moments {
+    /// The moments of a single slope (LEAN Eq. 3, 4).
+    pub fn of_slope(slope: Slope) -> Self {
+        Self::from_mean_and_covariance(slope, Covariance::default())
+    }
+
+    /// The moments of a distribution with this mean and covariance.
+    pub fn from_mean_and_covariance(mean: Slope, covariance: Covariance) -> Self {
+        Self {
+            mean,
+            xx: covariance.xx + mean.x * mean.x,
+            yy: covariance.yy + mean.y * mean.y,
+            xy: covariance.xy + mean.x * mean.y,
+        }
+    }
+
+    /// The covariance (LEAN Eq. 5), made positive semidefinite: rounding of stored moments must not turn into a lobe
+    /// of negative width.
+    pub fn covariance(self) -> Covariance {
+        // The products are exact in f64, so that only the rounding of the stored numbers themselves is left.
+        let (x, y) = (f64::from(self.mean.x), f64::from(self.mean.y));
+        Covariance {
+            xx: (f64::from(self.xx) - x * x) as f32,
+            yy: (f64::from(self.yy) - y * y) as f32,
+            xy: (f64::from(self.xy) - x * y) as f32,
+        }
+        .positive_semidefinite()
+    }
+}
+
+impl Covariance {
+    /// The same variance along every axis.
+    pub fn isotropic(variance: f32) -> Self {
+        Self { xx: variance, yy: variance, xy: 0.0 }
+    }
+
+    /// The nearest by rule: a variance below zero becomes zero, `|xy|` is cut to `sqrt(xx yy)`.
+    pub fn positive_semidefinite(self) -> Self {
+        let (xx, yy) = (self.xx.max(0.0), self.yy.max(0.0));
+        let mut limit = (f64::from(xx) * f64::from(yy)).sqrt() as f32;
+        // The root may have been rounded up, and then the determinant would be below zero after all.
+        if f64::from(limit) * f64::from(limit) > f64::from(xx) * f64::from(yy) {
+            limit = limit.next_down().max(0.0);
+        }
+        Self { xx, yy, xy: self.xy.clamp(-limit, limit) }
+    }
+
+    /// Sum of the variances.
+    pub fn trace(self) -> f32 {
+        self.xx + self.yy
+    }
+
+    /// The larger and the smaller variance along the principal axes.
+    pub fn eigenvalues(self) -> (f32, f32) {
+        let mean = 0.5 * (self.xx + self.yy);
+        let radius = (0.5 * (self.xx - self.yy)).hypot(self.xy);
+        (mean + radius, mean - radius)
+    }
+
+    /// Unit vector along the larger variance, x >= 0; x axis where both are equal.
+    pub fn main_direction(self) -> Slope {
+        let angle = 0.5 * (2.0 * self.xy).atan2(self.xx - self.yy);
+        Slope { x: angle.cos(), y: angle.sin() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_covariance_of_one_slope_is_nothing() {
+        let moments = Moments::of_slope(Slope { x: 0.5, y: -0.25 });
+        assert_eq!(moments.covariance(), Covariance::default());
+    }
+
+    #[test]
+    fn mending_leaves_a_covariance_alone_and_mends_what_is_none() {
+        let good = Covariance { xx: 4.0, yy: 1.0, xy: -1.5 };
+        assert_eq!(good.positive_semidefinite(), good);
+        let cut = Covariance { xx: 4.0, yy: 1.0, xy: -9.0 }.positive_semidefinite();
+        assert_eq!(cut, Covariance { xx: 4.0, yy: 1.0, xy: -2.0 });
+        let zero = Covariance { xx: -1e-6, yy: 1.0, xy: 0.1 }.positive_semidefinite();
+        assert_eq!(zero, Covariance { xx: 0.0, yy: 1.0, xy: 0.0 });
+    }
+
+    #[test]
+    fn mended_determinants_are_never_negative() {
+        let mut seed = 1_u32;
+        let mut random = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            seed as f32 / u32::MAX as f32
+        };
+        for _ in 0..10_000 {
+            let c = Covariance { xx: random(), yy: random() * 1e-3, xy: random() * 2.0 - 1.0 };
+            let c = c.positive_semidefinite();
+            let determinant = f64::from(c.xx) * f64::from(c.yy) - f64::from(c.xy) * f64::from(c.xy);
+            assert!(determinant >= 0.0, "{c:?}: {determinant}");
+        }
+    }
+
+    #[test]
+    fn principal_axes_rebuild_the_matrix() {
+        const ROUNDING: f32 = 1e-6; // a few f32 roundings of numbers near one
+        let c = Covariance { xx: 0.7, yy: 0.3, xy: -0.2 };
+        let (large, small) = c.eigenvalues();
+        let e = c.main_direction();
+        assert!((large * e.x * e.x + small * e.y * e.y - c.xx).abs() < ROUNDING);
+        assert!(((large - small) * e.x * e.y - c.xy).abs() < ROUNDING);
+    }
+}

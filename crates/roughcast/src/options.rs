@@ -1,0 +1,260 @@
+//! How a map is to be read and filtered. The command line, Python and the GPU use these as they are.
+
+use crate::SampleType;
+use crate::named::named_enum;
+use crate::texture::{Base, Brdf, Layout, RoughnessStored};
+
+named_enum! {
+    /// What the pixels of an input are.
+    pub enum Kind: "kind of map" {
+        /// Normals, three channels or two.
+        Normal = "normal",
+        /// Heights, one channel.
+        Height = "height",
+    }
+}
+
+named_enum! {
+    /// Which way a normal map's green channel points.
+    pub enum Green: "direction of green" {
+        /// Up the picture: OpenGL, glTF.
+        Up = "up",
+        /// Down the picture: DirectX.
+        Down = "down",
+    }
+}
+
+named_enum! {
+    /// The numbers by which a normal's components are stored.
+    pub enum NormalRange: "range" {
+        /// 0 ..= 1 stands for -1 ..= 1.
+        Unorm = "unorm",
+        /// The components themselves.
+        Signed = "signed",
+    }
+}
+
+impl NormalRange {
+    /// The component that a stored value stands for.
+    #[inline(always)]
+    pub fn component_from_stored(self, stored: f32) -> f32 {
+        match self {
+            NormalRange::Unorm => 2.0 * stored - 1.0,
+            NormalRange::Signed => stored,
+        }
+    }
+}
+
+named_enum! {
+    /// Which channels hold a normal's components.
+    pub enum NormalChannels: "choice of channels" {
+        /// Red, green, blue: x, y, z. Used by direction; the length does not matter.
+        Xyz = "xyz",
+        /// Red and green: x, y; z follows.
+        Xy = "xy",
+        /// Alpha and green: x, y; z follows ("DXT5nm").
+        Ag = "ag",
+    }
+}
+
+named_enum! {
+    /// How a height map's gradient is estimated. All are in texels of level 0.
+    pub enum Gradient: "gradient" {
+        /// The 8-tap Sobel filter divided by 8.
+        Sobel = "sobel",
+        /// Central differences divided by 2.
+        Central = "central",
+        /// Difference to the next texel, right and up.
+        Forward = "forward",
+    }
+}
+
+named_enum! {
+    /// What lies beyond the edge of a map; for gradients and for filters wider than the box.
+    pub enum Wrap: "wrap mode" {
+        /// The map repeats.
+        Repeat = "repeat",
+        /// The edge texel goes on.
+        Clamp = "clamp",
+        /// The map is mirrored at the edge.
+        Mirror = "mirror",
+    }
+}
+
+named_enum! {
+    /// The kernel that makes a level of the one before. All are non-negative: with lobes below zero the covariance
+    /// would stop being one.
+    pub enum PyramidFilter: "filter" {
+        /// Exact area average.
+        Box = "box",
+        /// Tent over two texels of the coarser level each way.
+        Triangle = "triangle",
+        /// The B-spline of order three, a Gaussian's shape with a deviation of half a texel of the coarser level.
+        Gaussian = "gaussian",
+    }
+}
+
+/// How a map is turned into slopes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SourceOptions {
+    /// What the pixels are.
+    pub kind: Kind,
+    /// Direction of a normal map's green channel.
+    pub green: Green,
+    /// Numbers by which a normal's components are stored.
+    pub range: NormalRange,
+    /// Channels of a normal's components.
+    pub normal_channels: NormalChannels,
+    /// A height value v means `v * height_scale * width` texels.
+    pub height_scale: f32,
+    /// Which way heights go.
+    pub height_sense: HeightSense,
+    /// Estimate of the gradient of heights.
+    pub gradient: Gradient,
+    /// What lies beyond the edge.
+    pub wrap: Wrap,
+    /// Largest length of a slope; steeper ones are scaled back to it and counted.
+    pub max_slope: f32,
+}
+
+named_enum! {
+    /// Which way heights go.
+    pub enum HeightSense: "sense of heights" {
+        /// White is high.
+        WhiteHigh = "white-high",
+        /// White is deep: a depth map.
+        WhiteDeep = "white-deep",
+    }
+}
+
+impl SourceOptions {
+    /// Default height of a full-range height map, as a part of its width.
+    pub const DEFAULT_HEIGHT_SCALE: f32 = 0.02;
+    /// Default largest slope: 89.55 degrees.
+    pub const DEFAULT_MAX_SLOPE: f32 = 128.0;
+}
+
+impl Default for SourceOptions {
+    /// An OpenGL normal map that repeats.
+    fn default() -> Self {
+        Self {
+            kind: Kind::Normal,
+            green: Green::Up,
+            range: NormalRange::Unorm,
+            normal_channels: NormalChannels::Xyz,
+            height_scale: Self::DEFAULT_HEIGHT_SCALE,
+            height_sense: HeightSense::WhiteHigh,
+            gradient: Gradient::Sobel,
+            wrap: Wrap::Repeat,
+            max_slope: Self::DEFAULT_MAX_SLOPE,
+        }
+    }
+}
+
+named_enum! {
+    /// How many shapes of roughness a physically based material tells apart.
+    pub enum Lobe: "lobe" {
+        /// One roughness for every direction.
+        Isotropic = "isotropic",
+        /// Two roughnesses and a direction, as KHR_materials_anisotropy has them.
+        Anisotropic = "anisotropic",
+    }
+}
+
+named_enum! {
+    /// Which texture a material's roughness shares.
+    pub enum RoughnessTexture: "roughness texture" {
+        /// A texture of its own.
+        Alone = "alone",
+        /// glTF's packed texture: occlusion in red, roughness in green, metalness in blue.
+        Packed = "packed",
+    }
+}
+
+named_enum! {
+    /// The type in which texels are stored.
+    pub enum Bits: "number of bits" {
+        /// 8-bit unsigned normalised.
+        Eight = "8",
+        /// 16-bit unsigned normalised.
+        Sixteen = "16",
+        /// Half float.
+        Half = "half",
+        /// Single float.
+        Float = "float",
+    }
+}
+
+impl Bits {
+    /// The sample type of an image with these bits.
+    pub fn sample_type(self) -> SampleType {
+        match self {
+            Bits::Eight => SampleType::U8,
+            Bits::Sixteen => SampleType::U16,
+            Bits::Half => SampleType::F16,
+            Bits::Float => SampleType::F32,
+        }
+    }
+}
+
+named_enum! {
+    /// Whether textures are shaped for block compression: two channels for what will be BC5, one for BC4.
+    pub enum Blocks: "compression" {
+        /// Plain texels.
+        None = "none",
+        /// BC4, BC5 and BC7.
+        Bc = "bc",
+    }
+}
+
+/// The range of slopes that unsigned texels cover.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ScaleChoice {
+    /// The smallest that holds every texel.
+    Auto,
+    /// This one; steeper texels are scaled back to it and counted.
+    Fixed(f32),
+}
+
+/// What to make of a map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BakeOptions {
+    /// The layout.
+    pub layout: Layout,
+    /// The type of its texels.
+    pub bits: Bits,
+    /// The range of its slopes, for unsigned types.
+    pub scale: ScaleChoice,
+    /// Whether base roughness is folded into the second moments.
+    pub base: Base,
+    /// The lobe for which roughness is meant.
+    pub brdf: Brdf,
+    /// How `pbr` stores roughness.
+    pub roughness_stored: RoughnessStored,
+    /// One roughness or two, for `pbr`.
+    pub lobe: Lobe,
+    /// What `pbr`'s roughness shares its texture with.
+    pub roughness_texture: RoughnessTexture,
+    /// Shaped for block compression or not.
+    pub blocks: Blocks,
+    /// The kernel of the pyramid.
+    pub filter: PyramidFilter,
+}
+
+impl Default for BakeOptions {
+    /// LEAN in 16 bits with the smallest safe scale, without base roughness, box filter.
+    fn default() -> Self {
+        Self {
+            layout: Layout::Lean,
+            bits: Bits::Sixteen,
+            scale: ScaleChoice::Auto,
+            base: Base::None,
+            brdf: Brdf::Ggx,
+            roughness_stored: RoughnessStored::Perceptual,
+            lobe: Lobe::Isotropic,
+            roughness_texture: RoughnessTexture::Alone,
+            blocks: Blocks::None,
+            filter: PyramidFilter::Box,
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! The fused pass: while sizes are even, slopes are computed, averaged and stored in one go over tiles that stay in
+//! the cache. Level 0 is never held as floats.
+
+use rayon::prelude::*;
+
+use super::LevelStats;
+use super::combine::{average_two_columns, average_two_rows};
+use super::level_out::{LevelOut, OutScratch};
+use super::resample::LevelImage;
+use crate::row::{Row, RowSource, SourceScratch};
+use crate::slope::SourceCounts;
+
+/// Deepest level that one tile makes: 64 rows of level 0 for each of its own.
+const MAX_DEPTH: usize = 6;
+
+/// Columns of level 0 in a tile; a multiple of 2^MAX_DEPTH. All rows of a tile together stay within L2.
+const TILE: usize = 512;
+
+/// Rows of level 0 that one task takes, at least: enough work to be worth handing out.
+const BAND_ROWS: usize = 64;
+
+/// How many halvings are exact: both sides even each time.
+pub(super) fn depth(width: usize, height: usize) -> usize {
+    (width.trailing_zeros().min(height.trailing_zeros()) as usize).min(MAX_DEPTH)
+}
+
+/// Makes levels 0 ..= depth, and hands back the last one.
+pub(super) fn run(
+    source: &dyn RowSource,
+    depth: usize,
+    outs: Vec<LevelOut<'_>>,
+) -> (SourceCounts, Vec<LevelStats>, Option<LevelImage>) {
+    let (width, height) = (source.width() >> depth, source.height() >> depth);
+    let extras = source.extras().len();
+    let mut last = LevelImage::new(width, height, extras);
+    let rows_a_band = (BAND_ROWS >> depth).max(1);
+    let mut bands: Vec<Band<'_>> = Vec::new();
+    for (index, planes) in last.split(rows_a_band).into_iter().enumerate() {
+        bands.push(Band { first_row: index * rows_a_band, last: planes, outs: Vec::new() });
+    }
+    for (level, out) in outs.into_iter().enumerate() {
+        for (band, part) in bands.iter_mut().zip(out.split(rows_a_band << (depth - level))) {
+            band.outs.push(part);
+        }
+    }
+    let results: Vec<_> = bands
+        .into_par_iter()
+        .map_init(|| Cascade::new(source, depth), |cascade, band| cascade.make(band))
+        .collect();
+    let mut counts = SourceCounts::default();
+    let mut sums = vec![super::level_out::StatsSum::default(); depth + 1];
+    for (band_counts, band_sums) in results {
+        counts = counts.plus(band_counts);
+        sums.iter_mut().zip(band_sums).for_each(|(sum, band)| sum.add(band));
+    }
+    (counts, sums.into_iter().map(|sum| sum.finish()).collect(), Some(last))
+}
+
+/// The rows that one task makes: of the last level, and with it of all levels above.
+struct Band<'a> {
+    first_row: usize,
+    last: super::resample::PlanesMut<'a>,
+    outs: Vec<LevelOut<'a>>,
+}
+
+/// Reused buffers of one thread.
+struct Cascade<'a> {
+    source: &'a dyn RowSource,
+    depth: usize,
+    /// For each level the two rows that make one row of the next.
+    pairs: Vec<[Row; 2]>,
+    /// For each level the average of its two rows, before columns are averaged.
+    merged: Vec<Row>,
+    source_scratch: SourceScratch,
+    out_scratch: OutScratch,
+    counts: SourceCounts,
+}
+
+impl<'a> Cascade<'a> {
+    fn new(source: &'a dyn RowSource, depth: usize) -> Self {
+        let extras = source.extras().len();
+        let row = |level: usize| Row::new(TILE.min(source.width()) >> level, extras);
+        Self {
+            source,
+            depth,
+            pairs: (0..=depth).map(|level| [row(level), row(level)]).collect(),
+            merged: (0..=depth).map(row).collect(),
+            source_scratch: SourceScratch::default(),
+            out_scratch: OutScratch::default(),
+            counts: SourceCounts::default(),
+        }
+    }
+
+    fn make(&mut self, mut band: Band<'_>) -> (SourceCounts, Vec<super::level_out::StatsSum>) {
+        self.counts = SourceCounts::default();
+        for x in (0..self.source.width()).step_by(TILE) {
+            self.set_tile_width(TILE.min(self.source.width() - x));
+            for row in 0..band.last.rows() {
+                self.row(self.depth, x, band.first_row + row, 0, &mut band);
+                band.last.copy_in(x >> self.depth, row, &self.pairs[self.depth][0]);
+            }
+        }
+        (self.counts, band.outs.into_iter().map(LevelOut::into_sum).collect())
+    }
+
+    fn set_tile_width(&mut self, width: usize) {
+        if self.pairs[0][0].width() == width {
+            return;
+        }
+        for level in 0..=self.depth {
+            let [a, b] = &mut self.pairs[level];
+            for plane in [a, b, &mut self.merged[level]].into_iter().flat_map(|row| &mut row.planes) {
+                plane.resize(width >> level, 0.0);
+            }
+        }
+    }
+
+    /// Makes row `y` of a level into `pairs[level][slot]`, and before it all rows of finer levels under it.
+    fn row(&mut self, level: usize, x: usize, y: usize, slot: usize, band: &mut Band<'_>) {
+        if level == 0 {
+            let row = &mut self.pairs[0][slot];
+            let counts = self.source.fill(x, y, row, &mut self.source_scratch);
+            self.counts = self.counts.plus(counts);
+        } else {
+            self.row(level - 1, x, 2 * y, 0, band);
+            self.row(level - 1, x, 2 * y + 1, 1, band);
+            let (finer, this) = self.pairs.split_at_mut(level);
+            let [above, below] = &finer[level - 1];
+            let merged = &mut self.merged[level - 1];
+            average_two_rows(above, below, merged);
+            average_two_columns(merged, &mut this[0][slot]);
+        }
+        let first = band.first_row << (self.depth - level);
+        let row = self.pairs[level][slot].view();
+        band.outs[level].write(x >> level, y - first, row, &mut self.out_scratch);
+    }
+}

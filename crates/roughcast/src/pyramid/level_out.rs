@@ -1,0 +1,188 @@
+//! Where rows of a level go: encoded by a layout into the samples of its textures, and measured.
+
+use half::f16;
+
+use super::LevelStats;
+use crate::Samples;
+use crate::row::RowView;
+use crate::texture::codec::RowEncoder;
+use crate::texture::pack;
+
+/// Samples of one texture's level, or some rows of them.
+pub(crate) enum SamplesMut<'a> {
+    U8(&'a mut [u8]),
+    U16(&'a mut [u16]),
+    F16(&'a mut [f16]),
+    F32(&'a mut [f32]),
+}
+
+impl<'a> SamplesMut<'a> {
+    pub fn new(samples: &'a mut Samples) -> Self {
+        match samples {
+            Samples::U8(v) => Self::U8(v),
+            Samples::U16(v) => Self::U16(v),
+            Samples::F16(v) => Self::F16(v),
+            Samples::F32(v) => Self::F32(v),
+        }
+    }
+
+    fn chunks(self, len: usize) -> Vec<Self> {
+        match self {
+            Self::U8(v) => v.chunks_mut(len).map(Self::U8).collect(),
+            Self::U16(v) => v.chunks_mut(len).map(Self::U16).collect(),
+            Self::F16(v) => v.chunks_mut(len).map(Self::F16).collect(),
+            Self::F32(v) => v.chunks_mut(len).map(Self::F32).collect(),
+        }
+    }
+
+    /// Packs planes of stored values, texel by texel, from sample `start` on.
+    fn pack(&mut self, start: usize, planes: &[Vec<f32>], width: usize) {
+        let len = planes.len() * width;
+        match self {
+            Self::U8(v) => pack::unorm8(planes, &mut v[start..start + len]),
+            Self::U16(v) => pack::unorm16(planes, &mut v[start..start + len]),
+            Self::F16(v) => pack::half(planes, &mut v[start..start + len]),
+            Self::F32(v) => pack::single(planes, &mut v[start..start + len]),
+        }
+    }
+}
+
+/// One texture's level.
+pub(crate) struct PartOut<'a> {
+    pub channels: usize,
+    pub samples: SamplesMut<'a>,
+}
+
+/// One level of all textures of a layout, or some rows of it. Without an encoder it is only measured.
+pub(crate) struct LevelOut<'a> {
+    width: usize,
+    rows: usize,
+    encoder: Option<&'a dyn RowEncoder>,
+    parts: Vec<PartOut<'a>>,
+    sum: StatsSum,
+}
+
+/// Reused buffer: the planes that a layout stores, before they are interleaved.
+#[derive(Default)]
+pub(crate) struct OutScratch {
+    planes: Vec<Vec<f32>>,
+}
+
+impl<'a> LevelOut<'a> {
+    /// A level that is encoded into `parts`.
+    pub fn encoded(size: (usize, usize), encoder: &'a dyn RowEncoder, parts: Vec<PartOut<'a>>) -> Self {
+        Self { width: size.0, rows: size.1, encoder: Some(encoder), parts, sum: StatsSum::default() }
+    }
+
+    /// A level that is only measured.
+    pub fn measured(size: (usize, usize)) -> Self {
+        Self { width: size.0, rows: size.1, encoder: None, parts: Vec::new(), sum: StatsSum::default() }
+    }
+
+    /// Rows in it.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Bands of `rows` rows each, to be written at the same time.
+    pub fn split(self, rows: usize) -> Vec<Self> {
+        let (width, encoder) = (self.width, self.encoder);
+        let mut bands: Vec<Self> = (0..self.rows.div_ceil(rows))
+            .map(|band| rows.min(self.rows - band * rows))
+            .map(|rows| Self { width, rows, encoder, parts: Vec::new(), sum: StatsSum::default() })
+            .collect();
+        for part in self.parts {
+            let channels = part.channels;
+            for (band, samples) in bands.iter_mut().zip(part.samples.chunks(rows * width * channels)) {
+                band.parts.push(PartOut { channels, samples });
+            }
+        }
+        bands
+    }
+
+    /// Measures and stores a stretch of row `y` (of this band) from column `x` on.
+    pub fn write(&mut self, x: usize, y: usize, row: RowView<'_>, scratch: &mut OutScratch) {
+        self.sum.measure(row);
+        let Some(encoder) = self.encoder else { return };
+        let planes = self.parts.iter().map(|part| part.channels).sum();
+        scratch.planes.resize(planes, Vec::new());
+        scratch.planes.iter_mut().for_each(|plane| plane.resize(row.width(), 0.0));
+        encoder.encode(row, &mut scratch.planes);
+        let mut first = 0;
+        for part in &mut self.parts {
+            let start = (y * self.width + x) * part.channels;
+            part.samples.pack(start, &scratch.planes[first..first + part.channels], row.width());
+            first += part.channels;
+        }
+    }
+
+    /// What was measured, for a band.
+    pub fn into_sum(self) -> StatsSum {
+        self.sum
+    }
+
+    /// What was measured, for the whole level.
+    pub fn finish(self) -> LevelStats {
+        self.sum.finish()
+    }
+}
+
+/// Sums over texels. Bands are added in their order, so that the result does not depend on the threads.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct StatsSum {
+    texels: u64,
+    xx: f64,
+    yy: f64,
+    max: f32,
+}
+
+impl StatsSum {
+    fn measure(&mut self, row: RowView<'_>) {
+        self.texels += row.width() as u64;
+        self.xx += sum(row.xx);
+        self.yy += sum(row.yy);
+        self.max = self.max.max(largest(row.xx)).max(largest(row.yy));
+    }
+
+    pub fn add(&mut self, other: Self) {
+        self.texels += other.texels;
+        self.xx += other.xx;
+        self.yy += other.yy;
+        self.max = self.max.max(other.max);
+    }
+
+    pub fn finish(self) -> LevelStats {
+        let texels = self.texels.max(1) as f64;
+        LevelStats {
+            mean_variance_x: self.xx / texels,
+            mean_variance_y: self.yy / texels,
+            max_variance: self.max,
+        }
+    }
+}
+
+const LANES: usize = 8;
+
+/// Sum in independent lanes, which vectorises; the lanes are f64, so the order does not matter in practice.
+fn sum(values: &[f32]) -> f64 {
+    let (chunks, rest) = values.as_chunks::<LANES>();
+    let mut lanes = [0.0_f64; LANES];
+    for chunk in chunks {
+        for (lane, value) in lanes.iter_mut().zip(chunk) {
+            *lane += f64::from(*value);
+        }
+    }
+    lanes.iter().sum::<f64>() + rest.iter().map(|v| f64::from(*v)).sum::<f64>()
+}
+
+/// The largest of values that are not negative.
+pub(crate) fn largest(values: &[f32]) -> f32 {
+    let (chunks, rest) = values.as_chunks::<LANES>();
+    let mut lanes = [0.0_f32; LANES];
+    for chunk in chunks {
+        for (lane, value) in lanes.iter_mut().zip(chunk) {
+            *lane = if *value > *lane { *value } else { *lane };
+        }
+    }
+    lanes.iter().chain(rest).fold(0.0, |a, b| a.max(*b))
+}

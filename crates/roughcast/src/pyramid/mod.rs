@@ -1,0 +1,97 @@
+//! The pyramid: every level is a weighted average of the one before, and nothing is lost on the way.
+//!
+//! Level k+1 has `max(1, floor(n / 2))` texels each way. With the box filter each texel is the exact area average of
+//! the texels that it covers, for every size; whatever the filter, weights are such that a constant stays
+//! constant and the mean of every level is the mean of level 0 ([`weights`]).
+//!
+//! Sources: LEAN mapping, 3.3; Schilling, "The roughness pyramid".
+
+mod cascade;
+mod combine;
+mod level_out;
+mod resample;
+pub(crate) mod weights;
+
+pub(crate) use level_out::{LevelOut, PartOut, SamplesMut, largest};
+
+use crate::moments::Moments;
+use crate::options::{PyramidFilter, Wrap};
+use crate::row::RowSource;
+use crate::slope::SourceCounts;
+use level_out::OutScratch;
+
+/// Sizes of all levels, from level 0 down to 1x1, as (width, height).
+pub fn level_sizes(width: usize, height: usize) -> Vec<(usize, usize)> {
+    let mut sizes = vec![(width, height)];
+    while let Some(&(w, h)) = sizes.last()
+        && (w > 1 || h > 1)
+    {
+        sizes.push(((w / 2).max(1), (h / 2).max(1)));
+    }
+    sizes
+}
+
+/// What a level holds, measured while it was made.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LevelStats {
+    /// Mean over the level of the variance along x.
+    pub mean_variance_x: f64,
+    /// Mean over the level of the variance along y.
+    pub mean_variance_y: f64,
+    /// Largest variance along either axis of any texel.
+    pub max_variance: f32,
+}
+
+/// How levels are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct PyramidOptions {
+    pub filter: PyramidFilter,
+    pub wrap: Wrap,
+}
+
+/// What was seen while levels were made.
+pub(crate) struct Built {
+    pub counts: SourceCounts,
+    pub levels: Vec<LevelStats>,
+    /// The moments of the whole map.
+    pub whole: Moments,
+}
+
+/// Makes every level of `source` and hands it, row by row, to `outs`, one for each of [`level_sizes`].
+pub(crate) fn build(source: &dyn RowSource, options: PyramidOptions, outs: Vec<LevelOut<'_>>) -> Built {
+    let sizes = level_sizes(source.width(), source.height());
+    assert_eq!(outs.len(), sizes.len(), "one output a level");
+    let depth = match options.filter {
+        PyramidFilter::Box => cascade::depth(source.width(), source.height()),
+        PyramidFilter::Triangle | PyramidFilter::Gaussian => 0,
+    };
+    let mut outs = outs.into_iter();
+    let mut stats = Vec::with_capacity(sizes.len());
+    let fused: Vec<_> = outs.by_ref().take(depth + 1).collect();
+    let (counts, fused_stats, mut level) = if depth > 0 {
+        cascade::run(source, depth, fused)
+    } else {
+        resample::first_level(source, options, fused)
+    };
+    stats.extend(fused_stats);
+    // Without a cascade the first reduction has not been stored yet; `level` is level `depth` or, then, level 1.
+    let mut scratch = OutScratch::default();
+    if depth == 0
+        && let Some(mut out) = outs.next()
+    {
+        let image = level.as_ref().expect("a further level was made");
+        image.write_to(&mut out, &mut scratch);
+        stats.push(out.finish());
+    }
+    for mut out in outs {
+        let next = resample::next_level(level.as_ref().expect("a further level has one before it"), options);
+        next.write_to(&mut out, &mut scratch);
+        stats.push(out.finish());
+        level = Some(next);
+    }
+    let whole = match &level {
+        Some(last) => last.first_texel(),
+        None => resample::first_texel_of(source),
+    };
+    Built { counts, levels: stats, whole }
+}

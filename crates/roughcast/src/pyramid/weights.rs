@@ -1,0 +1,140 @@
+//! Weights by which a line of n texels becomes a line of `max(1, floor(n / 2))`.
+
+use crate::options::{PyramidFilter, Wrap};
+
+/// The texels that go into one texel of the next level, with weights that sum to one.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Taps {
+    /// Index and weight.
+    pub taps: Vec<(usize, f32)>,
+}
+
+/// Kernel integrated up to `t`, with `t` in widths of the coarser texel from its centre; runs from 0 to 1.
+///
+/// The three are the B-splines of order one to three. Copies of a B-spline, one for each coarser texel, add up to one
+/// everywhere, so every finer texel counts equally; the third is the usual stand-in for a Gaussian and has exactly the
+/// deviation of half a texel.
+fn integrated_kernel(filter: PyramidFilter, t: f64) -> f64 {
+    match filter {
+        PyramidFilter::Box => (t + 0.5).clamp(0.0, 1.0),
+        PyramidFilter::Triangle => {
+            let t = t.clamp(-1.0, 1.0);
+            if t < 0.0 { 0.5 * (1.0 + t) * (1.0 + t) } else { 1.0 - 0.5 * (1.0 - t) * (1.0 - t) }
+        }
+        PyramidFilter::Gaussian => {
+            let t = t.clamp(-1.5, 1.5);
+            let tail = |t: f64| (1.5 - t.abs()).powi(3) / 6.0;
+            match t {
+                t if t < -0.5 => tail(t),
+                t if t > 0.5 => 1.0 - tail(t),
+                t => 0.5 + 0.75 * t - t * t * t / 3.0,
+            }
+        }
+    }
+}
+
+fn reach(filter: PyramidFilter) -> f64 {
+    match filter {
+        PyramidFilter::Box => 0.5,
+        PyramidFilter::Triangle => 1.0,
+        PyramidFilter::Gaussian => 1.5,
+    }
+}
+
+/// Where a texel index outside the line comes from.
+fn wrapped(index: isize, size: usize, wrap: Wrap) -> usize {
+    let size_i = size as isize;
+    match wrap {
+        Wrap::Repeat => index.rem_euclid(size_i) as usize,
+        // An edge texel that goes on for ever would count more than the others, and means would drift from level to
+        // level; mirrored, every texel counts the same, and the first one beyond the edge is the edge texel as well.
+        Wrap::Clamp | Wrap::Mirror => {
+            let folded = index.rem_euclid(2 * size_i);
+            (if folded < size_i { folded } else { 2 * size_i - 1 - folded }) as usize
+        }
+    }
+}
+
+/// Weights from a line of `from` texels to one of `max(1, from / 2)`.
+///
+/// Each texel's weights are the kernel integrated over the texels of the finer line; for the box that is coverage.
+/// Every texel's weights sum to 1, so a constant stays constant, and every finer texel counts `to / from` in all, so
+/// means are kept, whatever the size, the filter and the wrap mode.
+pub(crate) fn halving(from: usize, filter: PyramidFilter, wrap: Wrap) -> Vec<Taps> {
+    let to = (from / 2).max(1);
+    let ratio = from as f64 / to as f64;
+    (0..to)
+        .map(|j| kernel_weights(j, ratio, from, filter, wrap))
+        .map(|line| Taps { taps: line.into_iter().map(|(i, w)| (i, w as f32)).collect() })
+        .collect()
+}
+
+fn kernel_weights(j: usize, ratio: f64, from: usize, filter: PyramidFilter, wrap: Wrap) -> Vec<(usize, f64)> {
+    /// Overlaps below this are rounding of the positions, not coverage.
+    const NO_OVERLAP: f64 = 1e-9;
+    let centre = (j as f64 + 0.5) * ratio;
+    let first = (centre - reach(filter) * ratio).floor() as isize;
+    let last = (centre + reach(filter) * ratio).ceil() as isize;
+    let mut line: Vec<(usize, f64)> = Vec::new();
+    for i in first..last {
+        let kernel = |edge: isize| integrated_kernel(filter, (edge as f64 - centre) / ratio);
+        let weight = kernel(i + 1) - kernel(i);
+        if weight <= NO_OVERLAP {
+            continue;
+        }
+        let index = wrapped(i, from, wrap);
+        match line.iter_mut().find(|(known, _)| *known == index) {
+            Some((_, sum)) => *sum += weight,
+            None => line.push((index, weight)),
+        }
+    }
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Weights are stored as f32.
+    const ROUNDING: f64 = 1e-6;
+
+    #[test]
+    fn constants_and_means_are_kept_for_every_size_filter_and_wrap() {
+        for filter in PyramidFilter::ALL {
+            for wrap in Wrap::ALL {
+                for from in [1, 2, 3, 5, 7, 8, 37, 53, 64, 427, 640, 1001] {
+                    let lines = halving(from, *filter, *wrap);
+                    let mut columns = vec![0.0; from];
+                    for line in &lines {
+                        let sum: f64 = line.taps.iter().map(|(_, w)| f64::from(*w)).sum();
+                        assert!((sum - 1.0).abs() < ROUNDING, "{filter} {wrap} {from}: a row sums to {sum}");
+                        assert!(line.taps.iter().all(|(_, w)| *w >= 0.0));
+                        line.taps.iter().for_each(|(i, w)| columns[*i] += f64::from(*w));
+                    }
+                    let wanted = lines.len() as f64 / from as f64;
+                    for (i, column) in columns.iter().enumerate() {
+                        assert!(
+                            (column - wanted).abs() < ROUNDING,
+                            "{filter} {wrap} {from}: texel {i} counts {column}, not {wanted}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn box_weights_are_coverage() {
+        let lines = halving(5, PyramidFilter::Box, Wrap::Repeat);
+        assert_eq!(lines[0].taps, vec![(0, 0.4), (1, 0.4), (2, 0.2)]);
+        assert_eq!(lines[1].taps, vec![(2, 0.2), (3, 0.4), (4, 0.4)]);
+    }
+
+    #[test]
+    fn the_triangle_is_wider_than_the_box_and_the_gaussian_wider_still() {
+        let taps = |filter| halving(64, filter, Wrap::Repeat)[10].taps.len();
+        assert_eq!(taps(PyramidFilter::Box), 2);
+        assert_eq!(taps(PyramidFilter::Triangle), 4);
+        assert_eq!(taps(PyramidFilter::Gaussian), 6);
+    }
+}

@@ -1,0 +1,99 @@
+//! A row of texels on its way through the pyramid, plane by plane.
+//!
+//! The pyramid carries the mean slope and the *covariance*, not the raw second moments. Both say the same, but the
+//! covariance of a footprint is a sum of squares (law of total covariance, Schilling's recursion), so it is positive
+//! semidefinite by construction and keeps its precision where slopes are steep and bumps are small; `M = Σ + B Bᵀ`
+//! is formed once, when a level is stored.
+
+/// A further quantity that is averaged beside the slopes, for the layouts that store it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Extra {
+    /// x of the unit normal.
+    NormalX,
+    /// y of the unit normal.
+    NormalY,
+    /// z of the unit normal.
+    NormalZ,
+    /// The height as stored.
+    Height,
+    /// Slope variance of the base roughness, kept apart from the covariance.
+    BaseVariance,
+    /// Ambient occlusion of a material's packed texture.
+    Occlusion,
+    /// Metalness of a material's packed texture.
+    Metalness,
+}
+
+/// The most extras that one layout asks for.
+pub(crate) const MAX_EXTRAS: usize = 4;
+
+/// Number of planes that every row has: the mean slope and the covariance.
+pub(crate) const CORE_PLANES: usize = 5;
+
+/// One row, or a stretch of one.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Row {
+    /// Mean slope x, y; covariance xx, yy, xy; then the extras in the order asked for.
+    pub planes: Vec<Vec<f32>>,
+}
+
+impl Row {
+    pub fn new(width: usize, extras: usize) -> Self {
+        Self { planes: vec![vec![0.0; width]; CORE_PLANES + extras] }
+    }
+
+    pub fn width(&self) -> usize {
+        self.planes[0].len()
+    }
+
+    pub fn view(&self) -> RowView<'_> {
+        RowView::new(&self.planes, 0, self.width())
+    }
+}
+
+/// A borrowed stretch of a row.
+#[derive(Clone, Copy)]
+pub(crate) struct RowView<'a> {
+    pub bx: &'a [f32],
+    pub by: &'a [f32],
+    pub xx: &'a [f32],
+    pub yy: &'a [f32],
+    pub xy: &'a [f32],
+    pub extras: [&'a [f32]; MAX_EXTRAS],
+}
+
+impl<'a> RowView<'a> {
+    /// Texels `start .. start + len` of planes that hold rows one after the other.
+    pub fn new(planes: &'a [Vec<f32>], start: usize, len: usize) -> Self {
+        let plane = |index: usize| planes.get(index).map_or(&[][..], |p| &p[start..start + len]);
+        Self {
+            bx: plane(0),
+            by: plane(1),
+            xx: plane(2),
+            yy: plane(3),
+            xy: plane(4),
+            extras: std::array::from_fn(|k| plane(CORE_PLANES + k)),
+        }
+    }
+
+    pub fn width(&self) -> usize {
+        self.bx.len()
+    }
+}
+
+/// Where level 0 comes from: slopes, computed where they are needed and never stored as a whole image.
+pub(crate) trait RowSource: Sync {
+    fn width(&self) -> usize;
+    fn height(&self) -> usize;
+    /// The extras that `fill` writes, in order.
+    fn extras(&self) -> &[Extra];
+    /// Writes the texels of row `y` from column `x` on, as many as `row` holds.
+    fn fill(&self, x: usize, y: usize, row: &mut Row, scratch: &mut SourceScratch) -> crate::SourceCounts;
+}
+
+/// Reused buffers of a source.
+#[derive(Default)]
+pub(crate) struct SourceScratch {
+    /// Decoded components, or rows of heights above, at and below, each with a texel on either side.
+    pub planes: [Vec<f32>; 3],
+}

@@ -1,0 +1,132 @@
+//! Slopes and normals in the tangent frame: x right, y up, z out of the surface.
+
+/// The slope of a surface element, `(N.x / N.z, N.y / N.z)`; for a height field minus its gradient. No unit.
+///
+/// Source: LEAN mapping, Eq. 3.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Slope {
+    /// Towards the right (growing column).
+    pub x: f32,
+    /// Upwards (falling row).
+    pub y: f32,
+}
+
+/// A direction out of the surface; unit length where a function says so.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Normal {
+    /// Towards the right.
+    pub x: f32,
+    /// Upwards.
+    pub y: f32,
+    /// Out of the surface.
+    pub z: f32,
+}
+
+/// The slope of a normal with `z > 0`; its length does not matter.
+pub fn slope_from_normal(normal: Normal) -> Slope {
+    Slope { x: normal.x / normal.z, y: normal.y / normal.z }
+}
+
+/// The unit normal of a slope.
+pub fn normal_from_slope(slope: Slope) -> Normal {
+    let z = 1.0 / (1.0 + slope.x * slope.x + slope.y * slope.y).sqrt();
+    Normal { x: slope.x * z, y: slope.y * z, z }
+}
+
+/// What was mended while slopes were read: one bad texel must not poison the chain, and none is mended in silence.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SourceCounts {
+    /// Texels steeper than the largest slope, scaled back to it, direction kept.
+    pub clamped: u64,
+    /// Normals that point into the surface (z <= 0), turned up to the largest slope, direction kept.
+    pub behind: u64,
+    /// Texels that give no direction at all, replaced by flat: two-channel normals far outside the unit disc,
+    /// zero vectors, normals straight into the surface.
+    pub invalid: u64,
+    /// NaN or infinite texels, replaced by flat.
+    pub non_finite: u64,
+}
+
+impl SourceCounts {
+    /// Sum of two counts.
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            clamped: self.clamped + other.clamped,
+            behind: self.behind + other.behind,
+            invalid: self.invalid + other.invalid,
+            non_finite: self.non_finite + other.non_finite,
+        }
+    }
+
+    /// All texels that were changed.
+    pub fn total(self) -> u64 {
+        self.clamped + self.behind + self.invalid + self.non_finite
+    }
+}
+
+/// Turns a vector that is no usable normal into the nearest usable slope, and counts what was done.
+///
+/// `max_slope` is the largest length that a slope may have.
+pub fn mended_slope(x: f32, y: f32, z: f32, max_slope: f32, counts: &mut SourceCounts) -> Slope {
+    if !(x.is_finite() && y.is_finite() && z.is_finite()) {
+        counts.non_finite += 1;
+        return Slope::default();
+    }
+    // In f64 the square of any finite f32 is finite and not zero unless the number is.
+    let length = (f64::from(x).powi(2) + f64::from(y).powi(2)).sqrt();
+    if z > 0.0 && length <= f64::from(z) * f64::from(max_slope) {
+        return slope_from_normal(Normal { x, y, z });
+    }
+    if length == 0.0 {
+        counts.invalid += 1;
+        return Slope::default();
+    }
+    if z > 0.0 {
+        counts.clamped += 1;
+    } else {
+        counts.behind += 1;
+    }
+    let factor = f64::from(max_slope) / length;
+    Slope { x: (f64::from(x) * factor) as f32, y: (f64::from(y) * factor) as f32 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MAX: f32 = 128.0;
+
+    fn mend(x: f32, y: f32, z: f32) -> (Slope, SourceCounts) {
+        let mut counts = SourceCounts::default();
+        let slope = mended_slope(x, y, z, MAX, &mut counts);
+        (slope, counts)
+    }
+
+    #[test]
+    fn good_normals_pass_uncounted_and_length_does_not_matter() {
+        assert_eq!(mend(0.3, -0.4, 0.5), (Slope { x: 0.6, y: -0.8 }, SourceCounts::default()));
+        assert_eq!(mend(3.0, -4.0, 5.0).0, Slope { x: 0.6, y: -0.8 });
+    }
+
+    #[test]
+    fn bad_normals_are_scaled_back_in_their_direction_and_counted() {
+        let (slope, counts) = mend(0.6, 0.8, 0.0);
+        assert_eq!(slope, Slope { x: 0.6 * MAX, y: 0.8 * MAX });
+        assert_eq!(counts, SourceCounts { behind: 1, ..Default::default() });
+        let (slope, counts) = mend(-3.0, 4.0, 1e-6);
+        assert_eq!(slope, Slope { x: -0.6 * MAX, y: 0.8 * MAX });
+        assert_eq!(counts, SourceCounts { clamped: 1, ..Default::default() });
+    }
+
+    #[test]
+    fn texels_without_direction_become_flat() {
+        for (x, y, z) in [(0.0, 0.0, -1.0), (0.0, 0.0, 0.0)] {
+            assert_eq!(mend(x, y, z), (Slope::default(), SourceCounts { invalid: 1, ..Default::default() }));
+        }
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            let counts = SourceCounts { non_finite: 1, ..Default::default() };
+            assert_eq!(mend(bad, 0.0, 1.0), (Slope::default(), counts));
+            assert_eq!(mend(0.0, 0.0, bad), (Slope::default(), counts));
+        }
+    }
+}

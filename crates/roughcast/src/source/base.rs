@@ -1,0 +1,154 @@
+//! Base roughness: what the material has already, before any bump.
+
+use super::{SourceError, load_channel};
+use crate::Image;
+use crate::row::Extra;
+use crate::texture::RoughnessStored;
+
+/// A roughness stored in an image of the same size as the map.
+#[derive(Clone, Copy, Debug)]
+pub struct RoughnessMap<'a> {
+    /// The pixels.
+    pub image: &'a Image,
+    /// The channel that holds roughness; glTF's packed texture has it in 1 (green).
+    pub channel: usize,
+    /// How it is stored.
+    pub stored: RoughnessStored,
+}
+
+/// The base roughness of a material.
+#[derive(Clone, Copy, Debug)]
+pub enum BaseRoughness<'a> {
+    /// The same slope variance everywhere, `alpha^2 / 2 = 1 / s`.
+    Variance(f32),
+    /// One for each texel.
+    Map(RoughnessMap<'a>),
+}
+
+/// A base roughness and what becomes of it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BaseSource<'a> {
+    roughness: BaseRoughness<'a>,
+    use_of_base: UseOfBase,
+}
+
+/// What becomes of a base roughness while a map is filtered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum UseOfBase {
+    /// It is added to the covariance of every texel of level 0 (LEAN Eq. 6).
+    FoldedIn,
+    /// It is averaged on its own, as an extra plane.
+    Apart,
+}
+
+/// Slope variance per axis of a roughness as stored: `alpha^2 / 2`, DESIGN's table of conventions.
+pub fn variance_from_stored(value: f32, stored: RoughnessStored) -> f32 {
+    let alpha_squared = match stored {
+        RoughnessStored::Perceptual => value.powi(4),
+        RoughnessStored::Alpha => value * value,
+        RoughnessStored::AlphaSquared => value,
+        RoughnessStored::Gloss => (1.0 - value).powi(4),
+        RoughnessStored::SpecularPower => 2.0 / value,
+    };
+    0.5 * alpha_squared
+}
+
+/// The inverse of [`variance_from_stored`]. A variance of zero has no specular power: it gives infinity.
+pub fn stored_from_variance(variance: f32, stored: RoughnessStored) -> f32 {
+    let alpha_squared = 2.0 * variance;
+    match stored {
+        RoughnessStored::Perceptual => alpha_squared.sqrt().sqrt(),
+        RoughnessStored::Alpha => alpha_squared.sqrt(),
+        RoughnessStored::AlphaSquared => alpha_squared,
+        RoughnessStored::Gloss => 1.0 - alpha_squared.sqrt().sqrt(),
+        RoughnessStored::SpecularPower => 1.0 / variance,
+    }
+}
+
+impl<'a> BaseSource<'a> {
+    pub(crate) fn new(roughness: BaseRoughness<'a>, use_of_base: UseOfBase) -> Result<Self, SourceError> {
+        if let BaseRoughness::Map(map) = roughness
+            && map.channel >= map.image.channels()
+        {
+            let (needed, got) = (map.channel + 1, map.image.channels());
+            return Err(SourceError::Channels { wanted: "roughness map read there", needed, got });
+        }
+        if let BaseRoughness::Variance(variance) = roughness
+            && !(variance.is_finite() && variance >= 0.0)
+        {
+            return Err(SourceError::Option(format!(
+                "the base roughness gives a slope variance of {variance}: it must be finite and not negative"
+            )));
+        }
+        Ok(Self { roughness, use_of_base })
+    }
+
+    pub(super) fn folds_in(&self) -> bool {
+        self.use_of_base == UseOfBase::FoldedIn
+    }
+
+    pub(super) fn check_size(&self, width: usize, height: usize) -> Result<(), SourceError> {
+        match self.roughness {
+            BaseRoughness::Map(map) if (map.image.width(), map.image.height()) != (width, height) => {
+                let (got_width, got_height) = (map.image.width(), map.image.height());
+                Err(SourceError::Size { width, height, got_width, got_height })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    pub(super) fn fill_variance(&self, x: usize, y: usize, plane: &mut [f32]) {
+        match self.roughness {
+            BaseRoughness::Variance(variance) => plane.fill(variance),
+            BaseRoughness::Map(map) => {
+                load_channel(map.image, map.channel, x, y, plane);
+                for value in plane {
+                    let variance = variance_from_stored(*value, map.stored);
+                    // A NaN or negative roughness says nothing: none.
+                    *value = if variance.is_finite() && variance > 0.0 { variance } else { 0.0 };
+                }
+            }
+        }
+    }
+
+    pub(super) fn fill_extra(&self, extra: Extra, x: usize, y: usize, plane: &mut [f32]) {
+        let channel = match extra {
+            Extra::BaseVariance => return self.fill_variance(x, y, plane),
+            Extra::Occlusion => 0,
+            Extra::Metalness => 2,
+            _ => unreachable!("the other extras come from the map itself"),
+        };
+        match self.roughness {
+            BaseRoughness::Map(map) if channel < map.image.channels() => {
+                load_channel(map.image, channel, x, y, plane);
+            }
+            _ => plane.fill(0.0),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_way_to_store_roughness_reads_back() {
+        const ROUNDING: f32 = 4e-6; // four roots and powers in f32, relative
+        for stored in RoughnessStored::ALL {
+            for variance in [1e-4_f32, 0.02, 0.3] {
+                let back = variance_from_stored(stored_from_variance(variance, *stored), *stored);
+                // Gloss loses digits in `1 - r`, which the fourth power multiplies.
+                let tolerance = if *stored == RoughnessStored::Gloss { 20.0 * ROUNDING } else { ROUNDING };
+                assert!((back / variance - 1.0).abs() < tolerance, "{stored}: {variance} -> {back}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_table_of_conventions_holds() {
+        assert_eq!(variance_from_stored(64.0, RoughnessStored::SpecularPower), 1.0 / 64.0);
+        assert_eq!(variance_from_stored(0.5, RoughnessStored::Perceptual), 0.5 * 0.25 * 0.25);
+        assert_eq!(variance_from_stored(0.5, RoughnessStored::Alpha), 0.125);
+        assert_eq!(variance_from_stored(1.0, RoughnessStored::Gloss), 0.0);
+    }
+}

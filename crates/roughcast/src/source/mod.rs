@@ -1,0 +1,228 @@
+//! From a map's pixels to rows of slopes: level 0 of everything.
+
+mod base;
+mod height_map;
+mod normal_map;
+
+pub use base::{BaseRoughness, RoughnessMap, stored_from_variance, variance_from_stored};
+pub(crate) use base::{BaseSource, UseOfBase};
+
+use crate::options::{Kind, SourceOptions};
+use crate::row::{Extra, Row, RowSource, SourceScratch};
+use crate::slope::{SourceCounts, mended_slope};
+use crate::{Image, Samples};
+
+/// Why a map cannot be read as slopes.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SourceError {
+    /// The channels that the options name are not there.
+    #[error(
+        "a {wanted} needs {needed} channels or more, and this map has {got}: see --kind and --normal-channels"
+    )]
+    Channels {
+        /// What was to be read.
+        wanted: &'static str,
+        /// Channels needed.
+        needed: usize,
+        /// Channels there are.
+        got: usize,
+    },
+    /// A map that goes with another has another size.
+    #[error(
+        "the roughness map is {got_width}x{got_height} pixels and the map {width}x{height}: resize one of them"
+    )]
+    Size {
+        /// Width of the main map.
+        width: usize,
+        /// Height of the main map.
+        height: usize,
+        /// Width of the roughness map.
+        got_width: usize,
+        /// Height of the roughness map.
+        got_height: usize,
+    },
+    /// An option is out of its range.
+    #[error("{0}")]
+    Option(String),
+}
+
+/// A map with the options by which it is read.
+pub(crate) struct MapSource<'a> {
+    image: &'a Image,
+    options: SourceOptions,
+    base: Option<BaseSource<'a>>,
+    extras: Vec<Extra>,
+}
+
+impl<'a> MapSource<'a> {
+    pub fn new(
+        image: &'a Image,
+        options: SourceOptions,
+        base: Option<BaseSource<'a>>,
+        extras: Vec<Extra>,
+    ) -> Result<Self, SourceError> {
+        check_numbers(&options)?;
+        if options.kind == Kind::Normal {
+            let needed = normal_map::channels_needed(options.normal_channels);
+            if image.channels() < needed {
+                let got = image.channels();
+                return Err(SourceError::Channels { wanted: "normal map", needed, got });
+            }
+        }
+        if let Some(base) = &base {
+            base.check_size(image.width(), image.height())?;
+        }
+        Ok(Self { image, options, base, extras })
+    }
+}
+
+fn check_numbers(options: &SourceOptions) -> Result<(), SourceError> {
+    if !(options.max_slope.is_finite() && options.max_slope > 0.0) {
+        return Err(SourceError::Option(format!(
+            "the largest slope must be above zero, not {}",
+            options.max_slope
+        )));
+    }
+    if !options.height_scale.is_finite() {
+        return Err(SourceError::Option(format!(
+            "the height scale must be a finite number, not {}",
+            options.height_scale
+        )));
+    }
+    Ok(())
+}
+
+impl RowSource for MapSource<'_> {
+    fn width(&self) -> usize {
+        self.image.width()
+    }
+
+    fn height(&self) -> usize {
+        self.image.height()
+    }
+
+    fn extras(&self) -> &[Extra] {
+        &self.extras
+    }
+
+    fn fill(&self, x: usize, y: usize, row: &mut Row, scratch: &mut SourceScratch) -> SourceCounts {
+        let (core, extras) = row.planes.split_at_mut(crate::row::CORE_PLANES);
+        let [bx, by, xx, yy, xy] = core else { unreachable!("a row has five core planes") };
+        let counts = match self.options.kind {
+            Kind::Normal => normal_map::fill(self.image, &self.options, x, y, bx, by, scratch),
+            Kind::Height => height_map::fill(self.image, &self.options, x, y, bx, by, scratch),
+        };
+        match &self.base {
+            Some(base) if base.folds_in() => base.fill_variance(x, y, xx),
+            _ => xx.fill(0.0),
+        }
+        yy.copy_from_slice(xx);
+        xy.fill(0.0);
+        if let [Extra::NormalX, Extra::NormalY, Extra::NormalZ, ..] = self.extras[..] {
+            let [nx, ny, nz, ..] = extras else { unreachable!("a plane for each extra") };
+            unit_normals(bx, by, nx, ny, nz);
+        }
+        for (extra, plane) in self.extras.iter().zip(extras) {
+            self.fill_extra(*extra, x, y, plane);
+        }
+        counts
+    }
+}
+
+impl MapSource<'_> {
+    fn fill_extra(&self, extra: Extra, x: usize, y: usize, plane: &mut [f32]) {
+        match extra {
+            Extra::NormalX | Extra::NormalY | Extra::NormalZ => {} // all three are made together
+            Extra::Height => match self.options.kind {
+                Kind::Height => {
+                    load_channel(self.image, 0, x, y, plane);
+                    plane.iter_mut().filter(|v| !v.is_finite()).for_each(|v| *v = 0.0);
+                }
+                // What maketx writes where there is no height.
+                Kind::Normal => plane.fill(-1.0),
+            },
+            Extra::BaseVariance | Extra::Occlusion | Extra::Metalness => match &self.base {
+                Some(base) => base.fill_extra(extra, x, y, plane),
+                None => plane.fill(0.0),
+            },
+        }
+    }
+}
+
+/// The unit normals of slopes.
+fn unit_normals(bx: &[f32], by: &[f32], nx: &mut [f32], ny: &mut [f32], nz: &mut [f32]) {
+    let n = bx.len();
+    let (by, nx, ny, nz) = (&by[..n], &mut nx[..n], &mut ny[..n], &mut nz[..n]);
+    for i in 0..n {
+        let inverse = 1.0 / (1.0 + bx[i] * bx[i] + by[i] * by[i]).sqrt();
+        nx[i] = bx[i] * inverse;
+        ny[i] = by[i] * inverse;
+        nz[i] = inverse;
+    }
+}
+
+/// Mends every texel that the fast loops found unusable. `component` gives a texel's vector.
+fn mend(
+    bx: &mut [f32],
+    by: &mut [f32],
+    max_slope: f32,
+    component: impl Fn(usize) -> Option<[f32; 3]>,
+) -> SourceCounts {
+    let mut counts = SourceCounts::default();
+    for index in 0..bx.len() {
+        if is_usable(bx[index], by[index], max_slope * max_slope) {
+            continue;
+        }
+        let slope = match component(index) {
+            Some([x, y, z]) => mended_slope(x, y, z, max_slope, &mut counts),
+            None => {
+                counts.invalid += 1;
+                Default::default()
+            }
+        };
+        (bx[index], by[index]) = (slope.x, slope.y);
+    }
+    counts
+}
+
+/// One comparison that is also false for NaN.
+#[inline(always)]
+fn is_usable(x: f32, y: f32, max_squared: f32) -> bool {
+    x * x + y * y <= max_squared
+}
+
+/// Number of texels in a row that `mend` would have to look at; vectorises.
+fn count_unusable(bx: &[f32], by: &[f32], max_slope: f32) -> u32 {
+    let max_squared = max_slope * max_slope;
+    bx.iter().zip(by).map(|(x, y)| u32::from(!is_usable(*x, *y, max_squared))).sum()
+}
+
+/// One channel of a stretch of a row as floats: unsigned types as 0 ..= 1, floats as they are.
+fn load_channel(image: &Image, channel: usize, x: usize, y: usize, out: &mut [f32]) {
+    fn load<T: Copy>(texels: &[T], channels: usize, channel: usize, out: &mut [f32], to: impl Fn(T) -> f32) {
+        for (texel, value) in texels.chunks_exact(channels).zip(out) {
+            *value = to(texel[channel]);
+        }
+    }
+    let channels = image.channels();
+    let start = (y * image.width() + x) * channels;
+    let range = start..start + out.len() * channels;
+    match image.samples() {
+        Samples::U8(v) => load(&v[range], channels, channel, out, unorm8),
+        Samples::U16(v) => load(&v[range], channels, channel, out, unorm16),
+        Samples::F16(v) => load(&v[range], channels, channel, out, half::f16::to_f32),
+        Samples::F32(v) => load(&v[range], channels, channel, out, |v| v),
+    }
+}
+
+/// The value of an 8-bit unsigned normalised sample.
+#[inline(always)]
+pub(crate) fn unorm8(sample: u8) -> f32 {
+    f32::from(sample) / 255.0
+}
+
+/// The value of a 16-bit unsigned normalised sample.
+#[inline(always)]
+pub(crate) fn unorm16(sample: u16) -> f32 {
+    f32::from(sample) / 65535.0
+}

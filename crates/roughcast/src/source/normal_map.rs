@@ -1,0 +1,143 @@
+//! Slopes from normal maps.
+
+use half::f16;
+
+use super::{count_unusable, mend, unorm8, unorm16};
+use crate::options::{Green, NormalChannels, SourceOptions};
+use crate::row::SourceScratch;
+use crate::slope::SourceCounts;
+use crate::{Image, Samples};
+
+/// Two-channel normals may lie a little outside the unit disc, through quantisation and block compression; their z
+/// is then zero. Further out than this (squared) they are no normals at all but an empty background, such as (0, 0)
+/// stored as unorm = (-1, -1), and become flat.
+const INVALID_XY_SQUARED: f32 = 1.2;
+
+/// Channels that a map must have.
+pub(super) fn channels_needed(channels: NormalChannels) -> usize {
+    match channels {
+        NormalChannels::Xy => 2,
+        NormalChannels::Xyz => 3,
+        NormalChannels::Ag => 4,
+    }
+}
+
+/// Writes the slopes of a stretch of row `y` that starts at column `x`.
+pub(super) fn fill(
+    image: &Image,
+    options: &SourceOptions,
+    x: usize,
+    y: usize,
+    bx: &mut [f32],
+    by: &mut [f32],
+    scratch: &mut SourceScratch,
+) -> SourceCounts {
+    let width = bx.len();
+    for plane in &mut scratch.planes {
+        plane.resize(width, 0.0);
+    }
+    let [nx, ny, nz] = &mut scratch.planes;
+    load_components(image, options, x, y, nx, ny, nz);
+    if options.green == Green::Down {
+        ny.iter_mut().for_each(|v| *v = -*v);
+    }
+    let z_from_xy = options.normal_channels != NormalChannels::Xyz;
+    if z_from_xy {
+        for ((z, x), y) in nz.iter_mut().zip(nx.iter()).zip(ny.iter()) {
+            *z = (1.0 - x * x - y * y).max(0.0).sqrt();
+        }
+    }
+    divide_by_z(nx, ny, nz, bx, by);
+    if count_unusable(bx, by, options.max_slope) == 0 {
+        return SourceCounts::default();
+    }
+    mend(bx, by, options.max_slope, |i| {
+        let outside = z_from_xy && nx[i] * nx[i] + ny[i] * ny[i] > INVALID_XY_SQUARED;
+        (!outside).then_some([nx[i], ny[i], nz[i]])
+    })
+}
+
+/// Slopes of normals. A z that is not above zero gives NaN, which no comparison accepts, so that one test afterwards
+/// finds every unusable texel.
+fn divide_by_z(nx: &[f32], ny: &[f32], nz: &[f32], bx: &mut [f32], by: &mut [f32]) {
+    let n = nx.len();
+    let (ny, nz, bx, by) = (&ny[..n], &nz[..n], &mut bx[..n], &mut by[..n]);
+    for i in 0..n {
+        let inverse = if nz[i] > 0.0 { 1.0 / nz[i] } else { f32::NAN };
+        bx[i] = nx[i] * inverse;
+        by[i] = ny[i] * inverse;
+    }
+}
+
+/// Splits the pixels into planes of components, -1 ..= 1 for unorm data.
+fn load_components(
+    image: &Image,
+    options: &SourceOptions,
+    x: usize,
+    y: usize,
+    nx: &mut [f32],
+    ny: &mut [f32],
+    nz: &mut [f32],
+) {
+    let channels = image.channels();
+    let start = (y * image.width() + x) * channels;
+    let range = start..start + nx.len() * channels;
+    let from_float = |v: f32| options.range.component_from_stored(v);
+    let split = Split { channels, order: options.normal_channels };
+    match image.samples() {
+        Samples::U8(v) => split.write_planes(&v[range], nx, ny, nz, |v| 2.0 * unorm8(v) - 1.0),
+        Samples::U16(v) => split.write_planes(&v[range], nx, ny, nz, |v| 2.0 * unorm16(v) - 1.0),
+        Samples::F16(v) => split.write_planes(&v[range], nx, ny, nz, |v: f16| from_float(v.to_f32())),
+        Samples::F32(v) => split.write_planes(&v[range], nx, ny, nz, from_float),
+    }
+}
+
+struct Split {
+    channels: usize,
+    order: NormalChannels,
+}
+
+impl Split {
+    fn write_planes<T: Copy>(
+        &self,
+        texels: &[T],
+        nx: &mut [f32],
+        ny: &mut [f32],
+        nz: &mut [f32],
+        value: impl Fn(T) -> f32,
+    ) {
+        // The common strides as constants, so that the loops over them vectorise.
+        match (self.order, self.channels) {
+            (NormalChannels::Xyz, 3) => split_xyz::<T, 3>(texels, nx, ny, nz, value),
+            (NormalChannels::Xyz, 4) => split_xyz::<T, 4>(texels, nx, ny, nz, value),
+            (order, channels) => {
+                let (x_at, y_at, z_at) = match order {
+                    NormalChannels::Xyz => (0, 1, Some(2)),
+                    NormalChannels::Xy => (0, 1, None),
+                    NormalChannels::Ag => (3, 1, None),
+                };
+                for (i, texel) in texels.chunks_exact(channels).enumerate() {
+                    nx[i] = value(texel[x_at]);
+                    ny[i] = value(texel[y_at]);
+                    // Two-channel normals get their z from x and y afterwards.
+                    nz[i] = z_at.map_or(0.0, |z_at| value(texel[z_at]));
+                }
+            }
+        }
+    }
+}
+
+fn split_xyz<T: Copy, const C: usize>(
+    texels: &[T],
+    nx: &mut [f32],
+    ny: &mut [f32],
+    nz: &mut [f32],
+    value: impl Fn(T) -> f32,
+) {
+    let (texels, _) = texels.as_chunks::<C>();
+    for (((texel, x), y), z) in texels.iter().zip(nx).zip(ny).zip(nz) {
+        *x = value(texel[0]);
+        *y = value(texel[1]);
+        *z = value(texel[2]);
+    }
+}

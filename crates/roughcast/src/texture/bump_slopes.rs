@@ -1,0 +1,41 @@
+//! Bump slopes: the six channels that OpenImageIO's `maketx --bumpslopes` writes and RenderMan's bump roughness reads.
+//!
+//! | `b0_h` | `b1_dhds` | `b2_dhdt` | `b3_dhds2` | `b4_dhdt2` | `b5_dh2dsdt` |
+//! |---|---|---|---|---|---|
+//! | height as stored | ∂h/∂s | ∂h/∂t | E[(∂h/∂s)²] | E[(∂h/∂t)²] | E[∂h/∂s ∂h/∂t] |
+//!
+//! s grows to the right and t *downwards*, so ∂h/∂s = -B.x, ∂h/∂t = +B.y and the mixed moment is -Mxy. Float types
+//! only. A normal map has no height; `b0_h` is -1 there, as maketx writes it.
+
+use super::codec::{Affine, Bounds, LayerSpec, Peaks, RowEncoder, Units, map1, map2, map3};
+use super::lean::raw_moment_bounds;
+use crate::moments::Moments;
+use crate::row::RowView;
+use crate::slope::Slope;
+
+pub(super) const LAYERS: &[LayerSpec] = &[LayerSpec {
+    name: "bump-slopes",
+    channels: &["b0_h", "b1_dhds", "b2_dhdt", "b3_dhds2", "b4_dhdt2", "b5_dh2dsdt"],
+}];
+
+pub(super) struct Encoder;
+
+impl RowEncoder for Encoder {
+    fn encode(&self, row: RowView<'_>, planes: &mut [Vec<f32>]) {
+        let [h, dhds, dhdt, ss, tt, st] = planes else { unreachable!("bump slopes have six channels") };
+        h.copy_from_slice(row.extras[0]);
+        map1(dhds, row.bx, |x| -x);
+        dhdt.copy_from_slice(row.by);
+        map2(ss, row.bx, row.xx, |x, xx| xx + x * x);
+        map2(tt, row.by, row.yy, |y, yy| yy + y * y);
+        map3(st, row.bx, row.by, row.xy, |x, y, xy| -(xy + x * y));
+    }
+}
+
+pub(super) fn decode(texel: &[f32]) -> Moments {
+    Moments { mean: Slope { x: -texel[1], y: texel[2] }, xx: texel[3], yy: texel[4], xy: -texel[5] }
+}
+
+pub(super) fn bounds(units: Units, peaks: &Peaks) -> Bounds {
+    raw_moment_bounds(units, peaks, Affine::IDENTITY, Affine::IDENTITY, Affine::IDENTITY)
+}

@@ -1,0 +1,51 @@
+//! CLEAN mapping: mean slope and the trace of the second moments, in one texture.
+//!
+//! Source: Olano, "Shiny and CLEAN", 2011. The per-axis variance is half of `tr Σ = m - |B|²`, so that isotropic bumps
+//! give the same lobe as LEAN's.
+//!
+//! | R | G | B | A |
+//! |---|---|---|---|
+//! | B.x | B.y | m = Mxx + Myy | 1 |
+//!
+//! Unsigned types hold `B / (2 sc) + 1/2` and `m / (2 sc²)`.
+
+use super::codec::{Bounds, LayerSpec, OPAQUE, Peaks, RowEncoder, Units, map1, subtraction_error};
+use crate::moments::{Covariance, Moments};
+use crate::row::RowView;
+use crate::slope::Slope;
+
+pub(super) const LAYERS: &[LayerSpec] =
+    &[LayerSpec { name: "clean", channels: &["B.x", "B.y", "M.trace", OPAQUE] }];
+
+pub(super) struct Encoder(pub Units);
+
+impl RowEncoder for Encoder {
+    fn encode(&self, row: RowView<'_>, planes: &mut [Vec<f32>]) {
+        let [bx, by, trace, one] = planes else { unreachable!("CLEAN has four channels") };
+        let (slope, stored_trace) = (self.0.slope(), self.0.trace());
+        map1(bx, row.bx, |x| slope.store(x));
+        map1(by, row.by, |y| slope.store(y));
+        for (i, out) in trace.iter_mut().enumerate() {
+            let m = row.xx[i] + row.yy[i] + row.bx[i] * row.bx[i] + row.by[i] * row.by[i];
+            *out = stored_trace.store(m);
+        }
+        one.fill(1.0);
+    }
+}
+
+pub(super) fn decode(units: Units, texel: &[f32]) -> Moments {
+    let slope = units.slope();
+    let mean = Slope { x: slope.load(texel[0]), y: slope.load(texel[1]) };
+    let trace = units.trace().load(texel[2]);
+    let squared = f64::from(mean.x).powi(2) + f64::from(mean.y).powi(2);
+    let variance = 0.5 * (f64::from(trace) - squared).max(0.0) as f32;
+    Moments::from_mean_and_covariance(mean, Covariance::isotropic(variance))
+}
+
+pub(super) fn bounds(units: Units, peaks: &Peaks) -> Bounds {
+    let slope = units.error(units.slope(), peaks.component);
+    let trace = units.error(units.trace(), peaks.slope * peaks.slope + 2.0 * peaks.variance);
+    // tr Σ = m - |B|²; |B| is off by at most sqrt(2) of a component, and half of the whole is one axis.
+    let error = subtraction_error(trace, peaks.slope, std::f32::consts::SQRT_2 * slope);
+    Bounds { slope, variance: 0.5 * error, eigenvalue: 0.5 * error }
+}

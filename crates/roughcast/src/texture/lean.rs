@@ -1,0 +1,79 @@
+//! LEAN mapping: mean slope and raw second moments, in two RGBA textures.
+//!
+//! Source: Olano & Baker, "LEAN Mapping", 2010, Eq. 3 to 6, Figures 15 and 16, with the listing's two faults mended
+//! (a base roughness is added before the scale is divided out; the scale covers the second moments too).
+//!
+//! | texture | R | G | B | A |
+//! |---|---|---|---|---|
+//! | `lean1` | N.x | N.y | N.z | Mxy |
+//! | `lean2` | B.x | B.y | Mxx | Myy |
+//!
+//! Unsigned types hold `N.xy / 2 + 1/2`, `N.z`, `Mxy / (2 sc²) + 1/2`, `B / (2 sc) + 1/2`, `Mxx / sc²`, `Myy / sc²`;
+//! float types hold the values themselves. N is the averaged unit normal, not renormalised: its length is what
+//! diffuse shading needs (Kilgard).
+//!
+//! Bounds: with a rounding of `e` in the stored code, `B` is off by `2 sc e`, `Mxx` by `sc² e`, `Mxy` by `2 sc² e`.
+
+use super::codec::{
+    Affine, Bounds, LayerSpec, Peaks, RowEncoder, Units, map1, map2, map3, subtraction_error,
+};
+use crate::moments::Moments;
+use crate::row::RowView;
+use crate::slope::Slope;
+
+pub(super) const LAYERS: &[LayerSpec] = &[
+    LayerSpec { name: "lean1", channels: &["N.x", "N.y", "N.z", "M.xy"] },
+    LayerSpec { name: "lean2", channels: &["B.x", "B.y", "M.xx", "M.yy"] },
+];
+
+pub(super) struct Encoder(pub Units);
+
+impl RowEncoder for Encoder {
+    fn encode(&self, row: RowView<'_>, planes: &mut [Vec<f32>]) {
+        let [nx, ny, nz, mxy, bx, by, mxx, myy] = planes else { unreachable!("LEAN has eight channels") };
+        let (unit, slope, second, mixed) = (self.0.unit(), self.0.slope(), self.0.second(), self.0.mixed());
+        map1(nx, row.extras[0], |n| unit.store(n));
+        map1(ny, row.extras[1], |n| unit.store(n));
+        nz.copy_from_slice(row.extras[2]);
+        map3(mxy, row.bx, row.by, row.xy, |x, y, xy| mixed.store(xy + x * y));
+        map1(bx, row.bx, |x| slope.store(x));
+        map1(by, row.by, |y| slope.store(y));
+        map2(mxx, row.bx, row.xx, |x, xx| second.store(xx + x * x));
+        map2(myy, row.by, row.yy, |y, yy| second.store(yy + y * y));
+    }
+}
+
+pub(super) fn decode(units: Units, texel: &[f32]) -> Moments {
+    let (slope, second, mixed) = (units.slope(), units.second(), units.mixed());
+    Moments {
+        mean: Slope { x: slope.load(texel[4]), y: slope.load(texel[5]) },
+        xx: second.load(texel[6]),
+        yy: second.load(texel[7]),
+        xy: mixed.load(texel[3]),
+    }
+}
+
+pub(super) fn bounds(units: Units, peaks: &Peaks) -> Bounds {
+    raw_moment_bounds(units, peaks, units.slope(), units.second(), units.mixed())
+}
+
+/// Bounds of any layout that stores B and the three raw second moments.
+pub(super) fn raw_moment_bounds(
+    units: Units,
+    peaks: &Peaks,
+    slope: Affine,
+    second: Affine,
+    mixed: Affine,
+) -> Bounds {
+    let slope_error = units.error(slope, peaks.component);
+    let second_error = units.error(second, peaks.second());
+    let mixed_error = units.error(mixed, peaks.second());
+    // Along a unit vector v: vᵀ E_M v <= e_M + e_Mxy (its worst is the diagonal), and the slope's error along v is at
+    // most sqrt(2) of a component's.
+    let diagonal = std::f32::consts::SQRT_2 * slope_error;
+    Bounds {
+        slope: slope_error,
+        variance: subtraction_error(second_error, peaks.component, slope_error),
+        eigenvalue: subtraction_error(second_error + mixed_error, peaks.slope, diagonal),
+    }
+}

@@ -1,0 +1,114 @@
+//! From planes of stored values to interleaved samples, rounded to nearest.
+
+use half::f16;
+use half::slice::HalfFloatSliceExt;
+
+/// 2^23: adding it to a number in 0 ..= 65535 leaves the number, rounded to nearest (ties to even), in the low bits
+/// of the float. One addition instead of a conversion with saturation, and it vectorises.
+const ROUND: f32 = 8_388_608.0;
+
+/// `value` in 0 ..= 1 as one of `steps + 1` codes; NaN and what is below 0 give 0, what is above 1 gives `steps`.
+#[inline(always)]
+fn code(value: f32, steps: f32) -> u32 {
+    let above = if value > 0.0 { value } else { 0.0 };
+    let clamped = if above < 1.0 { above } else { 1.0 };
+    (clamped * steps + ROUND).to_bits() & 0xffff
+}
+
+/// 8-bit unsigned normalised.
+pub(crate) fn unorm8(planes: &[Vec<f32>], out: &mut [u8]) {
+    interleave(planes, out, |v| code(v, 255.0) as u8);
+}
+
+/// 16-bit unsigned normalised.
+pub(crate) fn unorm16(planes: &[Vec<f32>], out: &mut [u16]) {
+    interleave(planes, out, |v| code(v, 65535.0) as u16);
+}
+
+/// Single floats.
+pub(crate) fn single(planes: &[Vec<f32>], out: &mut [f32]) {
+    interleave(planes, out, |v| v);
+}
+
+/// Half floats. The conversion of slices uses the processor's own where it has one; it wants singles in order, so
+/// these are interleaved through a small buffer.
+pub(crate) fn half(planes: &[Vec<f32>], out: &mut [f16]) {
+    const BLOCK: usize = 64;
+    const MOST_CHANNELS: usize = 8;
+    let channels = planes.len();
+    assert!(channels <= MOST_CHANNELS, "no layout has more channels in one texture");
+    let mut buffer = [0.0_f32; BLOCK * MOST_CHANNELS];
+    for (block, texels) in out.chunks_mut(BLOCK * channels).enumerate() {
+        let singles = &mut buffer[..texels.len()];
+        for (channel, plane) in planes.iter().enumerate() {
+            let values = &plane[block * BLOCK..][..texels.len() / channels];
+            for (texel, value) in singles.chunks_exact_mut(channels).zip(values) {
+                texel[channel] = *value;
+            }
+        }
+        texels.convert_from_f32_slice(singles);
+    }
+}
+
+fn interleave<T: Copy + Default>(planes: &[Vec<f32>], out: &mut [T], to: impl Fn(f32) -> T + Copy) {
+    match planes {
+        [a] => a.iter().zip(out).for_each(|(v, o)| *o = to(*v)),
+        [a, b, c, d] => {
+            let (texels, _) = out.as_chunks_mut::<4>();
+            let n = texels.len();
+            let (a, b, c, d) = (&a[..n], &b[..n], &c[..n], &d[..n]);
+            for i in 0..n {
+                texels[i] = [to(a[i]), to(b[i]), to(c[i]), to(d[i])];
+            }
+        }
+        _ => {
+            for (channel, plane) in planes.iter().enumerate() {
+                for (texel, value) in out.chunks_exact_mut(planes.len()).zip(plane) {
+                    texel[channel] = to(*value);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_the_nearest_for_every_16_bit_value() {
+        for code_wanted in 0..=65535_u32 {
+            let value = code_wanted as f32 / 65535.0;
+            assert_eq!(code(value, 65535.0), code_wanted);
+            assert_eq!(code(value, 255.0), (f64::from(value) * 255.0).round_ties_even() as u32);
+        }
+    }
+
+    #[test]
+    fn what_is_out_of_range_saturates() {
+        for (value, wanted) in
+            [(f32::NAN, 0), (-1.0, 0), (f32::NEG_INFINITY, 0), (2.0, 255), (f32::INFINITY, 255)]
+        {
+            assert_eq!(code(value, 255.0), wanted, "{value}");
+        }
+    }
+
+    #[test]
+    fn every_number_of_channels_interleaves() {
+        for channels in 1..=8_usize {
+            let width = 70; // more than one block of the half conversion
+            let planes: Vec<Vec<f32>> =
+                (0..channels).map(|c| (0..width).map(|x| (c * width + x) as f32).collect()).collect();
+            let mut singles = vec![0.0; channels * width];
+            single(&planes, &mut singles);
+            let mut halves = vec![f16::ZERO; channels * width];
+            half(&planes, &mut halves);
+            for x in 0..width {
+                for c in 0..channels {
+                    assert_eq!(singles[x * channels + c], planes[c][x]);
+                    assert_eq!(halves[x * channels + c], f16::from_f32(planes[c][x]));
+                }
+            }
+        }
+    }
+}

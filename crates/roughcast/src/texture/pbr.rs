@@ -1,0 +1,168 @@
+//! Textures of a physically based material: normal mips from the mean slope, and roughness mips that hold what the
+//! normals lost.
+//!
+//! | part | R | G | B | A |
+//! |---|---|---|---|---|
+//! | `normal` | n.x | n.y | n.z | 1 |
+//! | `roughness` | roughness | | | |
+//! | `orm` | occlusion | roughness | metalness | 1 |
+//! | `anisotropy` | direction x | direction y | strength | 1 |
+//!
+//! The roughness is that of base and bumps together: `α² = α0² + 2σ²`. For Beckmann that is exact; for GGX, which has
+//! no finite slope variance, it is a convention; for Blinn-Phong it says `1/s' = 1/s + σ²`. Without anisotropy
+//! `2σ² = tr Σ`. With it the roughness is that across the bumps' main direction, and KHR_materials_anisotropy's rule
+//! `α_t = mix(α_b, 1, strength²)` gives the larger one along it. Unsigned types hold signed components as `v / 2 + 1/2`.
+//! A block-compressed normal has two channels; z follows from them. In EXR files the channels are called R, G, B, A, or Y
+//! where there is one, so that any viewer shows them.
+
+use super::codec::{Bounds, LayerSpec, OPAQUE, Peaks, RowEncoder, Units};
+use super::{RoughnessStored, TextureInfo};
+use crate::moments::{Covariance, Moments};
+use crate::options::{Lobe, RoughnessTexture};
+use crate::row::RowView;
+use crate::slope::{Normal, Slope, normal_from_slope, slope_from_normal};
+use crate::source::{stored_from_variance, variance_from_stored};
+
+pub(super) const NORMAL_LAYERS: &[LayerSpec] =
+    &[LayerSpec { name: "normal", channels: &["R", "G", "B", OPAQUE] }];
+
+pub(super) const ROUGHNESS_LAYERS: &[LayerSpec] = &[LayerSpec { name: "roughness", channels: &["Y"] }];
+
+pub(super) const ORM_LAYERS: &[LayerSpec] = &[LayerSpec { name: "orm", channels: &["R", "G", "B", OPAQUE] }];
+
+pub(super) const ANISOTROPY_LAYERS: &[LayerSpec] =
+    &[LayerSpec { name: "anisotropy", channels: &["R", "G", "B", OPAQUE] }];
+
+/// Encodes the parts one after the other.
+pub(super) struct Encoder {
+    pub units: Units,
+    /// Channels of the normal texture: 4, or 2 where it will be block-compressed.
+    pub normal_channels: usize,
+    pub stored: RoughnessStored,
+    pub lobe: Lobe,
+    pub texture: RoughnessTexture,
+}
+
+impl RowEncoder for Encoder {
+    fn encode(&self, row: RowView<'_>, planes: &mut [Vec<f32>]) {
+        let (normal, rest) = planes.split_at_mut(self.normal_channels);
+        let (roughness, anisotropy) = rest.split_at_mut(match self.texture {
+            RoughnessTexture::Alone => 1,
+            RoughnessTexture::Packed => 4,
+        });
+        self.encode_normal(row, normal);
+        let roughness_at = match self.texture {
+            RoughnessTexture::Alone => 0,
+            RoughnessTexture::Packed => {
+                roughness[0].copy_from_slice(row.extras[0]);
+                roughness[2].copy_from_slice(row.extras[1]);
+                roughness[3].fill(1.0);
+                1
+            }
+        };
+        for (i, out) in roughness[roughness_at].iter_mut().enumerate() {
+            let covariance = Covariance { xx: row.xx[i], yy: row.yy[i], xy: row.xy[i] };
+            let variance = match self.lobe {
+                Lobe::Isotropic => 0.5 * covariance.trace(),
+                Lobe::Anisotropic => covariance.eigenvalues().1.max(0.0),
+            };
+            *out = stored_from_variance(variance, self.stored);
+        }
+        if self.lobe == Lobe::Anisotropic {
+            self.encode_anisotropy(row, anisotropy);
+        }
+    }
+}
+
+impl Encoder {
+    fn encode_normal(&self, row: RowView<'_>, planes: &mut [Vec<f32>]) {
+        let unit = self.units.unit();
+        for i in 0..row.width() {
+            let normal = normal_from_slope(Slope { x: row.bx[i], y: row.by[i] });
+            planes[0][i] = unit.store(normal.x);
+            planes[1][i] = unit.store(normal.y);
+            if let [_, _, z, one] = planes {
+                z[i] = unit.store(normal.z);
+                one[i] = 1.0;
+            }
+        }
+    }
+
+    fn encode_anisotropy(&self, row: RowView<'_>, planes: &mut [Vec<f32>]) {
+        let unit = self.units.unit();
+        let [x, y, strengths, one] = planes else { unreachable!("anisotropy has four channels") };
+        for i in 0..row.width() {
+            let covariance = Covariance { xx: row.xx[i], yy: row.yy[i], xy: row.xy[i] };
+            let strength = strength_of(covariance);
+            // A round lobe has no direction; the tangent is as good as any, and compresses best.
+            let direction =
+                if strength > 0.0 { covariance.main_direction() } else { Slope { x: 1.0, y: 0.0 } };
+            x[i] = unit.store(direction.x);
+            y[i] = unit.store(direction.y);
+            strengths[i] = strength;
+        }
+        one.fill(1.0);
+    }
+}
+
+/// KHR_materials_anisotropy's strength: `α_t = mix(α_b, 1, strength²)` solved for it. Widths above 1 count as 1.
+fn strength_of(covariance: Covariance) -> f32 {
+    let (large, small) = covariance.eigenvalues();
+    let along = (2.0 * large.max(0.0)).sqrt().min(1.0);
+    let across = (2.0 * small.max(0.0)).sqrt().min(1.0);
+    if across < 1.0 { ((along - across) / (1.0 - across)).clamp(0.0, 1.0).sqrt() } else { 0.0 }
+}
+
+/// A unit normal as stored, in two channels or more; z is never zero, so that it has a slope.
+pub(super) fn normal_from_stored(units: Units, texel: &[f32]) -> Normal {
+    let unit = units.unit();
+    let (x, y) = (unit.load(texel[0]), unit.load(texel[1]));
+    let z = match texel.get(2) {
+        Some(z) => unit.load(*z),
+        None => (1.0 - x * x - y * y).max(0.0).sqrt(),
+    };
+    /// Steeper than any slope that an eight-bit normal can tell from horizontal.
+    const FLATTEST: f32 = 1.0 / 512.0;
+    Normal { x, y, z: z.max(FLATTEST) }
+}
+
+/// Moments of base and bumps together, from the parts' texels.
+pub(super) fn decode(
+    units: Units,
+    info: &TextureInfo,
+    normal: &[f32],
+    roughness: f32,
+    anisotropy: Option<&[f32]>,
+) -> Moments {
+    let mean = slope_from_normal(normal_from_stored(units, &normal[..normal.len().min(3)]));
+    let variance = variance_from_stored(roughness, info.roughness_stored);
+    let Some(anisotropy) = anisotropy else {
+        return Moments::from_mean_and_covariance(mean, Covariance::isotropic(variance));
+    };
+    let across = (2.0 * variance).sqrt().min(1.0);
+    let along = across + (1.0 - across) * anisotropy[2] * anisotropy[2];
+    let unit = units.unit();
+    let (x, y) = (unit.load(anisotropy[0]), unit.load(anisotropy[1]));
+    let squared = (x * x + y * y).max(f32::MIN_POSITIVE);
+    let added = 0.5 * (along * along - across * across).max(0.0) / squared;
+    let covariance =
+        Covariance { xx: variance + added * x * x, yy: variance + added * y * y, xy: added * x * y };
+    Moments::from_mean_and_covariance(mean, covariance)
+}
+
+/// Bounds up to a width of 1, the roughest that the stored forms can say.
+pub(super) fn bounds(units: Units, info: &TextureInfo, peaks: &Peaks) -> Bounds {
+    let component = units.error(units.unit(), 1.0);
+    let shortest = 1.0 / (1.0 + peaks.slope * peaks.slope).sqrt();
+    let rest = (shortest - component).max(f32::MIN_POSITIVE);
+    let stored = units.error(super::codec::Affine::IDENTITY, 1.0);
+    // d(variance)/d(stored) at the roughest, with the second-order terms of (1 + e)^4 bounded by twice e squared's.
+    let variance = match info.roughness_stored {
+        RoughnessStored::Perceptual | RoughnessStored::Gloss => 2.0 * stored * (1.0 + 2.0 * stored),
+        RoughnessStored::Alpha => stored * (1.0 + stored),
+        RoughnessStored::AlphaSquared => 0.5 * stored,
+        // 1/s is off by its relative error.
+        RoughnessStored::SpecularPower => peaks.variance * stored * (1.0 + stored),
+    };
+    Bounds { slope: component * (1.0 + peaks.component) / rest, variance, eigenvalue: variance }
+}

@@ -1,0 +1,116 @@
+//! Toksvig: the averaged normal, not renormalised, and the gloss factor that its length gives.
+//!
+//! Source: the method that the LEAN text compares with (Toksvig 2005): with L the length of the averaged normal, the
+//! variance is `(1 - L) / L` and the gloss factor `L / (L + s (1 - L))`, by which the exponent s is multiplied.
+//!
+//! | part | R | G | B | A |
+//! |---|---|---|---|---|
+//! | whole | N.x | N.y | N.z | gloss factor |
+//! | `normal` (block-compressed) | n.x | n.y | | |
+//! | `gloss` (block-compressed) | gloss factor | | | |
+//!
+//! Unsigned types hold `N / 2 + 1/2`. The length does not survive two-channel block compression, so there the normal
+//! is stored at unit length and the factor in a texture of its own. An s that varies over the map is averaged as 1/s.
+
+use super::codec::{Bounds, LayerSpec, Peaks, RowEncoder, Units, map1};
+use super::pbr::normal_from_stored;
+use super::{Part, TextureInfo};
+use crate::moments::{Covariance, Moments};
+use crate::row::RowView;
+use crate::slope::{Normal, slope_from_normal};
+
+pub(super) const LAYERS: &[LayerSpec] = &[LayerSpec { name: "toksvig", channels: &["R", "G", "B", "A"] }];
+
+pub(super) const NORMAL_LAYERS: &[LayerSpec] = &[LayerSpec { name: "normal", channels: &["R", "G"] }];
+
+pub(super) const GLOSS_LAYERS: &[LayerSpec] = &[LayerSpec { name: "gloss", channels: &["Y"] }];
+
+/// The gloss factor for a length of the averaged normal and the variance `1 / s` of the base.
+#[inline(always)]
+fn gloss_factor(length: f32, base_variance: f32) -> f32 {
+    let length = length.min(1.0);
+    let spread = 1.0 - length;
+    if spread > 0.0 { length * base_variance / (length * base_variance + spread) } else { 1.0 }
+}
+
+/// Encodes the whole layout, or its block-compressed parts one after the other: `n.x, n.y, gloss`.
+pub(super) struct Encoder {
+    pub units: Units,
+    pub part: Part,
+}
+
+impl RowEncoder for Encoder {
+    fn encode(&self, row: RowView<'_>, planes: &mut [Vec<f32>]) {
+        let unit = self.units.unit();
+        let [nx, ny, nz, base] = row.extras;
+        let length = |i: usize| (nx[i] * nx[i] + ny[i] * ny[i] + nz[i] * nz[i]).sqrt();
+        match planes {
+            [x, y, z, gloss] => {
+                map1(x, nx, |n| unit.store(n));
+                map1(y, ny, |n| unit.store(n));
+                map1(z, nz, |n| unit.store(n));
+                for i in 0..row.width() {
+                    gloss[i] = gloss_factor(length(i), base[i]);
+                }
+            }
+            [x, y, gloss] => {
+                debug_assert_eq!(self.part, Part::Normal);
+                for i in 0..row.width() {
+                    let inverse = 1.0 / length(i);
+                    x[i] = unit.store(nx[i] * inverse);
+                    y[i] = unit.store(ny[i] * inverse);
+                    gloss[i] = gloss_factor(length(i), base[i]);
+                }
+            }
+            _ => unreachable!("Toksvig has four channels, or three in two parts"),
+        }
+    }
+}
+
+/// Toksvig's estimate of the moments from the whole layout.
+pub(super) fn decode(units: Units, texel: &[f32]) -> Moments {
+    let unit = units.unit();
+    let normal = Normal {
+        x: unit.load(texel[0]),
+        y: unit.load(texel[1]),
+        z: unit.load(texel[2]).max(f32::MIN_POSITIVE),
+    };
+    let length = (normal.x * normal.x + normal.y * normal.y + normal.z * normal.z).sqrt().min(1.0);
+    let variance = (1.0 - length) / length;
+    Moments::from_mean_and_covariance(slope_from_normal(normal), Covariance::isotropic(variance))
+}
+
+/// The same from the block-compressed parts, where the gloss factor says what the length was.
+pub(super) fn decode_parts(units: Units, info: &TextureInfo, texel: &[f32]) -> Moments {
+    let mean = slope_from_normal(normal_from_stored(units, &texel[..2]));
+    let gloss = texel[2].clamp(0.0, 1.0);
+    let variance = if gloss > 0.0 { info.base_variance * (1.0 - gloss) / gloss } else { 1.0 };
+    Moments::from_mean_and_covariance(mean, Covariance::isotropic(variance))
+}
+
+pub(super) fn bounds(units: Units, peaks: &Peaks) -> Bounds {
+    let component = units.error(units.unit(), 1.0);
+    // No texel is steeper than the peak, so neither N.z nor the length is below this.
+    let shortest = 1.0 / (1.0 + peaks.slope * peaks.slope).sqrt();
+    let length_error = (3.0_f32).sqrt() * component;
+    let rest = (shortest - length_error).max(f32::MIN_POSITIVE);
+    let variance = length_error / (rest * rest);
+    let rest_z = (shortest - component).max(f32::MIN_POSITIVE);
+    Bounds { slope: component * (1.0 + peaks.component) / rest_z, variance, eigenvalue: variance }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_gloss_factor_scales_the_exponent_by_the_added_variance() {
+        const ROUNDING: f32 = 1e-5; // f32 rounding, relative, where 1 - L has lost digits
+        for (length, s) in [(0.9_f32, 10.0_f32), (0.5, 100.0), (0.999, 13777.0)] {
+            let factor = gloss_factor(length, 1.0 / s);
+            let added = (1.0 - length) / length;
+            assert!((1.0 / (factor * s) / (1.0 / s + added) - 1.0).abs() < ROUNDING);
+        }
+        assert_eq!(gloss_factor(1.0, 0.01), 1.0);
+    }
+}

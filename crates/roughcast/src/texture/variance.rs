@@ -1,0 +1,49 @@
+//! Mean slope and the variance along each axis, made of the float pyramid: nothing is subtracted at shading, so eight
+//! bits go far; the price is that hardware interpolates variances between texels as if they were linear.
+//!
+//! Source: the way out that "Shiny and CLEAN" names for eight-bit textures.
+//!
+//! | R | G | B | A |
+//! |---|---|---|---|
+//! | B.x | B.y | Σxx | Σyy |
+//!
+//! Block-compressed (`split`), two two-channel textures: `slope` = (B.x, B.y) and `variance` = (Σxx, Σyy).
+//! Unsigned types hold `B / (2 sc) + 1/2` and `Σ / vs`, where vs is the largest variance of any level.
+
+use super::codec::{Bounds, LayerSpec, Peaks, RowEncoder, Units, map1};
+use crate::moments::{Covariance, Moments};
+use crate::row::RowView;
+use crate::slope::Slope;
+
+pub(super) const LAYERS: &[LayerSpec] =
+    &[LayerSpec { name: "variance", channels: &["B.x", "B.y", "V.xx", "V.yy"] }];
+
+pub(super) const SPLIT_LAYERS: &[LayerSpec] = &[
+    LayerSpec { name: "slope", channels: &["B.x", "B.y"] },
+    LayerSpec { name: "variance", channels: &["V.xx", "V.yy"] },
+];
+
+pub(super) struct Encoder(pub Units);
+
+impl RowEncoder for Encoder {
+    fn encode(&self, row: RowView<'_>, planes: &mut [Vec<f32>]) {
+        let [bx, by, xx, yy] = planes else { unreachable!("the variance layout has four channels") };
+        let (slope, variance) = (self.0.slope(), self.0.variance());
+        map1(bx, row.bx, |x| slope.store(x));
+        map1(by, row.by, |y| slope.store(y));
+        map1(xx, row.xx, |v| variance.store(v));
+        map1(yy, row.yy, |v| variance.store(v));
+    }
+}
+
+pub(super) fn decode(units: Units, texel: &[f32]) -> Moments {
+    let (slope, variance) = (units.slope(), units.variance());
+    let mean = Slope { x: slope.load(texel[0]), y: slope.load(texel[1]) };
+    let covariance = Covariance { xx: variance.load(texel[2]), yy: variance.load(texel[3]), xy: 0.0 };
+    Moments::from_mean_and_covariance(mean, covariance)
+}
+
+pub(super) fn bounds(units: Units, peaks: &Peaks) -> Bounds {
+    let variance = units.error(units.variance(), peaks.variance);
+    Bounds { slope: units.error(units.slope(), peaks.component), variance, eigenvalue: variance }
+}
