@@ -53,8 +53,8 @@ pub fn read_image(bytes: &[u8], extension: Option<&str>, limits: &Limits) -> Res
         Format::Tiff => tiff::read(bytes, limits),
         Format::Hdr => hdr::read(bytes, limits),
         Format::Exr => exr::read(bytes, limits),
-        Format::Ktx2 => crate::ktx2::read_image(bytes, limits),
-        Format::Dds => crate::dds::read_image(bytes, limits),
+        Format::Ktx2 => crate::ktx2::read_image(bytes, *limits),
+        Format::Dds => crate::dds::read_image(bytes, *limits),
     }
 }
 
