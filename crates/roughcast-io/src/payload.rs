@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use roughcast::Image;
-use roughcast::texture::{Texture, TextureArray, TextureInfo};
+use roughcast::texture::{Texture, TextureArray, TextureInfo, layers_of};
 
 use crate::blocks::BlockArray;
 use crate::texels::{
@@ -205,14 +205,12 @@ pub(crate) fn textures_from<'a>(
 
 type LayerSpec = (&'static str, Vec<&'static str>);
 
-/// Names of the layers and of their channels.
-///
-/// MERGE: take them from `roughcast::texture::layers_of(info)` where its numbers of layers and of channels are those of
-/// the file. Otherwise layers are numbered and channels are called R, G, B, A; the layout's decoder will say what it
-/// misses.
+/// Names of the layers and of their channels: the layout's, where the file has as many layers as the layout and no more
+/// channels (a block-compressed normal has fewer). Otherwise layers are numbered and channels are called R, G, B, A; the
+/// layout's decoder will say what it misses.
 fn layer_specs(
     container: &'static str,
-    _info: &TextureInfo,
+    info: &TextureInfo,
     shape: &Shape,
 ) -> Result<Vec<LayerSpec>, ReadError> {
     const NUMBERED: [&str; 8] =
@@ -222,5 +220,9 @@ fn layer_specs(
         return Err(ReadError::Malformed { format: container, fault });
     }
     let channels = shape.format.channel_names();
+    let specs = layers_of(info);
+    if specs.len() == shape.layers && specs.iter().all(|spec| channels.len() <= spec.channels.len()) {
+        return Ok(specs.iter().map(|spec| (spec.name, spec.channels[..channels.len()].to_vec())).collect());
+    }
     Ok(NUMBERED[..shape.layers].iter().map(|&name| (name, channels.to_vec())).collect())
 }
