@@ -1,7 +1,7 @@
-//! Guesses how normals are stored: which components, and in which range.
+//! Guesses how normals are stored: in which channels, and in which range.
 
 use super::green::{GreenVerdict, test_green};
-use super::sample::{quantile, share, texels};
+use super::sample::{SAME, quantile, share, spread, texels};
 use super::vectors::{MAX_MEAN_TILT, MAX_XY_LENGTH, UNIT, decoded, length, mean_xy};
 use crate::{Image, NormalChannels, NormalRange, Samples};
 
@@ -45,14 +45,19 @@ const MIN_Z: f32 = 0.01;
 /// Side of the square, in texels, that is cut from the middle of a map to see whether it holds slopes.
 const CURL_CROP: usize = 1024;
 
-/// Which components the colour channels of a normal map hold, and by which it should thus be read.
+/// Index of the alpha of four channels.
+pub(super) const ALPHA: usize = 3;
+
+/// Which channels hold the components of a normal map, and by which it should thus be read.
 ///
-/// One or two channels hold x and y. So do three whose blue is not z with scale and bias, as that of x and y
-/// is: maps exist with a blue that is constant (0, 128 or 255), and with z itself over 0 ..= 1.
+/// One or two channels hold x and y. So do the first two of three whose blue is not z with scale and bias, as
+/// that of x and y is: maps exist with a blue that is constant (0, 128 or 255), and with z itself over 0 ..=
+/// 1. Alpha and green hold them where red and blue are constant.
 ///
 /// `channels` and `range` as for [`crate::detect::guess_kind`].
-pub fn guess_components(image: &Image, channels: &[impl AsRef<str>], range: NormalRange) -> NormalChannels {
+pub fn guess_channels(image: &Image, channels: &[impl AsRef<str>], range: NormalRange) -> NormalChannels {
     match *colour_channels(image, channels) {
+        [_, _, _] if x_is_in_alpha(image) => NormalChannels::Ag,
         [r, g, b, ..] => match guess_blue(&decoded(texels(image, [r, g, b]), range), range) {
             Blue::Other => NormalChannels::Xyz,
             Blue::Void | Blue::PlainZ => NormalChannels::Xy,
@@ -92,6 +97,17 @@ pub fn guess_range(image: &Image) -> NormalRange {
 pub(super) fn colour_channels(image: &Image, channels: &[impl AsRef<str>]) -> Vec<usize> {
     let is_alpha = |name: &str| name == "A" || name.ends_with(".A");
     (0..image.channels()).filter(|&i| !channels.get(i).is_some_and(|name| is_alpha(name.as_ref()))).collect()
+}
+
+/// Whether, of four channels, red and blue are constant while green and alpha vary: x is in alpha and y in
+/// green, which block compression (BC3) stores best.
+pub(super) fn x_is_in_alpha(image: &Image) -> bool {
+    if image.channels() != ALPHA + 1 {
+        return false;
+    }
+    let stored = texels(image, [0, 1, 2, ALPHA]);
+    let varies = [0, 1, 2, ALPHA].map(|channel| spread(stored.iter().map(|texel| texel[channel])) > SAME);
+    varies == [false, true, false, true]
 }
 
 /// What the blue of three channels is, beside the usual: z with scale and bias, or a colour of a picture.
