@@ -8,6 +8,7 @@ mod image;
 mod moments;
 mod named;
 mod options;
+pub mod precision;
 mod pyramid;
 mod row;
 mod slope;
@@ -18,7 +19,7 @@ pub mod texture;
 pub use bake::{BakeError, BakeReport, Baked, ScaleAdvice, bake, bake_reusing, refuse_filter};
 pub use image::{Image, ImageError, SampleType, Samples};
 pub use moments::{Covariance, Moments};
-pub use named::UnknownName;
+pub use named::{Named, UnknownName};
 pub use options::{
     BakeOptions, Bits, Blocks, Gradient, Green, HeightSense, Kind, Lobe, NormalChannels, NormalRange,
     PyramidFilter, RoughnessTexture, ScaleChoice, SourceOptions, Wrap,

@@ -1,9 +1,9 @@
 //! Guesses how normals are stored: in which channels, and in which range.
 
-use super::green::{GreenVerdict, test_green};
+use super::green::{GreenVerdict, test_green_of_map};
 use super::sample::{SAME, quantile, share, spread, texels};
 use super::vectors::{MAX_MEAN_TILT, MAX_XY_LENGTH, UNIT, decoded, length, mean_xy};
-use crate::{Image, NormalChannels, NormalRange, Samples};
+use crate::{Image, Kind, NormalChannels, NormalRange, Samples, SourceOptions};
 
 /// A blue whose z varies by less than this, but for 1 % at each end, is constant: 8 of 255 steps, since a
 /// JPEG mixes red and green into a constant blue.
@@ -39,14 +39,8 @@ const NEGATIVE: f32 = -1.0 / 255.0;
 /// resampling filter.
 const NEGATIVE_SHARE: f64 = 0.01;
 
-/// Slopes are taken from normals with z no smaller than this: the test of slopes cuts long ones anyway.
-const MIN_Z: f32 = 0.01;
-
-/// Side of the square, in texels, that is cut from the middle of a map to see whether it holds slopes.
-const CURL_CROP: usize = 1024;
-
 /// Index of the alpha of four channels.
-pub(super) const ALPHA: usize = 3;
+const ALPHA: usize = 3;
 
 /// Which channels hold the components of a normal map, and by which it should thus be read.
 ///
@@ -146,19 +140,9 @@ fn z_from_xy(x: f32, y: f32) -> f32 {
     (1.0 - x * x - y * y).max(0.0).sqrt()
 }
 
-/// Whether two channels, as x and y of normals, are the slopes of a surface, green up or down: what two
-/// channels of an arbitrary picture are not. Looks at the middle of the map only.
-pub(super) fn looks_like_slopes(image: &Image, channels: [usize; 2], range: NormalRange) -> bool {
-    let (width, height) = (image.width().min(CURL_CROP), image.height().min(CURL_CROP));
-    let (left, top) = ((image.width() - width) / 2, (image.height() - height) / 2);
-    let (mut bx, mut by) = (Vec::with_capacity(width * height), Vec::with_capacity(width * height));
-    for y in top..top + height {
-        for x in left..left + width {
-            let normal = channels.map(|channel| range.component_from_stored(image.get(x, y, channel)));
-            let z = z_from_xy(normal[0], normal[1]).max(MIN_Z);
-            bx.push(normal[0] / z);
-            by.push(normal[1] / z);
-        }
-    }
-    test_green(&bx, &by, width, height).is_some_and(|test| test.verdict() != GreenVerdict::Undecided)
+/// Whether two channels, as x and y of normals, are the slopes of a surface, green up or down: what two channels
+/// of an arbitrary picture are not.
+pub(super) fn looks_like_slopes(image: &Image, normal_channels: NormalChannels, range: NormalRange) -> bool {
+    let options = SourceOptions { kind: Kind::Normal, range, normal_channels, ..SourceOptions::default() };
+    test_green_of_map(image, &options).is_some_and(|test| test.verdict() != GreenVerdict::Undecided)
 }

@@ -4,6 +4,11 @@
 //! second derivative of the height. Where green was read the wrong way round, the two are equal with opposite
 //! signs.
 
+use crate::Image;
+use crate::options::SourceOptions;
+use crate::row::{Row, RowSource, SourceScratch};
+use crate::source::MapSource;
+
 use super::sample::{odd_stride, quantile};
 
 /// Sizes of the boxes over which slopes are averaged, in texels. Noise and lossy compression hide the signal
@@ -96,6 +101,27 @@ pub fn test_green(bx: &[f32], by: &[f32], width: usize, height: usize) -> Option
         .iter()
         .filter_map(|&size| test_scale(&field, width / size, height / size, size))
         .max_by(|a, b| a.clarity().abs().total_cmp(&b.clarity().abs()))
+}
+
+/// Side of the window that [`test_green_of_map`] looks at, in texels.
+const WINDOW: usize = 1024;
+
+/// Tests a normal map, read with these options: the whole of it, or the middle where it is large.
+///
+/// `None` as for [`test_green`], and where the options do not fit the map.
+pub fn test_green_of_map(image: &Image, options: &SourceOptions) -> Option<GreenTest> {
+    let source = MapSource::new(image, *options, None, Vec::new()).ok()?;
+    let (width, height) = (image.width().min(WINDOW), image.height().min(WINDOW));
+    let (left, top) = ((image.width() - width) / 2, (image.height() - height) / 2);
+    let (mut bx, mut by) = (Vec::new(), Vec::new());
+    let mut row = Row::new(width, 0);
+    let mut scratch = SourceScratch::default();
+    for y in top..top + height {
+        source.fill(left, y, &mut row, &mut scratch);
+        bx.extend_from_slice(row.view().bx);
+        by.extend_from_slice(row.view().by);
+    }
+    test_green(&bx, &by, width, height)
 }
 
 struct Field<'a> {

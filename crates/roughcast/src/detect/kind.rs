@@ -1,9 +1,9 @@
 //! Guesses from channels and texels whether a map holds normals or heights.
 
-use super::channels::{ALPHA, Blue, colour_channels, guess_blue, looks_like_slopes, x_is_in_alpha};
+use super::channels::{Blue, colour_channels, guess_blue, looks_like_slopes, x_is_in_alpha};
 use super::sample::{SAME, quantile, share, spread, texels};
 use super::vectors::{MAX_MEAN_TILT, MAX_XY_LENGTH, UNIT, decoded, length, mean_xy};
-use crate::{Image, Kind, NormalRange};
+use crate::{Image, Kind, NormalChannels, NormalRange};
 
 /// In a grey picture fewer than 1 texel in 1000 has channels further apart than this, of a full scale of 1.
 /// Of the real grey maps 1 in 1000 reaches 5/255 at most; of the greyest coloured albedo 19 in 1000 exceed
@@ -64,8 +64,8 @@ pub fn guess_kind(image: &Image, channels: &[impl AsRef<str>], range: NormalRang
     match *colour_channels(image, channels) {
         [_] => KindGuess::Certain(Kind::Height),
         [x, y] => guess_two(&decoded(texels(image, [x, y]), range)),
-        [_, y, _] if x_is_in_alpha(image) => {
-            if_slopes(image, [ALPHA, y], range, "its red and blue are constant")
+        [_, _, _] if x_is_in_alpha(image) => {
+            if_slopes(image, NormalChannels::Ag, range, "its red and blue are constant")
         }
         [r, g, b] => guess_three(image, [r, g, b], range),
         ref others => KindGuess::doubtful(format!("it has {} channels beside alpha", others.len())),
@@ -98,14 +98,14 @@ fn guess_three(image: &Image, channels: [usize; 3], range: NormalRange) -> KindG
     let vectors = decoded(stored.clone(), range);
     match guess_blue(&vectors, range) {
         Blue::PlainZ => KindGuess::Certain(Kind::Normal),
-        Blue::Void => if_slopes(image, [channels[0], channels[1]], range, "its blue is constant"),
+        Blue::Void => if_slopes(image, NormalChannels::Xy, range, "its blue is constant"),
         Blue::Other if is_grey(&stored, scale) => KindGuess::Certain(Kind::Height),
         Blue::Other => guess_vectors(&vectors),
     }
 }
 
 /// Channels that could be x and y, beside others that say nothing, are a normal's if they are slopes.
-fn if_slopes(image: &Image, channels: [usize; 2], range: NormalRange, seen: &str) -> KindGuess {
+fn if_slopes(image: &Image, channels: NormalChannels, range: NormalRange, seen: &str) -> KindGuess {
     if looks_like_slopes(image, channels, range) {
         KindGuess::Certain(Kind::Normal)
     } else {
