@@ -15,6 +15,7 @@ mod slope;
 mod source;
 mod survey;
 pub mod texture;
+mod vectorised;
 
 pub use bake::{BakeError, BakeReport, Baked, ScaleAdvice, bake, bake_reusing, refuse_filter};
 pub use image::{Image, ImageError, SampleType, Samples};
