@@ -261,6 +261,9 @@ fn masks_and_numbers_give_the_stored_values() {
     let Samples::F32(floats) = read("dxt10-rg32f") else { panic!("floats") };
     assert_eq!(floats.len(), 12);
     assert_eq!(floats[0], f32::from_le_bytes([0xe0, 0xde, 0x5e, 0x3f]));
+    // End points 94 and 74 of 127; the indices of the first two rows are 0 1 0 and 1 0 1.
+    let snorm = [94, 74, 94, 74, 94, 74].map(|v| v as f32 / 127.0);
+    assert_eq!(read("bc4snorm"), Samples::F32(snorm.to_vec()));
     let la = decoded("formats/dds/pillow_uncompressed_la.dds");
     assert_eq!(la.info.channels, ["Y", "A"]);
 }

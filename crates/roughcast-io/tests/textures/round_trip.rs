@@ -1,7 +1,7 @@
 //! What is written is read back bit for bit.
 
 use roughcast::SampleType;
-use roughcast::texture::TextureArray;
+use roughcast::texture::{TextureArray, layers_of};
 use roughcast_io::{
     BlockFormat, Limits, Payload, Supercompression, WriteError, compress, dds, decompress, ktx2,
 };
@@ -122,4 +122,20 @@ fn what_does_not_fit_is_refused_with_a_mend() {
     assert!(refusal(Payload::Blocks(&blocks)).contains("the same sizes"));
     blocks.width = usize::MAX;
     assert!(refusal(Payload::Blocks(&blocks)).contains("scale it down"));
+}
+
+#[test]
+fn names_come_from_the_layout_where_they_fit_it() {
+    let lean = noise_array(SampleType::U16, 4, (4, 4), 2);
+    let back =
+        ktx2::read_textures(&ktx2_bytes(Payload::Texels(&lean), Supercompression::None), Limits::default());
+    let specs = layers_of(&lean.info);
+    assert_eq!(specs.len(), 2, "this test wants a layout of two layers");
+    for (layer, spec) in back.unwrap().layers.iter().zip(specs) {
+        assert_eq!((layer.name, &layer.channels[..]), (spec.name, spec.channels));
+    }
+    let other = noise_array(SampleType::U16, 4, (4, 4), 3);
+    let back = dds::read_textures(&dds_bytes(Payload::Texels(&other)), Limits::default()).unwrap();
+    assert_eq!(back.layers[2].name, "layer2");
+    assert_eq!(back.layers[2].channels, ["R", "G", "B", "A"]);
 }
