@@ -58,7 +58,7 @@ impl Shape {
     }
 
     /// Refuses shapes that no file may have, or that hold more pixels than the caller allows.
-    pub fn check(&self, container: &'static str, limits: Limits) -> Result<(), ReadError> {
+    pub fn check(&self, container: &'static str, limits: &Limits) -> Result<(), ReadError> {
         let (width, height) = (self.width as u64, self.height as u64);
         if width == 0 || height == 0 {
             let fault = format!("its size is {width}x{height}");

@@ -183,6 +183,12 @@ fn ktx2_files() {
 #[test]
 fn ktx1_files() {
     check_folder("formats/ktx1", KTX1_FILES);
+    for name in names_in("formats/ktx1") {
+        let found =
+            roughcast_io::read_image(&bytes_of(&format!("formats/ktx1/{name}")), None, &Limits::default());
+        let error = found.unwrap_err().to_string();
+        assert!(error.contains("convert it to KTX2"), "found by its first bytes: {error}");
+    }
 }
 
 #[test]
@@ -218,7 +224,7 @@ fn with_swizzle(letters: &[u8; 4]) -> Result<roughcast_io::Decoded, ReadError> {
     let mut bytes = bytes_of("formats/ktx2/magnum_ktx_swizzle-identity.ktx2");
     let at = bytes.windows(5).position(|window| window == b"rgb1\0").unwrap();
     bytes[at..at + 4].copy_from_slice(letters);
-    ktx2::read_image(&bytes, Limits::default())
+    ktx2::read_image(&bytes, &Limits::default())
 }
 
 #[test]
