@@ -27,4 +27,3 @@ pub use options::{
 pub use pyramid::{LevelStats, level_sizes};
 pub use slope::{Normal, Slope, SourceCounts, mended_slope, normal_from_slope, slope_from_normal};
 pub use source::{BaseRoughness, RoughnessMap, SourceError, stored_from_variance, variance_from_stored};
-pub use survey::Survey;

@@ -134,6 +134,8 @@ pub(crate) struct StatsSum {
     xx: f64,
     yy: f64,
     max: f32,
+    component: f32,
+    squared_length: f32,
 }
 
 impl StatsSum {
@@ -142,6 +144,9 @@ impl StatsSum {
         self.xx += sum(row.xx);
         self.yy += sum(row.yy);
         self.max = self.max.max(largest(row.xx)).max(largest(row.yy));
+        let (component, squared_length) = largest_component_and_square(row.bx, row.by);
+        self.component = self.component.max(component);
+        self.squared_length = self.squared_length.max(squared_length);
     }
 
     pub fn add(&mut self, other: Self) {
@@ -149,6 +154,8 @@ impl StatsSum {
         self.xx += other.xx;
         self.yy += other.yy;
         self.max = self.max.max(other.max);
+        self.component = self.component.max(other.component);
+        self.squared_length = self.squared_length.max(other.squared_length);
     }
 
     pub fn finish(self) -> LevelStats {
@@ -157,6 +164,8 @@ impl StatsSum {
             mean_variance_x: self.xx / texels,
             mean_variance_y: self.yy / texels,
             max_variance: self.max,
+            largest_component: self.component,
+            steepest: self.squared_length.sqrt(),
         }
     }
 }
@@ -185,4 +194,19 @@ pub(crate) fn largest(values: &[f32]) -> f32 {
         }
     }
     lanes.iter().chain(rest).fold(0.0, |a, b| a.max(*b))
+}
+
+/// The largest magnitude of a component and the largest squared length, in lanes, which vectorise.
+pub(crate) fn largest_component_and_square(bx: &[f32], by: &[f32]) -> (f32, f32) {
+    let mut components = [0.0_f32; LANES];
+    let mut squares = [0.0_f32; LANES];
+    let larger = |a: f32, b: f32| if a > b { a } else { b };
+    for (x, y) in bx.chunks(LANES).zip(by.chunks(LANES)) {
+        for (lane, (x, y)) in x.iter().zip(y).enumerate() {
+            components[lane] = larger(larger(x.abs(), y.abs()), components[lane]);
+            squares[lane] = larger(x * x + y * y, squares[lane]);
+        }
+    }
+    let fold = |lanes: [f32; LANES]| lanes.into_iter().fold(0.0, larger);
+    (fold(components), fold(squares))
 }
