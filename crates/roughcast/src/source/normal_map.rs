@@ -47,11 +47,12 @@ pub(super) fn fill(
             *z = (1.0 - x * x - y * y).max(0.0).sqrt();
         }
     }
-    // A z that is not above zero gives NaN, which no comparison accepts, so one test finds every unusable texel.
+    // A z that is not above zero or not finite gives NaN, which no comparison accepts, so one test finds every
+    // unusable texel.
     for ((((bx, by), nx), ny), nz) in
         bx.iter_mut().zip(by.iter_mut()).zip(nx.iter()).zip(ny.iter()).zip(nz.iter())
     {
-        let inverse = if *nz > 0.0 { 1.0 / nz } else { f32::NAN };
+        let inverse = if *nz > 0.0 && *nz < f32::INFINITY { 1.0 / nz } else { f32::NAN };
         *bx = nx * inverse;
         *by = ny * inverse;
     }
@@ -59,7 +60,9 @@ pub(super) fn fill(
         return SourceCounts::default();
     }
     mend(bx, by, options.max_slope, |i| {
-        let outside = z_from_xy && nx[i] * nx[i] + ny[i] * ny[i] > INVALID_XY_SQUARED;
+        // An infinite component is no empty background: `mended_slope` counts it as what it is.
+        let finite = nx[i].is_finite() && ny[i].is_finite();
+        let outside = z_from_xy && finite && nx[i] * nx[i] + ny[i] * ny[i] > INVALID_XY_SQUARED;
         (!outside).then_some([nx[i], ny[i], nz[i]])
     })
 }
