@@ -2,7 +2,7 @@
 
 use half::f16;
 
-use super::{count_unusable, mend, unorm8, unorm16};
+use super::{count_unusable, mend};
 use crate::options::{Green, NormalChannels, NormalRange, SourceOptions};
 use crate::row::SourceScratch;
 use crate::slope::SourceCounts;
@@ -84,11 +84,24 @@ fn load_components(
     let from_float = |v: f32| if signed { v } else { 2.0 * v - 1.0 };
     let split = Split { channels, order: options.normal_channels };
     match image.samples() {
-        Samples::U8(v) => split.write_planes(&v[range], nx, ny, nz, |v| 2.0 * unorm8(v) - 1.0),
-        Samples::U16(v) => split.write_planes(&v[range], nx, ny, nz, |v| 2.0 * unorm16(v) - 1.0),
+        Samples::U8(v) => split.write_planes(&v[range], nx, ny, nz, signed8),
+        Samples::U16(v) => split.write_planes(&v[range], nx, ny, nz, signed16),
         Samples::F16(v) => split.write_planes(&v[range], nx, ny, nz, |v: f16| from_float(v.to_f32())),
         Samples::F32(v) => split.write_planes(&v[range], nx, ny, nz, from_float),
     }
+}
+
+// Twice the code less the full code is a whole number, so the quotient is rounded once, and opposite codes give
+// opposite numbers to the last bit: a map with green up and its twin with green down are one map.
+
+#[inline(always)]
+fn signed8(sample: u8) -> f32 {
+    (2.0 * f32::from(sample) - 255.0) / 255.0
+}
+
+#[inline(always)]
+fn signed16(sample: u16) -> f32 {
+    (2.0 * f32::from(sample) - 65535.0) / 65535.0
 }
 
 struct Split {
