@@ -119,12 +119,21 @@ impl<'a> BaseSource<'a> {
             _ => unreachable!("the other extras come from the map itself"),
         };
         match self.roughness {
-            BaseRoughness::Map(map) if channel < map.image.channels() => {
+            // Roughness in green is what tells glTF's packed texture from a picture of roughness alone.
+            BaseRoughness::Map(map) if map.channel == PACKED_CHANNEL && channel < map.image.channels() => {
                 load_channel(map.image, channel, x, y, plane);
             }
-            _ => plane.fill(0.0),
+            _ => plane.fill(where_nothing_says(extra)),
         }
     }
+}
+
+/// The channel that holds roughness in glTF's packed texture.
+const PACKED_CHANNEL: usize = 1;
+
+/// An extra of a material without a texture that says it: nothing is occluded, nothing is metal.
+pub(super) fn where_nothing_says(extra: Extra) -> f32 {
+    if extra == Extra::Occlusion { 1.0 } else { 0.0 }
 }
 
 #[cfg(test)]
