@@ -1,2 +1,89 @@
-//! The `roughcast` program.
-fn main() {}
+//! The `roughcast` program: one file a subcommand.
+//!
+//! Results go to stdout, everything else to stderr. Exit codes: 0 done, 1 an input or a file failed, 2 the command
+//! line makes no sense.
+
+mod args;
+mod bake;
+mod batch;
+mod info;
+mod input;
+mod output;
+mod precision;
+mod progress;
+mod report;
+mod roughness;
+mod textures;
+mod unpack;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Bumps in, roughness out: filters normal and height maps so that detail too small to see becomes roughness instead
+/// of shimmering.
+#[derive(Parser)]
+#[command(version, max_term_width = 100, arg_required_else_help = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Bake(bake::Args),
+    Info(info::Args),
+    Unpack(unpack::Args),
+    Precision(precision::Args),
+}
+
+fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // clap's own rule: help and version are no errors and go to stdout.
+            let _ = error.print();
+            return ExitCode::from(error.exit_code() as u8);
+        }
+    };
+    let result = match cli.command {
+        Command::Bake(args) => bake::run(&args),
+        Command::Info(args) => info::run(&args),
+        Command::Unpack(args) => unpack::run(&args),
+        Command::Precision(args) => precision::run(&args),
+    };
+    match result {
+        Ok(code) => code,
+        Err(error) => {
+            eprintln!("{}", one_line(&error));
+            let usage = error.chain().any(|cause| cause.is::<UsageError>());
+            ExitCode::from(if usage { 2 } else { 1 })
+        }
+    }
+}
+
+/// A command line that makes no sense, whatever the files hold.
+#[derive(Debug)]
+struct UsageError(String);
+
+impl std::fmt::Display for UsageError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for UsageError {}
+
+/// An error with its causes on one line. Decoders' messages may hold line breaks or control characters, of which a
+/// terminal should see none.
+fn one_line(error: &anyhow::Error) -> String {
+    let text = format!("error: {error:#}");
+    let printable: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    printable.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Prints a line to stdout. A reader that has gone away, such as `head`, is no error of ours.
+fn say(text: &str) {
+    use std::io::Write;
+    let _ = writeln!(std::io::stdout(), "{text}");
+}

@@ -6,6 +6,9 @@ pub enum ReadError {
     /// The file could not be opened or read.
     #[error(transparent)]
     Io(#[from] std::io::Error),
+    /// There are no bytes.
+    #[error("the file is empty")]
+    Empty,
     /// Neither the first bytes nor the extension name a format that is read here.
     #[error("not an image that roughcast reads (PNG, JPEG, TGA, BMP, WebP, TIFF, HDR, EXR, KTX2, DDS)")]
     UnknownFormat,

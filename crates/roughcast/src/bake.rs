@@ -1,5 +1,6 @@
 //! The main job: a map in, a layout's textures with all their levels out.
 
+use crate::moments::Moments;
 use crate::options::{BakeOptions, Blocks, PyramidFilter, RoughnessTexture, ScaleChoice, SourceOptions};
 use crate::pyramid::{self, LevelOut, LevelStats, PartOut, PyramidOptions, SamplesMut, level_sizes};
 use crate::row::RowSource;
@@ -44,8 +45,10 @@ pub struct BakeReport {
     pub variance_scale: f32,
     /// Length of the steepest slope.
     pub steepest: f32,
-    /// Root mean square length of the slopes.
+    /// Root mean square length of the slopes, base roughness included where it is folded in.
     pub rms_slope: f64,
+    /// The moments of the whole map: the last level's.
+    pub whole: Moments,
     /// Largest errors of what the textures give back.
     pub bounds: Bounds,
     /// Set where the steepest 0.1 % of the texels cost more than a factor of four.
@@ -88,6 +91,21 @@ pub fn bake(
     roughness: Option<BaseRoughness<'_>>,
     options: &BakeOptions,
 ) -> Result<Baked, BakeError> {
+    bake_reusing(Vec::new(), image, source_options, roughness, options)
+}
+
+/// As [`bake`], writing into the textures of an earlier bake where they have the same shape: a map that changes every
+/// frame needs no new memory. Textures of another shape are dropped.
+///
+/// # Errors
+/// As [`bake`].
+pub fn bake_reusing(
+    textures: Vec<TextureArray>,
+    image: &Image,
+    source_options: &SourceOptions,
+    roughness: Option<BaseRoughness<'_>>,
+    options: &BakeOptions,
+) -> Result<Baked, BakeError> {
     check_options(options, roughness.is_some())?;
     let mut source_options = *source_options;
     limit_slopes(&mut source_options, roughness, options)?;
@@ -102,7 +120,7 @@ pub fn bake(
         ..TextureInfo::new(options.layout, first_part(options))
     };
     let peaks = set_scales(&mut info, &looked_at, &source, pyramid_options, options);
-    let mut arrays = allocate(&info, options, (image.width(), image.height()));
+    let mut arrays = allocate(textures, &info, options, (image.width(), image.height()));
     let shape = EncoderShape {
         lobe: options.lobe,
         roughness_texture: options.roughness_texture,
@@ -111,18 +129,19 @@ pub fn bake(
     let sample_type = options.bits.sample_type();
     let encoder = texture::encoder(&info, sample_type, shape);
     let outs = level_outs(&mut arrays, encoder.as_ref());
-    let (counts, stats) = pyramid::build(&source, pyramid_options, outs);
+    let built = pyramid::build(&source, pyramid_options, outs);
     let bounds = texture::bounds(&info, sample_type, &peaks);
     let report = BakeReport {
-        counts,
+        counts: built.counts,
         texels: looked_at.texels,
         scale: info.scale,
         variance_scale: info.variance_scale,
         steepest: looked_at.steepest,
-        rms_slope: looked_at.rms,
+        rms_slope: f64::from(built.whole.xx + built.whole.yy).sqrt(),
+        whole: built.whole,
         bounds,
         advice: advice(&info, sample_type, &looked_at, &peaks, options),
-        levels: level_sizes(image.width(), image.height()).into_iter().zip(stats).collect(),
+        levels: level_sizes(image.width(), image.height()).into_iter().zip(built.levels).collect(),
     };
     Ok(Baked { arrays, report })
 }
@@ -280,8 +299,8 @@ fn set_scales(
         // The largest variance of any level is only known when all have been made.
         let sizes = level_sizes(source.width(), source.height());
         let outs = sizes.into_iter().map(LevelOut::measured).collect();
-        let (_, stats) = pyramid::build(source, pyramid_options, outs);
-        peaks.variance = stats.iter().map(|level| level.max_variance).fold(0.0, f32::max);
+        let built = pyramid::build(source, pyramid_options, outs);
+        peaks.variance = built.levels.iter().map(|level| level.max_variance).fold(0.0, f32::max);
     }
     if options.bits.sample_type().is_float() {
         return peaks;
@@ -321,8 +340,13 @@ fn advice(
     (max_slope > 0.0 && factor > STEEP_COST).then_some(ScaleAdvice { max_slope, factor })
 }
 
-/// Empty textures of all of a layout's files.
-fn allocate(info: &TextureInfo, options: &BakeOptions, size: (usize, usize)) -> Vec<TextureArray> {
+/// Textures of all of a layout's files, taken from `earlier` where these have the right shape.
+fn allocate(
+    earlier: Vec<TextureArray>,
+    info: &TextureInfo,
+    options: &BakeOptions,
+    size: (usize, usize),
+) -> Vec<TextureArray> {
     let mut parts = vec![info.part];
     match (options.layout, options.blocks) {
         (Layout::Pbr, _) => {
@@ -337,13 +361,21 @@ fn allocate(info: &TextureInfo, options: &BakeOptions, size: (usize, usize)) -> 
         (Layout::Toksvig, Blocks::Bc) => parts.push(Part::Gloss),
         _ => {}
     }
-    let texture = |spec: &LayerSpec, channels: usize| Texture {
-        name: spec.name,
-        channels: spec.channels[..channels].to_vec(),
-        levels: level_sizes(size.0, size.1)
-            .into_iter()
-            .map(|(width, height)| Image::zeros(width, height, channels, options.bits.sample_type()))
-            .collect(),
+    let sample_type = options.bits.sample_type();
+    let mut earlier = earlier.into_iter().flat_map(|array| array.layers);
+    let mut texture = |spec: &LayerSpec, channels: usize| {
+        let levels = level_sizes(size.0, size.1);
+        let fits = |image: &Image, (width, height): (usize, usize)| {
+            (image.width(), image.height(), image.channels()) == (width, height, channels)
+                && image.samples().sample_type() == sample_type
+        };
+        let levels = match earlier.next() {
+            Some(texture) if texture.levels.iter().zip(&levels).all(|(image, size)| fits(image, *size)) => {
+                texture.levels
+            }
+            _ => levels.into_iter().map(|(w, h)| Image::zeros(w, h, channels, sample_type)).collect(),
+        };
+        Texture { name: spec.name, channels: spec.channels[..channels].to_vec(), levels }
     };
     parts
         .into_iter()

@@ -3,10 +3,12 @@
 #![forbid(unsafe_code)]
 
 mod bake;
+pub mod detect;
 mod image;
 mod moments;
 mod named;
 mod options;
+pub mod precision;
 mod pyramid;
 mod row;
 mod slope;
@@ -14,10 +16,10 @@ mod source;
 mod survey;
 pub mod texture;
 
-pub use bake::{BakeError, BakeReport, Baked, ScaleAdvice, bake, refuse_filter};
+pub use bake::{BakeError, BakeReport, Baked, ScaleAdvice, bake, bake_reusing, refuse_filter};
 pub use image::{Image, ImageError, SampleType, Samples};
 pub use moments::{Covariance, Moments};
-pub use named::UnknownName;
+pub use named::{Named, UnknownName};
 pub use options::{
     BakeOptions, Bits, Blocks, Gradient, Green, HeightSense, Kind, Lobe, NormalChannels, NormalRange,
     PyramidFilter, RoughnessTexture, ScaleChoice, SourceOptions, Wrap,

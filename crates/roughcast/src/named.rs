@@ -22,6 +22,16 @@ macro_rules! named_enum {
             }
         }
 
+        impl $crate::Named for $type {
+            fn all() -> &'static [Self] {
+                Self::ALL
+            }
+
+            fn name(self) -> &'static str {
+                self.name()
+            }
+        }
+
         impl std::fmt::Display for $type {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
                 f.pad(self.name())
@@ -39,6 +49,15 @@ macro_rules! named_enum {
             }
         }
     };
+}
+
+/// An enum whose variants have names.
+pub trait Named: Copy + 'static {
+    /// Every variant, in the order of declaration.
+    fn all() -> &'static [Self];
+
+    /// The name by which the command line, the metadata of files and Python know it.
+    fn name(self) -> &'static str;
 }
 
 /// A name that stands for no variant.

@@ -34,6 +34,17 @@ named_enum! {
     }
 }
 
+impl NormalRange {
+    /// The component that a stored value stands for.
+    #[inline(always)]
+    pub fn component_from_stored(self, stored: f32) -> f32 {
+        match self {
+            NormalRange::Unorm => 2.0 * stored - 1.0,
+            NormalRange::Signed => stored,
+        }
+    }
+}
+
 named_enum! {
     /// Which channels hold a normal's components.
     pub enum NormalChannels: "choice of channels" {

@@ -8,25 +8,41 @@ pub(super) fn average_two_rows(a: &Row, b: &Row, out: &mut Row) {
     let [abx, aby, axx, ayy, axy, a_extras @ ..] = &a.planes[..] else { unreachable!("core planes") };
     let [bbx, bby, bxx, byy, bxy, b_extras @ ..] = &b.planes[..] else { unreachable!("core planes") };
     let [bx, by, xx, yy, xy, extras @ ..] = &mut out.planes[..] else { unreachable!("core planes") };
-    let n = bx.len();
-    // Equal lengths known to the compiler: no bounds checks inside, and the loops vectorise.
-    let (abx, aby, axx, ayy, axy) = (&abx[..n], &aby[..n], &axx[..n], &ayy[..n], &axy[..n]);
-    let (bbx, bby, bxx, byy, bxy) = (&bbx[..n], &bby[..n], &bxx[..n], &byy[..n], &bxy[..n]);
-    let (by, xx, yy, xy) = (&mut by[..n], &mut xx[..n], &mut yy[..n], &mut xy[..n]);
-    for i in 0..n {
-        // The mean lies half a difference from either, so both add the same square.
-        let dx = 0.5 * (abx[i] - bbx[i]);
-        let dy = 0.5 * (aby[i] - bby[i]);
-        bx[i] = 0.5 * (abx[i] + bbx[i]);
-        by[i] = 0.5 * (aby[i] + bby[i]);
-        xx[i] = 0.5 * (axx[i] + bxx[i]) + dx * dx;
-        yy[i] = 0.5 * (ayy[i] + byy[i]) + dy * dy;
-        xy[i] = 0.5 * (axy[i] + bxy[i]) + dx * dy;
-    }
+    variances_of_two(abx, bbx, axx, bxx, xx);
+    variances_of_two(aby, bby, ayy, byy, yy);
+    mixed_of_two([abx, bbx], [aby, bby], axy, bxy, xy);
+    means_of_two(abx, bbx, bx);
+    means_of_two(aby, bby, by);
     for ((a, b), out) in a_extras.iter().zip(b_extras).zip(extras) {
-        for ((a, b), out) in a.iter().zip(b).zip(out) {
-            *out = 0.5 * (a + b);
-        }
+        means_of_two(a, b, out);
+    }
+}
+
+// Slices come in as arguments, which the compiler knows not to overlap, and are cut to one length, which it then need
+// not check: these loops vectorise. The mean lies half a difference from either value, so both add the same square.
+
+fn means_of_two(a: &[f32], b: &[f32], out: &mut [f32]) {
+    for ((a, b), out) in a.iter().zip(b).zip(out) {
+        *out = 0.5 * (a + b);
+    }
+}
+
+fn variances_of_two(a: &[f32], b: &[f32], a_variance: &[f32], b_variance: &[f32], out: &mut [f32]) {
+    let n = out.len();
+    let (a, b, a_variance, b_variance) = (&a[..n], &b[..n], &a_variance[..n], &b_variance[..n]);
+    for i in 0..n {
+        let half = 0.5 * (a[i] - b[i]);
+        out[i] = 0.5 * (a_variance[i] + b_variance[i]) + half * half;
+    }
+}
+
+fn mixed_of_two(x: [&[f32]; 2], y: [&[f32]; 2], a_mixed: &[f32], b_mixed: &[f32], out: &mut [f32]) {
+    let n = out.len();
+    let (ax, bx, ay, by) = (&x[0][..n], &x[1][..n], &y[0][..n], &y[1][..n]);
+    let (a_mixed, b_mixed) = (&a_mixed[..n], &b_mixed[..n]);
+    for i in 0..n {
+        let (half_x, half_y) = (0.5 * (ax[i] - bx[i]), 0.5 * (ay[i] - by[i]));
+        out[i] = 0.5 * (a_mixed[i] + b_mixed[i]) + half_x * half_y;
     }
 }
 
@@ -34,26 +50,36 @@ pub(super) fn average_two_rows(a: &Row, b: &Row, out: &mut Row) {
 pub(super) fn average_two_columns(row: &Row, out: &mut Row) {
     let [rbx, rby, rxx, ryy, rxy, row_extras @ ..] = &row.planes[..] else { unreachable!("core planes") };
     let [bx, by, xx, yy, xy, extras @ ..] = &mut out.planes[..] else { unreachable!("core planes") };
-    let n = bx.len();
-    fn pairs(plane: &[f32], n: usize) -> &[[f32; 2]] {
-        &plane.as_chunks::<2>().0[..n]
-    }
-    let (rbx, rby, rxx, ryy, rxy) =
-        (pairs(rbx, n), pairs(rby, n), pairs(rxx, n), pairs(ryy, n), pairs(rxy, n));
-    let (by, xx, yy, xy) = (&mut by[..n], &mut xx[..n], &mut yy[..n], &mut xy[..n]);
-    for i in 0..n {
-        let dx = 0.5 * (rbx[i][0] - rbx[i][1]);
-        let dy = 0.5 * (rby[i][0] - rby[i][1]);
-        bx[i] = 0.5 * (rbx[i][0] + rbx[i][1]);
-        by[i] = 0.5 * (rby[i][0] + rby[i][1]);
-        xx[i] = 0.5 * (rxx[i][0] + rxx[i][1]) + dx * dx;
-        yy[i] = 0.5 * (ryy[i][0] + ryy[i][1]) + dy * dy;
-        xy[i] = 0.5 * (rxy[i][0] + rxy[i][1]) + dx * dy;
-    }
+    variances_of_pairs(pairs(rbx), pairs(rxx), xx);
+    variances_of_pairs(pairs(rby), pairs(ryy), yy);
+    mixed_of_pairs(pairs(rbx), pairs(rby), pairs(rxy), xy);
+    means_of_pairs(pairs(rbx), bx);
+    means_of_pairs(pairs(rby), by);
     for (plane, out) in row_extras.iter().zip(extras) {
-        for (pair, out) in pairs(plane, n).iter().zip(out) {
-            *out = 0.5 * (pair[0] + pair[1]);
-        }
+        means_of_pairs(pairs(plane), out);
+    }
+}
+
+fn pairs(plane: &[f32]) -> &[[f32; 2]] {
+    plane.as_chunks::<2>().0
+}
+
+fn means_of_pairs(pairs: &[[f32; 2]], out: &mut [f32]) {
+    for (pair, out) in pairs.iter().zip(out) {
+        *out = 0.5 * (pair[0] + pair[1]);
+    }
+}
+
+fn variances_of_pairs(pairs: &[[f32; 2]], variances: &[[f32; 2]], out: &mut [f32]) {
+    for ((pair, variance), out) in pairs.iter().zip(variances).zip(out) {
+        let half = 0.5 * (pair[0] - pair[1]);
+        *out = 0.5 * (variance[0] + variance[1]) + half * half;
+    }
+}
+
+fn mixed_of_pairs(x: &[[f32; 2]], y: &[[f32; 2]], mixed: &[[f32; 2]], out: &mut [f32]) {
+    for (((x, y), mixed), out) in x.iter().zip(y).zip(mixed).zip(out) {
+        *out = 0.5 * (mixed[0] + mixed[1]) + 0.5 * (x[0] - x[1]) * (0.5 * (y[0] - y[1]));
     }
 }
 

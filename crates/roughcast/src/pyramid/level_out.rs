@@ -175,7 +175,8 @@ fn sum(values: &[f32]) -> f64 {
     lanes.iter().sum::<f64>() + rest.iter().map(|v| f64::from(*v)).sum::<f64>()
 }
 
-fn largest(values: &[f32]) -> f32 {
+/// The largest of values that are not negative.
+pub(crate) fn largest(values: &[f32]) -> f32 {
     let (chunks, rest) = values.as_chunks::<LANES>();
     let mut lanes = [0.0_f32; LANES];
     for chunk in chunks {

@@ -12,8 +12,9 @@ mod level_out;
 mod resample;
 pub(crate) mod weights;
 
-pub(crate) use level_out::{LevelOut, PartOut, SamplesMut};
+pub(crate) use level_out::{LevelOut, PartOut, SamplesMut, largest};
 
+use crate::moments::Moments;
 use crate::options::{PyramidFilter, Wrap};
 use crate::row::RowSource;
 use crate::slope::SourceCounts;
@@ -48,12 +49,16 @@ pub(crate) struct PyramidOptions {
     pub wrap: Wrap,
 }
 
+/// What was seen while levels were made.
+pub(crate) struct Built {
+    pub counts: SourceCounts,
+    pub levels: Vec<LevelStats>,
+    /// The moments of the whole map.
+    pub whole: Moments,
+}
+
 /// Makes every level of `source` and hands it, row by row, to `outs`, one for each of [`level_sizes`].
-pub(crate) fn build(
-    source: &dyn RowSource,
-    options: PyramidOptions,
-    outs: Vec<LevelOut<'_>>,
-) -> (SourceCounts, Vec<LevelStats>) {
+pub(crate) fn build(source: &dyn RowSource, options: PyramidOptions, outs: Vec<LevelOut<'_>>) -> Built {
     let sizes = level_sizes(source.width(), source.height());
     assert_eq!(outs.len(), sizes.len(), "one output a level");
     let depth = match options.filter {
@@ -84,5 +89,9 @@ pub(crate) fn build(
         stats.push(out.finish());
         level = Some(next);
     }
-    (counts, stats)
+    let whole = match &level {
+        Some(last) => last.first_texel(),
+        None => resample::first_texel_of(source),
+    };
+    Built { counts, levels: stats, whole }
 }

@@ -6,8 +6,9 @@ use super::combine::{average_columns, average_rows};
 use super::level_out::{LevelOut, OutScratch, StatsSum};
 use super::weights::{Taps, halving};
 use super::{LevelStats, PyramidOptions};
+use crate::moments::{Covariance, Moments};
 use crate::row::{CORE_PLANES, Row, RowSource, RowView, SourceScratch};
-use crate::slope::SourceCounts;
+use crate::slope::{Slope, SourceCounts};
 
 /// Rows of the coarser level that one task makes. The finer rows at a task's edges are averaged by both neighbours.
 const BAND_ROWS: usize = 16;
@@ -44,6 +45,11 @@ impl LevelImage {
         for (plane, out) in self.planes.iter().zip(&mut row.planes) {
             out.copy_from_slice(&plane[y * self.width..][..self.width]);
         }
+    }
+
+    /// The moments of the first texel: of all there is, where this is the last level.
+    pub fn first_texel(&self) -> Moments {
+        moments_at(&self.planes, 0)
     }
 
     /// Stores all rows.
@@ -114,6 +120,18 @@ pub(super) fn first_level(
 pub(super) fn next_level(level: &LevelImage, options: PyramidOptions) -> LevelImage {
     let extras = level.planes.len() - CORE_PLANES;
     reduce(level.width, level.height, extras, options, &|y, row, _| level.row(y, row))
+}
+
+/// The moments of the first texel of level 0, for a map of a single one.
+pub(super) fn first_texel_of(source: &dyn RowSource) -> Moments {
+    let mut row = Row::new(1, source.extras().len());
+    source.fill(0, 0, &mut row, &mut SourceScratch::default());
+    moments_at(&row.planes, 0)
+}
+
+fn moments_at(planes: &[Vec<f32>], index: usize) -> Moments {
+    let [bx, by, xx, yy, xy] = std::array::from_fn(|plane| planes[plane][index]);
+    Moments::from_mean_and_covariance(Slope { x: bx, y: by }, Covariance { xx, yy, xy })
 }
 
 type ReadRow<'a> = &'a (dyn Fn(usize, &mut Row, &mut SourceScratch) + Sync);

@@ -118,21 +118,21 @@ impl RowSource for MapSource<'_> {
         }
         yy.copy_from_slice(xx);
         xy.fill(0.0);
+        if let [Extra::NormalX, Extra::NormalY, Extra::NormalZ, ..] = self.extras[..] {
+            let [nx, ny, nz, ..] = extras else { unreachable!("a plane for each extra") };
+            unit_normals(bx, by, nx, ny, nz);
+        }
         for (extra, plane) in self.extras.iter().zip(extras) {
-            self.fill_extra(*extra, x, y, bx, by, plane);
+            self.fill_extra(*extra, x, y, plane);
         }
         counts
     }
 }
 
 impl MapSource<'_> {
-    fn fill_extra(&self, extra: Extra, x: usize, y: usize, bx: &[f32], by: &[f32], plane: &mut [f32]) {
-        let inverse_length = |x: f32, y: f32| 1.0 / (1.0 + x * x + y * y).sqrt();
-        let slopes = bx.iter().zip(by);
+    fn fill_extra(&self, extra: Extra, x: usize, y: usize, plane: &mut [f32]) {
         match extra {
-            Extra::NormalX => slopes.zip(plane).for_each(|((x, y), n)| *n = x * inverse_length(*x, *y)),
-            Extra::NormalY => slopes.zip(plane).for_each(|((x, y), n)| *n = y * inverse_length(*x, *y)),
-            Extra::NormalZ => slopes.zip(plane).for_each(|((x, y), n)| *n = inverse_length(*x, *y)),
+            Extra::NormalX | Extra::NormalY | Extra::NormalZ => {} // all three are made together
             Extra::Height => match self.options.kind {
                 Kind::Height => {
                     load_channel(self.image, 0, x, y, plane);
@@ -146,6 +146,18 @@ impl MapSource<'_> {
                 None => plane.fill(base::where_nothing_says(extra)),
             },
         }
+    }
+}
+
+/// The unit normals of slopes.
+fn unit_normals(bx: &[f32], by: &[f32], nx: &mut [f32], ny: &mut [f32], nz: &mut [f32]) {
+    let n = bx.len();
+    let (by, nx, ny, nz) = (&by[..n], &mut nx[..n], &mut ny[..n], &mut nz[..n]);
+    for i in 0..n {
+        let inverse = 1.0 / (1.0 + bx[i] * bx[i] + by[i] * by[i]).sqrt();
+        nx[i] = bx[i] * inverse;
+        ny[i] = by[i] * inverse;
+        nz[i] = inverse;
     }
 }
 

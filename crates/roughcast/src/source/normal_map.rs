@@ -3,7 +3,7 @@
 use half::f16;
 
 use super::{count_unusable, mend};
-use crate::options::{Green, NormalChannels, NormalRange, SourceOptions};
+use crate::options::{Green, NormalChannels, SourceOptions};
 use crate::row::SourceScratch;
 use crate::slope::SourceCounts;
 use crate::{Image, Samples};
@@ -47,15 +47,7 @@ pub(super) fn fill(
             *z = (1.0 - x * x - y * y).max(0.0).sqrt();
         }
     }
-    // A z that is not above zero or not finite gives NaN, which no comparison accepts, so one test finds every
-    // unusable texel.
-    for ((((bx, by), nx), ny), nz) in
-        bx.iter_mut().zip(by.iter_mut()).zip(nx.iter()).zip(ny.iter()).zip(nz.iter())
-    {
-        let inverse = if *nz > 0.0 && *nz < f32::INFINITY { 1.0 / nz } else { f32::NAN };
-        *bx = nx * inverse;
-        *by = ny * inverse;
-    }
+    divide_by_z(nx, ny, nz, bx, by);
     if count_unusable(bx, by, options.max_slope) == 0 {
         return SourceCounts::default();
     }
@@ -65,6 +57,19 @@ pub(super) fn fill(
         let outside = z_from_xy && finite && nx[i] * nx[i] + ny[i] * ny[i] > INVALID_XY_SQUARED;
         (!outside).then_some([nx[i], ny[i], nz[i]])
     })
+}
+
+/// Slopes of normals. A z that is not above zero, or infinite, gives NaN or infinity, which no comparison with the
+/// largest slope accepts, so that one test afterwards finds every unusable texel.
+fn divide_by_z(nx: &[f32], ny: &[f32], nz: &[f32], bx: &mut [f32], by: &mut [f32]) {
+    let n = nx.len();
+    let (ny, nz, bx, by) = (&ny[..n], &nz[..n], &mut bx[..n], &mut by[..n]);
+    for i in 0..n {
+        let inverse = 1.0 / nz[i];
+        let inverse = if inverse > 0.0 { inverse } else { f32::NAN };
+        bx[i] = nx[i] * inverse;
+        by[i] = ny[i] * inverse;
+    }
 }
 
 /// Splits the pixels into planes of components, -1 ..= 1 for unorm data.
@@ -80,8 +85,7 @@ fn load_components(
     let channels = image.channels();
     let start = (y * image.width() + x) * channels;
     let range = start..start + nx.len() * channels;
-    let signed = options.range == NormalRange::Signed;
-    let from_float = |v: f32| if signed { v } else { 2.0 * v - 1.0 };
+    let from_float = |v: f32| options.range.component_from_stored(v);
     let split = Split { channels, order: options.normal_channels };
     match image.samples() {
         Samples::U8(v) => split.write_planes(&v[range], nx, ny, nz, signed8),

@@ -103,8 +103,8 @@ impl Units {
 
     /// Largest rounding error of a quantity with this way of storing, up to the given magnitude.
     pub fn error(self, affine: Affine, magnitude: f32) -> f32 {
-        /// Storing and loading each round once more in f32, at the magnitude of the stored number.
-        const ARITHMETIC: f32 = 4.0 * f32::EPSILON;
+        /// Four f32 roundings on the way into a code: the square, the sum, the scale and the bias.
+        const ARITHMETIC: f32 = 2.0 * f32::EPSILON;
         let step = match self.sample_type {
             SampleType::U8 => 0.5 / 255.0 / affine.mul,
             SampleType::U16 => 0.5 / 65535.0 / affine.mul,

@@ -20,6 +20,7 @@ pub use decode::{DecodeError, MomentLevel, decode};
 pub use info::{Base, Brdf, InfoError, Layout, Part, RoughnessStored, TextureInfo};
 pub use schilling::Factor;
 
+use crate::moments::Moments;
 use crate::options::{Lobe, RoughnessTexture};
 use crate::row::Extra;
 use crate::{Image, SampleType};
@@ -137,6 +138,11 @@ pub(crate) fn encoder(
             texture: shape.roughness_texture,
         }),
     }
+}
+
+/// A texel of LEAN's eight channels as it was stored, with whatever storing has done to its covariance.
+pub(crate) fn decode_lean_raw(info: &TextureInfo, sample_type: SampleType, texel: &[f32]) -> Moments {
+    lean::decode(Units::new(info, sample_type), texel)
 }
 
 /// What a file with this meaning and sample type can be relied upon to give back, where nothing stored exceeds

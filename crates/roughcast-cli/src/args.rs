@@ -1,0 +1,97 @@
+//! Arguments that several subcommands share, and how they are parsed.
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, ValueHint};
+use roughcast::{
+    Gradient, Green, HeightSense, Kind, Named, NormalChannels, NormalRange, SourceOptions, Wrap,
+};
+use roughcast_io::Limits;
+
+/// A parser that takes the names of an enum's variants.
+pub fn one_of<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(T::all().iter().map(|variant| variant.name())).map(|name| {
+        T::all().iter().copied().find(|variant| variant.name() == name).expect("the parser lets only names through")
+    })
+}
+
+/// A number above zero.
+pub fn positive(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
+        _ => Err("it must be a number above zero".to_owned()),
+    }
+}
+
+fn finite(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err("it must be a number".to_owned()),
+    }
+}
+
+/// How the input is to be read.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Reading the map")]
+pub struct SourceArgs {
+    /// What the picture is [default: decided from its pixels; an error where they leave it open]
+    #[arg(long, value_parser = one_of::<Kind>())]
+    pub kind: Option<Kind>,
+
+    /// Which way green points in a normal map: up is OpenGL and glTF, down is DirectX
+    #[arg(long, default_value = "up", value_parser = one_of::<Green>())]
+    pub green: Green,
+
+    /// Whether a normal's components are stored as 0 to 1 or as they are, -1 to 1 [default: decided from the pixels]
+    #[arg(long, value_parser = one_of::<NormalRange>())]
+    pub range: Option<NormalRange>,
+
+    /// Channels that hold the normal: xyz, xy (z is worked out), or ag (x in alpha, "DXT5nm") [default: decided from the pixels]
+    #[arg(long, value_parser = one_of::<NormalChannels>())]
+    pub normal_channels: Option<NormalChannels>,
+
+    /// Height of a full-range height map, as a part of the map's width
+    #[arg(long, default_value_t = SourceOptions::DEFAULT_HEIGHT_SCALE, value_parser = finite, allow_negative_numbers = true)]
+    pub height_scale: f32,
+
+    /// White is deep: a depth map
+    #[arg(long)]
+    pub invert_height: bool,
+
+    /// How the slopes of a height map are estimated
+    #[arg(long, default_value = "sobel", value_parser = one_of::<Gradient>())]
+    pub gradient: Gradient,
+
+    /// What lies beyond the edge of the map
+    #[arg(long, default_value = "repeat", value_parser = one_of::<Wrap>())]
+    pub wrap: Wrap,
+
+    /// Largest slope (tangent of the angle); steeper texels are scaled back to it and counted
+    #[arg(long, default_value_t = SourceOptions::DEFAULT_MAX_SLOPE, value_parser = positive)]
+    pub max_slope: f32,
+
+    /// Largest number of pixels that a file may have
+    #[arg(long, default_value_t = Limits::default().max_pixels, value_hint = ValueHint::Other)]
+    pub max_pixels: u64,
+}
+
+impl SourceArgs {
+    /// How much a reader may allocate.
+    pub fn limits(&self) -> Limits {
+        Limits { max_pixels: self.max_pixels }
+    }
+
+    /// The library's options, once the pixels have decided what was left open.
+    pub fn options(&self, kind: Kind, range: NormalRange, channels: NormalChannels) -> SourceOptions {
+        SourceOptions {
+            kind,
+            green: self.green,
+            range,
+            normal_channels: channels,
+            height_scale: self.height_scale,
+            height_sense: if self.invert_height { HeightSense::WhiteDeep } else { HeightSense::WhiteHigh },
+            gradient: self.gradient,
+            wrap: self.wrap,
+            max_slope: self.max_slope,
+        }
+    }
+}

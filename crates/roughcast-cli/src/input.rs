@@ -1,0 +1,89 @@
+//! Loading a map: the file, what it is, and what is odd about it.
+
+use std::path::Path;
+
+use anyhow::{Context, Result, anyhow};
+use roughcast::detect::{
+    GreenVerdict, KindGuess, guess_components, guess_kind, guess_range, test_green_of_map,
+};
+use roughcast::{Green, Image, Kind, NormalChannels, NormalRange, SourceOptions};
+use roughcast_io::{Decoded, FileInfo, Limits, ValueRange};
+
+use crate::args::SourceArgs;
+
+/// A map, ready to be baked.
+pub struct Map {
+    pub image: Image,
+    pub info: FileInfo,
+    pub options: SourceOptions,
+    /// The curl test's correlation; `None` for heights and where there is too little to judge by.
+    pub green_correlation: Option<f64>,
+    /// What the user should hear about.
+    pub warnings: Vec<String>,
+}
+
+/// Reads an image file. The error names the path.
+pub fn read_image(path: &Path, limits: &Limits) -> Result<Decoded> {
+    roughcast_io::read_image_file(path, limits).with_context(|| path.display().to_string())
+}
+
+/// Reads a map and settles what the arguments left open.
+pub fn read_map(path: &Path, args: &SourceArgs) -> Result<Map> {
+    let Decoded { image, info } = read_image(path, &args.limits())?;
+    let range = args.range.unwrap_or_else(|| range_of(&image, &info));
+    let kind = kind_of(&image, &info, range, args.kind).with_context(|| path.display().to_string())?;
+    let channels = args.normal_channels.unwrap_or_else(|| match kind {
+        Kind::Normal => guess_components(&image, &info.channels, range),
+        Kind::Height => NormalChannels::Xyz,
+    });
+    let options = args.options(kind, range, channels);
+    let mut map = Map { image, info, options, green_correlation: None, warnings: Vec::new() };
+    map.test_green();
+    Ok(map)
+}
+
+fn range_of(image: &Image, info: &FileInfo) -> NormalRange {
+    match info.range {
+        ValueRange::Unorm => NormalRange::Unorm,
+        ValueRange::Snorm => NormalRange::Signed,
+        ValueRange::Float => guess_range(image),
+    }
+}
+
+fn kind_of(image: &Image, info: &FileInfo, range: NormalRange, wanted: Option<Kind>) -> Result<Kind> {
+    if let Some(kind) = wanted {
+        return Ok(kind);
+    }
+    // The height is the first of these six channels, whatever the others look like.
+    if info.channels.first().is_some_and(|name| name == "b0_h") {
+        return Ok(Kind::Height);
+    }
+    match guess_kind(image, &info.channels, range) {
+        KindGuess::Certain(kind) => Ok(kind),
+        KindGuess::Doubtful { reason } => Err(anyhow!(
+            "it looks like neither a normal nor a height map ({reason}): say --kind normal or --kind height"
+        )),
+    }
+}
+
+impl Map {
+    /// Most maps are read with green up because nobody said otherwise; the curl of the slopes tells if that is wrong.
+    fn test_green(&mut self) {
+        if self.options.kind != Kind::Normal {
+            return;
+        }
+        let Some(test) = test_green_of_map(&self.image, &self.options) else { return };
+        self.green_correlation = Some(test.correlation);
+        if test.verdict() == GreenVerdict::Down {
+            let (read, other) = match self.options.green {
+                Green::Up => ("up", "down"),
+                Green::Down => ("down", "up"),
+            };
+            self.warnings.push(format!(
+                "read with green {read}, the map's slopes are not those of a surface (correlation {:.2}): green \
+                 probably points {other}; say --green {other}",
+                test.correlation
+            ));
+        }
+    }
+}

@@ -1,0 +1,359 @@
+//! Files that appear whole or not at all.
+//!
+//! A file is written under a temporary name in the folder of its destination and renamed when it is complete. Whatever
+//! goes wrong before that leaves an older file as it was.
+//!
+//! The disk is not told to sync. A bake that a power cut destroyed can be repeated, and waiting for hundreds of megabytes
+//! to reach the disk takes longer than the bake; what is guarded against is a program or a disk that fails half-way.
+
+use std::fs::{self, Metadata, Permissions};
+use std::io::{self, BufWriter, ErrorKind, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+
+/// Characters of the destination's name that go into the temporary one, which a file system might else find too long.
+const NAME_CHARACTERS: usize = 48;
+
+/// A file to write to, which takes its place at [`AtomicFile::commit`]; dropped before, it vanishes.
+#[derive(Debug)]
+pub struct AtomicFile {
+    destination: PathBuf,
+    file: BufWriter<NamedTempFile>,
+    /// Of the file that will be replaced.
+    permissions: Option<Permissions>,
+}
+
+impl AtomicFile {
+    /// Opens a temporary file beside `destination`. A file that is there already stays until the commit, and hands its
+    /// permissions on; otherwise the permissions are those of any new file. A symbolic link is followed.
+    ///
+    /// # Errors
+    /// Where the folder is missing or cannot be written to, and where the destination is a folder, a device or
+    /// write-protected. The message names the fault and the mend, the kind is that of the cause.
+    pub fn create(destination: &Path) -> io::Result<Self> {
+        let old = fs::metadata(destination).ok();
+        if let Some(old) = &old {
+            check_replaceable(old)?;
+        }
+        let destination = resolved(destination)?;
+        let file = temporary(&destination).map_err(|error| explain(error, destination.parent()))?;
+        let permissions = old.map(|old| old.permissions());
+        Ok(Self { file: BufWriter::new(file), permissions, destination })
+    }
+
+    /// Puts the file in its place, over the one that was there.
+    ///
+    /// # Errors
+    /// Where the last bytes cannot be written or the file cannot be renamed: then the destination is as it was.
+    pub fn commit(self) -> io::Result<()> {
+        self.complete()?.rename()
+    }
+
+    /// Everything that can fail for want of space.
+    fn complete(self) -> io::Result<Complete> {
+        let file = self.file.into_inner().map_err(io::IntoInnerError::into_error)?;
+        if let Some(permissions) = self.permissions {
+            file.as_file().set_permissions(permissions)?;
+        }
+        Ok(Complete { destination: self.destination, file })
+    }
+}
+
+impl Write for AtomicFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Seek for AtomicFile {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.file.seek(to)
+    }
+}
+
+/// A file of which all bytes are written.
+struct Complete {
+    destination: PathBuf,
+    file: NamedTempFile,
+}
+
+impl Complete {
+    fn rename(self) -> io::Result<()> {
+        self.file.persist(&self.destination).map(drop).map_err(|error| error.error)
+    }
+}
+
+/// Several files that belong together: none takes its place before all are written.
+#[derive(Debug, Default)]
+pub struct AtomicSet {
+    files: Vec<AtomicFile>,
+}
+
+impl AtomicSet {
+    /// An empty set.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a file of which everything has been written.
+    ///
+    /// # Errors
+    /// Where a file of the set has the same destination already: one of the two would be lost.
+    pub fn push(&mut self, file: AtomicFile) -> io::Result<()> {
+        if self.files.iter().any(|other| other.destination == file.destination) {
+            let message = "two of the files to write have this name: give each a name of its own";
+            return Err(io::Error::new(ErrorKind::AlreadyExists, message));
+        }
+        self.files.push(file);
+        Ok(())
+    }
+
+    /// Puts all files in their places.
+    ///
+    /// # Errors
+    /// Where the last bytes of any file cannot be written: then all destinations are as they were. Where a file cannot be
+    /// renamed, which little but a change of its folder in the meantime can cause: then those added before it are in
+    /// place, and it and the others are not. The message starts with the name of the file.
+    pub fn commit(self) -> io::Result<()> {
+        let named = |destination: &Path, error: io::Error| {
+            io::Error::new(error.kind(), format!("{}: {error}", destination.display()))
+        };
+        let mut complete = Vec::with_capacity(self.files.len());
+        for file in self.files {
+            let destination = file.destination.clone();
+            complete.push(file.complete().map_err(|error| named(&destination, error))?);
+        }
+        for file in complete {
+            let destination = file.destination.clone();
+            file.rename().map_err(|error| named(&destination, error))?;
+        }
+        Ok(())
+    }
+}
+
+/// Renaming would replace a device or a write-protected file without a word.
+fn check_replaceable(old: &Metadata) -> io::Result<()> {
+    let (kind, message) = if old.is_dir() {
+        (ErrorKind::IsADirectory, "it is a folder: add a file name")
+    } else if !old.is_file() {
+        (ErrorKind::InvalidInput, "it is not a regular file: give the name of a file")
+    } else if old.permissions().readonly() {
+        (ErrorKind::PermissionDenied, "it is write-protected: allow writing to it, or give another name")
+    } else {
+        return Ok(());
+    };
+    Err(io::Error::new(kind, message))
+}
+
+/// The one path by which a file is known, so that two ways to write it are found to be the same.
+fn resolved(destination: &Path) -> io::Result<PathBuf> {
+    if let Ok(existing) = fs::canonicalize(destination) {
+        return Ok(existing);
+    }
+    let Some(name) = destination.file_name() else {
+        return Err(io::Error::new(ErrorKind::InvalidInput, "the path names no file: add a file name"));
+    };
+    let folder = match destination.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    let folder = fs::canonicalize(folder).map_err(|error| explain(error, Some(folder)))?;
+    Ok(folder.join(name))
+}
+
+/// An empty file beside the resolved `destination`, with a hidden name that tells what it will become.
+fn temporary(destination: &Path) -> io::Result<NamedTempFile> {
+    let name = destination.file_name().unwrap_or_default().to_string_lossy();
+    let prefix = format!(".{}.", name.chars().take(NAME_CHARACTERS).collect::<String>());
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(&prefix).suffix(".tmp");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // As for any new file, of which the umask takes its part; temporary files are else for their owner alone.
+        builder.permissions(Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(destination.parent().unwrap_or(Path::new(".")))
+}
+
+/// Says what is wrong with the folder.
+fn explain(error: io::Error, folder: Option<&Path>) -> io::Error {
+    let folder = folder.unwrap_or(Path::new(".")).display();
+    let message = match error.kind() {
+        ErrorKind::NotFound => format!("the folder {folder} does not exist: create it first"),
+        ErrorKind::NotADirectory => format!("{folder} is not a folder: give another path"),
+        ErrorKind::PermissionDenied => {
+            format!("the folder {folder} cannot be written to: allow it, or write elsewhere")
+        }
+        ErrorKind::ReadOnlyFilesystem => {
+            format!("the folder {folder} is on a read-only disk: write elsewhere")
+        }
+        _ => return error,
+    };
+    io::Error::new(error.kind(), message)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder() -> tempfile::TempDir {
+        tempfile::tempdir().expect("a temporary folder")
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).expect("the folder is there");
+        let name = |entry: io::Result<fs::DirEntry>| {
+            entry.expect("an entry").file_name().into_string().expect("ASCII")
+        };
+        let mut names: Vec<String> = entries.map(name).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_file_appears_at_the_commit_and_not_before() {
+        let folder = folder();
+        let path = folder.path().join("map.exr");
+        let mut file = AtomicFile::create(&path).expect("a writable folder");
+        file.write_all(b"0123456789").expect("space");
+        file.seek(SeekFrom::Start(2)).expect("a file");
+        file.write_all(b"ab").expect("space");
+        file.flush().expect("space");
+        let temporary = names(folder.path());
+        assert!(temporary.len() == 1 && temporary[0].starts_with(".map.exr."), "{temporary:?}");
+        file.commit().expect("a writable folder");
+        assert_eq!(names(folder.path()), ["map.exr"]);
+        assert_eq!(fs::read(&path).expect("the file"), b"01ab456789");
+    }
+
+    #[test]
+    fn an_old_file_survives_a_write_that_fails() {
+        let folder = folder();
+        let path = folder.path().join("map.exr");
+        fs::write(&path, "old").expect("space");
+        let write = || -> io::Result<()> {
+            let mut file = AtomicFile::create(&path)?;
+            file.write_all(b"half of the n")?;
+            file.flush()?;
+            Err(io::Error::new(ErrorKind::StorageFull, "the disk is full"))
+        };
+        assert!(write().is_err());
+        assert_eq!(fs::read(&path).expect("the file"), b"old");
+        assert_eq!(names(folder.path()), ["map.exr"]);
+        let mut file = AtomicFile::create(&path).expect("a writable folder");
+        file.write_all(b"new").expect("space");
+        file.commit().expect("a writable folder");
+        assert_eq!(fs::read(&path).expect("the file"), b"new");
+    }
+
+    #[test]
+    fn long_names_leave_room_for_the_temporary_ones() {
+        let folder = folder();
+        let path = folder.path().join("ä".repeat(127));
+        AtomicFile::create(&path).expect("a name that fits").commit().expect("a name that fits");
+        assert_eq!(names(folder.path()).len(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn permissions_are_those_of_any_file_or_of_the_one_before() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = folder();
+        let mode = |path: &Path| fs::metadata(path).expect("the file").permissions().mode() & 0o777;
+        let (plain, ours) = (folder.path().join("plain"), folder.path().join("ours"));
+        fs::write(&plain, "").expect("space");
+        AtomicFile::create(&ours).expect("a writable folder").commit().expect("a writable folder");
+        assert_eq!(mode(&ours), mode(&plain));
+        fs::set_permissions(&ours, Permissions::from_mode(0o640)).expect("our file");
+        AtomicFile::create(&ours).expect("a writable folder").commit().expect("a writable folder");
+        assert_eq!(mode(&ours), 0o640);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_is_followed() {
+        let folder = folder();
+        let (target, link) = (folder.path().join("target"), folder.path().join("link"));
+        fs::write(&target, "old").expect("space");
+        std::os::unix::fs::symlink(&target, &link).expect("a link");
+        let mut file = AtomicFile::create(&link).expect("a writable folder");
+        file.write_all(b"new").expect("space");
+        file.commit().expect("a writable folder");
+        assert_eq!(fs::read(&target).expect("the file"), b"new");
+        assert!(fs::symlink_metadata(&link).expect("the link").is_symlink());
+    }
+
+    #[test]
+    fn bad_destinations_are_refused_with_the_mend() {
+        let folder = folder();
+        let refusal = |path: &Path| AtomicFile::create(path).expect_err("a bad destination").to_string();
+        assert!(refusal(folder.path()).contains("it is a folder"));
+        assert!(refusal(&folder.path().join("missing/map.exr")).contains("create it first"));
+        assert!(refusal(&folder.path().join("..")).contains("add a file name"));
+        assert!(refusal(Path::new("")).contains("add a file name"));
+        let file = folder.path().join("file");
+        fs::write(&file, "old").expect("space");
+        assert!(refusal(&file.join("map.exr")).contains("is not a folder"));
+        let mut permissions = fs::metadata(&file).expect("the file").permissions();
+        permissions.set_readonly(true);
+        fs::set_permissions(&file, permissions).expect("our file");
+        assert!(refusal(&file).contains("write-protected"));
+        #[cfg(unix)]
+        assert!(refusal(Path::new("/dev/null")).contains("not a regular file"));
+        assert_eq!(names(folder.path()), ["file"]);
+    }
+
+    #[test]
+    fn a_set_is_committed_together() {
+        let folder = folder();
+        let mut set = AtomicSet::new();
+        for name in ["a", "b"] {
+            let mut file = AtomicFile::create(&folder.path().join(name)).expect("a writable folder");
+            file.write_all(name.as_bytes()).expect("space");
+            set.push(file).expect("another name");
+        }
+        assert!(names(folder.path()).iter().all(|name| name.starts_with('.')));
+        // The same file by another way.
+        let detour = folder.path().join("..").join(folder.path().file_name().expect("it has a name"));
+        let again = AtomicFile::create(&detour.join("a")).expect("a writable folder");
+        assert!(set.push(again).expect_err("the same name").to_string().contains("a name of its own"));
+        set.commit().expect("a writable folder");
+        assert_eq!(names(folder.path()), ["a", "b"]);
+        assert_eq!(fs::read(folder.path().join("b")).expect("the file"), b"b");
+    }
+
+    #[test]
+    fn a_set_that_is_given_up_leaves_nothing() {
+        let folder = folder();
+        fs::write(folder.path().join("a"), "old").expect("space");
+        let mut set = AtomicSet::new();
+        for name in ["a", "b"] {
+            set.push(AtomicFile::create(&folder.path().join(name)).expect("a writable folder"))
+                .expect("another name");
+        }
+        drop(set);
+        assert_eq!(names(folder.path()), ["a"]);
+        assert_eq!(fs::read(folder.path().join("a")).expect("the file"), b"old");
+    }
+
+    /// The second destination becomes a folder while the files are written.
+    #[test]
+    fn a_rename_that_fails_names_its_file() {
+        let folder = folder();
+        let mut set = AtomicSet::new();
+        for name in ["a", "b"] {
+            set.push(AtomicFile::create(&folder.path().join(name)).expect("a writable folder"))
+                .expect("another name");
+        }
+        fs::create_dir(folder.path().join("b")).expect("space");
+        let message = set.commit().expect_err("a folder is in the way").to_string();
+        assert!(message.contains('b'), "{message}");
+        assert_eq!(names(folder.path()), ["a", "b"]);
+    }
+}

@@ -1,0 +1,160 @@
+//! Block compression: BC4 for one channel, BC5 for two, BC7 for four.
+//!
+//! Blocks of 4 x 4 texels take 8 (BC4) or 16 bytes (BC5, BC7). They are lossy: [`decompress`] gives what a graphics
+//! processor will see, so that the error added can be measured and reported.
+
+use block_compression::encode::compress_rgba8;
+use block_compression::{BC7Settings, CompressionVariant};
+use rayon::prelude::*;
+use roughcast::texture::{Texture, TextureArray, TextureInfo};
+use roughcast::{Image, Samples};
+
+use crate::WriteError;
+use crate::payload::Shape;
+use crate::texels::{BlockCode, TexelFormat};
+
+/// A block format that is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum BlockFormat {
+    /// One channel, 4 bits a texel.
+    Bc4,
+    /// Two independent channels, 8 bits a texel.
+    Bc5,
+    /// Four channels, 8 bits a texel.
+    Bc7,
+}
+
+impl BlockFormat {
+    /// Its name: `BC4`, `BC5` or `BC7`.
+    pub fn name(self) -> &'static str {
+        match self {
+            BlockFormat::Bc4 => "BC4",
+            BlockFormat::Bc5 => "BC5",
+            BlockFormat::Bc7 => "BC7",
+        }
+    }
+
+    /// Channels of a texel.
+    pub fn channels(self) -> usize {
+        self.code().channels()
+    }
+
+    pub(crate) fn code(self) -> BlockCode {
+        match self {
+            BlockFormat::Bc4 => BlockCode::Bc4,
+            BlockFormat::Bc5 => BlockCode::Bc5,
+            BlockFormat::Bc7 => BlockCode::Bc7,
+        }
+    }
+
+    fn variant(self) -> CompressionVariant {
+        match self {
+            BlockFormat::Bc4 => CompressionVariant::BC4,
+            BlockFormat::Bc5 => CompressionVariant::BC5,
+            // The settings with alpha: the fourth channel of a layout is data, not coverage.
+            BlockFormat::Bc7 => CompressionVariant::BC7(BC7Settings::alpha_basic()),
+        }
+    }
+}
+
+/// A [`TextureArray`] in blocks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BlockArray {
+    /// What the texels mean.
+    pub info: TextureInfo,
+    /// The block format of every layer and level.
+    pub format: BlockFormat,
+    /// Texels in a row of level 0; need not be a multiple of 4.
+    pub width: usize,
+    /// Rows of level 0.
+    pub height: usize,
+    /// The layers; at least one, all with the same number of levels.
+    pub layers: Vec<BlockLayer>,
+}
+
+/// One texture of a [`BlockArray`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct BlockLayer {
+    /// As [`Texture::name`].
+    pub name: &'static str,
+    /// As [`Texture::channels`].
+    pub channels: Vec<&'static str>,
+    /// The blocks of each level, level 0 first, in rows from the top. Levels halve as those of a [`Texture`] do.
+    pub levels: Vec<Vec<u8>>,
+}
+
+/// Compresses 8-bit textures. Sizes that are no multiple of 4 are filled up by repeating the edge.
+///
+/// Blocks do not depend on each other, so the result is the same for any number of threads.
+///
+/// # Errors
+/// [`WriteError::Unsupported`] where the samples are not 8-bit or the number of channels is not that of the format.
+pub fn compress(array: &TextureArray, format: BlockFormat) -> Result<BlockArray, WriteError> {
+    let (width, height) = array.size();
+    let layers = array.layers.iter().map(|layer| {
+        let levels = layer.levels.iter().map(|level| compress_level(level, format));
+        let levels = levels.collect::<Result<_, _>>()?;
+        Ok(BlockLayer { name: layer.name, channels: layer.channels.clone(), levels })
+    });
+    let layers = layers.collect::<Result<_, WriteError>>()?;
+    Ok(BlockArray { info: array.info, format, width, height, layers })
+}
+
+fn compress_level(level: &Image, format: BlockFormat) -> Result<Vec<u8>, WriteError> {
+    let unsupported = |what| {
+        let mend = "quantise to 8 bits, with 1 channel for BC4, 2 for BC5, 4 for BC7";
+        WriteError::Unsupported { container: format.name(), what, mend }
+    };
+    let Samples::U8(texels) = level.samples() else {
+        return Err(unsupported(format!("{:?} samples", level.samples().sample_type())));
+    };
+    if level.channels() != format.channels() {
+        return Err(unsupported(format!("{} channels", level.channels())));
+    }
+    let block_bytes = format.code().block_bytes();
+    let mut blocks = vec![0; level.width().div_ceil(4) * level.height().div_ceil(4) * block_bytes];
+    blocks.par_chunks_mut(level.width().div_ceil(4) * block_bytes).enumerate().for_each(|(row, blocks)| {
+        for (column, block) in blocks.chunks_exact_mut(block_bytes).enumerate() {
+            let rgba = rgba_of_block(level, texels, column, row);
+            compress_rgba8(format.variant(), &rgba, block, 4, 4, 16);
+        }
+    });
+    Ok(blocks)
+}
+
+/// The 4 x 4 texels of a block as RGBA; beyond the edge the last texel is repeated.
+fn rgba_of_block(level: &Image, texels: &[u8], column: usize, row: usize) -> [u8; 64] {
+    let channels = level.channels();
+    let mut rgba = [0; 64];
+    for (index, out) in rgba.chunks_exact_mut(4).enumerate() {
+        let x = (column * 4 + index % 4).min(level.width() - 1);
+        let y = (row * 4 + index / 4).min(level.height() - 1);
+        let start = (y * level.width() + x) * channels;
+        out[..channels].copy_from_slice(&texels[start..start + channels]);
+    }
+    rgba
+}
+
+/// The textures as a graphics processor sees them: BC4 and BC5 in 16 bits (they interpolate between 8-bit values),
+/// BC7 in 8 bits.
+///
+/// # Panics
+/// Where the number of bytes of a level is not that of its blocks.
+pub fn decompress(blocks: &BlockArray) -> TextureArray {
+    let format = TexelFormat::Blocks(blocks.format.code());
+    let layers = blocks.layers.iter().map(|layer| {
+        let shape = Shape {
+            width: blocks.width,
+            height: blocks.height,
+            layers: blocks.layers.len(),
+            levels: layer.levels.len(),
+            format: format.clone(),
+        };
+        let levels = layer.levels.iter().enumerate().map(|(level, bytes)| {
+            let (width, height) = shape.level_size(level);
+            shape.format.decode(bytes, width, height)
+        });
+        Texture { name: layer.name, channels: layer.channels.clone(), levels: levels.collect() }
+    });
+    TextureArray { info: blocks.info, layers: layers.collect() }
+}

@@ -1,0 +1,101 @@
+//! Reading DDS.
+
+use std::collections::BTreeMap;
+
+use roughcast::texture::{TextureArray, TextureInfo};
+
+use super::header::Header;
+use super::{CONTAINER, format, malformed, unsupported};
+use crate::payload::{Shape, textures_from};
+use crate::texels::full_chain;
+use crate::{Decoded, FileInfo, Limits, ReadError};
+
+/// Reads level 0 of layer 0 as an image.
+///
+/// SNORM formats become floats in -1 ..= 1, BC4 and BC5 UNORM 16-bit samples, masks 8-bit or 16-bit ones. X and Y of an
+/// `ATI2` file are put in order. A DXT5 file comes as RGBA, also where it keeps the X of normals in its alpha.
+///
+/// # Errors
+/// [`ReadError`] where the file is broken, too large for `limits`, or of a kind that is not read (see [`super`]).
+pub fn read_image(bytes: &[u8], limits: Limits) -> Result<Decoded, ReadError> {
+    let header = Header::parse(bytes)?;
+    let (mut shape, format_name) = shape_of(&header)?;
+    // Level 0 is all that is wanted, so a count of levels that cannot be is no reason to refuse the file.
+    shape.levels = shape.levels.min(full_chain(shape.width, shape.height));
+    shape.check(CONTAINER, limits)?;
+    let texels = shape
+        .layer_bytes(0)
+        .and_then(|length| bytes.get(header.data_offset..header.data_offset.checked_add(length)?))
+        .ok_or_else(|| too_short(&shape))?;
+    let image = shape.format.decode(texels, shape.width, shape.height);
+    let info = FileInfo {
+        container: CONTAINER,
+        format: format_name,
+        width: shape.width,
+        height: shape.height,
+        layers: shape.layers,
+        levels: shape.levels,
+        range: shape.format.range(),
+        channels: shape.format.channel_names().iter().map(|&name| name.to_owned()).collect(),
+        metadata: metadata_of(&header.reserved),
+    };
+    Ok(Decoded { image, info })
+}
+
+/// Reads a file that roughcast wrote: all layers with all their levels. Blocks are decompressed: BC4 and BC5 to 16-bit
+/// samples, BC7 to 8-bit ones.
+///
+/// # Errors
+/// [`ReadError`] where the file is broken, too large for `limits`, or not one of ours ([`ReadError::Info`]).
+pub fn read_textures(bytes: &[u8], limits: Limits) -> Result<TextureArray, ReadError> {
+    let header = Header::parse(bytes)?;
+    let info = TextureInfo::from_words(&header.reserved)?;
+    let (shape, format_name) = shape_of(&header)?;
+    shape.check(CONTAINER, limits)?;
+    if !shape.is_of_a_payload() {
+        return Err(unsupported(format!("a baked texture in {format_name}"), "bake it anew"));
+    }
+    // Layer after layer, each with all its levels, the largest first.
+    let lengths: Vec<usize> = (0..shape.levels)
+        .map(|level| shape.layer_bytes(level))
+        .collect::<Option<_>>()
+        .ok_or_else(|| too_short(&shape))?;
+    let texels = &bytes[header.data_offset..];
+    let chain = lengths.iter().try_fold(0, |sum: usize, &length| sum.checked_add(length));
+    let needed = chain.and_then(|chain| chain.checked_mul(shape.layers));
+    let Some(chain) = chain.filter(|_| needed.is_some_and(|needed| needed <= texels.len())) else {
+        return Err(too_short(&shape));
+    };
+    textures_from(CONTAINER, info, &shape, |layer, level| {
+        let start = layer * chain + lengths[..level].iter().sum::<usize>();
+        &texels[start..start + lengths[level]]
+    })
+}
+
+fn shape_of(header: &Header) -> Result<(Shape, String), ReadError> {
+    let (format, name) = format::texel_format(header.pixel_format)?;
+    let shape = Shape {
+        width: header.width as usize,
+        height: header.height as usize,
+        layers: header.layers as usize,
+        levels: header.levels as usize,
+        format,
+    };
+    Ok((shape, name))
+}
+
+fn too_short(shape: &Shape) -> ReadError {
+    malformed(format!("it is too short for {}x{} texels of its format", shape.width, shape.height))
+}
+
+/// The words that belong to the writer: ours as pairs, those of others as hexadecimal numbers.
+fn metadata_of(words: &[u32; 11]) -> BTreeMap<String, String> {
+    if let Ok(info) = TextureInfo::from_words(words) {
+        return info.to_pairs();
+    }
+    if words.iter().all(|&word| word == 0) {
+        return BTreeMap::new();
+    }
+    let text = words.map(|word| format!("{word:08x}")).join(" ");
+    BTreeMap::from([("dwReserved1".to_owned(), text)])
+}

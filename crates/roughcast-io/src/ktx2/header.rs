@@ -1,0 +1,242 @@
+//! The header of a KTX2 file, its level index and its key-value data, with every offset checked.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+use super::{IDENTIFIER, IDENTIFIER_OF_KTX1, malformed, unsupported};
+use crate::texels::{Axis, Source};
+use crate::{ReadError, metadata};
+
+/// How level data are packed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Scheme {
+    None,
+    Zstd,
+    Zlib,
+}
+
+/// A file whose header makes sense. Nothing of the size of the texture has been allocated.
+pub(super) struct Container<'a> {
+    bytes: &'a [u8],
+    scheme: Scheme,
+    level_index: Vec<LevelEntry>,
+    pub vk_format: u32,
+    pub width: usize,
+    pub height: usize,
+    pub layers: usize,
+    /// Key-value data as text.
+    pub pairs: BTreeMap<String, String>,
+}
+
+#[derive(Clone, Copy)]
+struct LevelEntry {
+    offset: u64,
+    length: u64,
+    uncompressed_length: u64,
+}
+
+const HEADER_BYTES: usize = 80;
+const LEVEL_ENTRY_BYTES: usize = 24;
+
+impl<'a> Container<'a> {
+    pub fn parse(bytes: &'a [u8]) -> Result<Self, ReadError> {
+        if bytes.starts_with(&IDENTIFIER_OF_KTX1) {
+            return Err(unsupported(
+                "version 1 of the format",
+                "convert it to KTX2, for example with ktx2ktx2",
+            ));
+        }
+        if !bytes.starts_with(&IDENTIFIER) {
+            return Err(malformed("the identifier is not that of KTX2"));
+        }
+        if bytes.len() < HEADER_BYTES {
+            return Err(malformed(format!("{} bytes are too short for a header", bytes.len())));
+        }
+        let field = |index: usize| u32_at(bytes, 12 + 4 * index);
+        let [vk_format, width, height, depth] = [field(0), field(2), field(3), field(4)];
+        let [layers, faces, levels, scheme] = [field(5), field(6), field(7), field(8)];
+        if depth > 0 {
+            return Err(unsupported("a 3-D texture", "save one slice as a 2-D texture"));
+        }
+        if faces != 1 {
+            return Err(match faces {
+                6 => unsupported("a cube map", "save one face as a 2-D texture"),
+                _ => malformed(format!("a texture cannot have {faces} faces")),
+            });
+        }
+        let scheme = scheme_of(scheme)?;
+        if vk_format == 0 {
+            return Err(universal_format(bytes, field(9)));
+        }
+        Ok(Self {
+            bytes,
+            scheme,
+            level_index: level_index(bytes, levels)?,
+            vk_format,
+            width: width as usize,
+            // 1-D textures state a height of 0; one row is what they are.
+            height: height.max(1) as usize,
+            layers: layers.max(1) as usize,
+            pairs: key_value_data(bytes, field(11), field(12))?,
+        })
+    }
+
+    /// Number of levels in the file.
+    pub fn levels(&self) -> usize {
+        self.level_index.len()
+    }
+
+    /// The texels of all layers of a level, unpacked; `expected` bytes, or an error.
+    pub fn level(&self, level: usize, expected: usize) -> Result<Cow<'a, [u8]>, ReadError> {
+        let entry = self.level_index[level];
+        let data = slice(self.bytes, entry.offset, entry.length)
+            .ok_or_else(|| malformed(format!("level {level} lies outside of the file")))?;
+        if entry.uncompressed_length != expected as u64 {
+            let stated = entry.uncompressed_length;
+            return Err(malformed(format!("level {level} states {stated} bytes, its size needs {expected}")));
+        }
+        let failed = |why: &str| malformed(format!("level {level} does not unpack: {why}"));
+        match self.scheme {
+            Scheme::None if data.len() != expected => {
+                Err(malformed(format!("level {level} has {} bytes, its size needs {expected}", data.len())))
+            }
+            Scheme::None => Ok(Cow::Borrowed(data)),
+            Scheme::Zstd => inflate_zstd(data, expected).map(Cow::Owned).map_err(failed),
+            Scheme::Zlib => inflate_zlib(data, expected).map(Cow::Owned).map_err(failed),
+        }
+    }
+
+    /// The axes along which the image must be turned over so that row 0 is the top and column 0 the left.
+    pub fn flips(&self) -> Result<Vec<Axis>, ReadError> {
+        let Some(orientation) = self.pairs.get("KTXorientation") else { return Ok(Vec::new()) };
+        match orientation.as_str() {
+            "rd" | "r" => Ok(Vec::new()),
+            "ru" => Ok(vec![Axis::Vertical]),
+            "ld" | "l" => Ok(vec![Axis::Horizontal]),
+            "lu" => Ok(vec![Axis::Vertical, Axis::Horizontal]),
+            _ => Err(malformed(format!("KTXorientation is '{}'", orientation.escape_debug()))),
+        }
+    }
+
+    /// Where each channel of the image comes from, if the file says so. Channels at the end that would hold what they
+    /// hold anyway when absent (0, or 1 for alpha) are left out: `rg01` of two channels gives two channels.
+    pub fn swizzle(&self, channels: usize) -> Result<Option<Vec<Source>>, ReadError> {
+        let Some(swizzle) = self.pairs.get("KTXswizzle") else { return Ok(None) };
+        let invalid = || malformed(format!("KTXswizzle is '{}'", swizzle.escape_debug()));
+        let absent = |index: usize| if index == 3 { Source::One } else { Source::Zero };
+        let source = |letter: char| match letter {
+            '0' => Some(Source::Zero),
+            '1' => Some(Source::One),
+            _ => {
+                let index = "rgba".find(letter)?;
+                Some(if index < channels { Source::Channel(index) } else { absent(index) })
+            }
+        };
+        let mut sources: Vec<Source> =
+            swizzle.chars().map(source).collect::<Option<_>>().ok_or_else(invalid)?;
+        if sources.len() != 4 {
+            return Err(invalid());
+        }
+        while sources.len() > 1 && sources.last() == Some(&absent(sources.len() - 1)) {
+            sources.pop();
+        }
+        Ok(Some(sources))
+    }
+}
+
+/// The caller has checked that the file is long enough.
+fn u32_at(bytes: &[u8], offset: usize) -> u32 {
+    bytes[offset..].first_chunk().map(|&b| u32::from_le_bytes(b)).expect("within the header")
+}
+
+fn u64_at(bytes: &[u8], offset: usize) -> u64 {
+    bytes[offset..].first_chunk().map(|&b| u64::from_le_bytes(b)).expect("within the header")
+}
+
+fn slice(bytes: &[u8], offset: u64, length: u64) -> Option<&[u8]> {
+    let start = usize::try_from(offset).ok()?;
+    let end = start.checked_add(usize::try_from(length).ok()?)?;
+    bytes.get(start..end)
+}
+
+fn scheme_of(number: u32) -> Result<Scheme, ReadError> {
+    match number {
+        0 => Ok(Scheme::None),
+        1 => Err(unsupported("BasisLZ supercompression (ETC1S)", TRANSCODE)),
+        2 => Ok(Scheme::Zstd),
+        3 => Ok(Scheme::Zlib),
+        _ => Err(unsupported(format!("supercompression scheme {number}"), "save it with none, zstd or zlib")),
+    }
+}
+
+const TRANSCODE: &str = "transcode it first, for example with `ktx transcode --target bc7`";
+
+/// Files without a `vkFormat` say in their data format descriptor what they are.
+fn universal_format(bytes: &[u8], descriptor_offset: u32) -> ReadError {
+    // The colour model stands behind the total size and two words of the block.
+    let model = slice(bytes, u64::from(descriptor_offset) + 12, 1).map(|model| model[0]);
+    match model {
+        Some(163) => unsupported("ETC1S compression", TRANSCODE),
+        Some(166) => unsupported("UASTC compression", TRANSCODE),
+        Some(model) => unsupported(format!("colour model {model} without a vkFormat"), TRANSCODE),
+        None => malformed("neither a vkFormat nor a data format descriptor says what the texels are"),
+    }
+}
+
+fn level_index(bytes: &[u8], levels: u32) -> Result<Vec<LevelEntry>, ReadError> {
+    // A count of 0 asks the loader to make the levels; level 0 is there.
+    let length = u64::from(levels.max(1)) * LEVEL_ENTRY_BYTES as u64;
+    let index = slice(bytes, HEADER_BYTES as u64, length)
+        .ok_or_else(|| malformed(format!("the index of {levels} levels reaches beyond the file")))?;
+    let entry = |entry: &[u8]| LevelEntry {
+        offset: u64_at(entry, 0),
+        length: u64_at(entry, 8),
+        uncompressed_length: u64_at(entry, 16),
+    };
+    Ok(index.chunks_exact(LEVEL_ENTRY_BYTES).map(entry).collect())
+}
+
+fn key_value_data(bytes: &[u8], offset: u32, length: u32) -> Result<BTreeMap<String, String>, ReadError> {
+    let broken = || malformed("the key-value data are broken");
+    let mut rest = slice(bytes, offset.into(), length.into()).ok_or_else(broken)?;
+    let mut pairs = BTreeMap::new();
+    while !rest.is_empty() {
+        let (size, after) = rest.split_first_chunk().ok_or_else(broken)?;
+        let size = u32::from_le_bytes(*size) as usize;
+        let pair = after.get(..size).ok_or_else(broken)?;
+        let end_of_key = pair.iter().position(|&byte| byte == 0).ok_or_else(broken)?;
+        let key = std::str::from_utf8(&pair[..end_of_key]).map_err(|_| broken())?;
+        metadata::keep(&mut pairs, key, &pair[end_of_key + 1..]);
+        // Pairs are padded to 4 bytes; some writers leave the padding of the last one out.
+        rest = after.get(size.next_multiple_of(4)..).unwrap_or_default();
+    }
+    Ok(pairs)
+}
+
+/// A Zstandard block of 4 bytes can stand for 128 KiB, so no honest level is packed tighter than this. Checked before
+/// the level is allocated: a short file shall not ask for gigabytes.
+const ZSTD_MAX_RATIO: usize = 128 * 1024 / 4;
+
+fn inflate_zstd(data: &[u8], expected: usize) -> Result<Vec<u8>, &'static str> {
+    if expected > data.len().saturating_mul(ZSTD_MAX_RATIO) {
+        return Err("it is too short for its size");
+    }
+    let mut level = Vec::with_capacity(expected);
+    let mut decompressor = zstd::bulk::Decompressor::new().map_err(|_| "no memory for zstd")?;
+    decompressor.decompress_to_buffer(data, &mut level).map_err(|_| "broken or too long zstd data")?;
+    if level.len() != expected { Err("too few bytes") } else { Ok(level) }
+}
+
+/// Deflate packs at most 258 bytes into 2 bits.
+const DEFLATE_MAX_RATIO: usize = 258 * 4;
+
+fn inflate_zlib(data: &[u8], expected: usize) -> Result<Vec<u8>, &'static str> {
+    if expected > data.len().saturating_mul(DEFLATE_MAX_RATIO) {
+        return Err("it is too short for its size");
+    }
+    let mut level = vec![0; expected];
+    let length = libdeflater::Decompressor::new()
+        .zlib_decompress(data, &mut level)
+        .map_err(|_| "broken or too long zlib data")?;
+    if length != expected { Err("too few bytes") } else { Ok(level) }
+}

@@ -1,0 +1,87 @@
+//! Reading KTX2.
+
+use roughcast::texture::{TextureArray, TextureInfo};
+
+use super::header::Container;
+use super::{CONTAINER, format, malformed, unsupported};
+use crate::payload::{Shape, textures_from};
+use crate::texels::{flipped, rgba_names, swizzled};
+use crate::{Decoded, FileInfo, Limits, ReadError};
+
+/// Reads level 0 of layer 0 as an image.
+///
+/// Row 0 of the image is the top and column 0 the left, also where the file's `KTXorientation` says that its own are
+/// not, and channels are in the order that `KTXswizzle` asks for. `_SRGB` formats are read as raw numbers. SNORM
+/// formats become floats in -1 ..= 1, BC4 and BC5 UNORM 16-bit samples.
+///
+/// # Errors
+/// [`ReadError`] where the file is broken, too large for `limits`, or of a kind that is not read (see [`super`]).
+pub fn read_image(bytes: &[u8], limits: Limits) -> Result<Decoded, ReadError> {
+    let file = Container::parse(bytes)?;
+    let (shape, format_name) = shape_of(&file, limits)?;
+    let (layer_bytes, level_bytes) = sizes(&shape, 0)?;
+    let texels = file.level(0, level_bytes)?;
+    let mut image = shape.format.decode(&texels[..layer_bytes], shape.width, shape.height);
+    let mut channels = shape.format.channel_names();
+    if let Some(sources) = file.swizzle(image.channels())? {
+        image = swizzled(&image, &sources);
+        channels = rgba_names(sources.len());
+    }
+    for axis in file.flips()? {
+        image = flipped(image, axis);
+    }
+    let info = FileInfo {
+        container: CONTAINER,
+        format: format_name.to_owned(),
+        width: shape.width,
+        height: shape.height,
+        layers: shape.layers,
+        levels: shape.levels,
+        range: shape.format.range(),
+        channels: channels.iter().map(|&name| name.to_owned()).collect(),
+        metadata: file.pairs,
+    };
+    Ok(Decoded { image, info })
+}
+
+/// Reads a file that roughcast wrote: all layers with all their levels. Blocks are decompressed: BC4 and BC5 to 16-bit
+/// samples, BC7 to 8-bit ones.
+///
+/// # Errors
+/// [`ReadError`] where the file is broken, too large for `limits`, or not one of ours ([`ReadError::Info`]).
+pub fn read_textures(bytes: &[u8], limits: Limits) -> Result<TextureArray, ReadError> {
+    let file = Container::parse(bytes)?;
+    let info = TextureInfo::from_pairs(&file.pairs)?;
+    let (shape, format_name) = shape_of(&file, limits)?;
+    if !shape.is_of_a_payload() {
+        return Err(unsupported(format!("a baked texture in {format_name}"), "bake it anew"));
+    }
+    if !file.flips()?.is_empty() || file.swizzle(4)?.is_some() {
+        return Err(unsupported("a baked texture that was turned over or swizzled", "bake it anew"));
+    }
+    let mut levels = Vec::new();
+    for level in 0..shape.levels {
+        let (layer_bytes, level_bytes) = sizes(&shape, level)?;
+        levels.push((file.level(level, level_bytes)?, layer_bytes));
+    }
+    textures_from(CONTAINER, info, &shape, |layer, level| {
+        let (texels, layer_bytes) = &levels[level];
+        &texels[layer * layer_bytes..][..*layer_bytes]
+    })
+}
+
+fn shape_of(file: &Container<'_>, limits: Limits) -> Result<(Shape, &'static str), ReadError> {
+    let (format, name) = format::texel_format(file.vk_format)?;
+    let shape =
+        Shape { width: file.width, height: file.height, layers: file.layers, levels: file.levels(), format };
+    shape.check(CONTAINER, limits)?;
+    Ok((shape, name))
+}
+
+/// Bytes of one layer, and of all layers, of a level.
+fn sizes(shape: &Shape, level: usize) -> Result<(usize, usize), ReadError> {
+    shape
+        .layer_bytes(level)
+        .zip(shape.level_bytes(level))
+        .ok_or_else(|| malformed(format!("level {level} does not fit into memory")))
+}

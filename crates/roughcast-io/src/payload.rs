@@ -1,0 +1,226 @@
+//! What goes into a texture file, and its shape: the part that KTX2 and DDS have in common.
+
+use std::borrow::Cow;
+
+use roughcast::Image;
+use roughcast::texture::{Texture, TextureArray, TextureInfo};
+
+use crate::blocks::BlockArray;
+use crate::texels::{
+    BlockCode, Encoding, Order, Plain, TexelFormat, full_chain, level_side, little_endian_bytes,
+};
+use crate::{Limits, ReadError, WriteError};
+
+/// The texels to be written.
+#[derive(Clone, Copy, Debug)]
+pub enum Payload<'a> {
+    /// Texels as they are: 1, 2 or 4 channels of any sample type.
+    Texels(&'a TextureArray),
+    /// Compressed blocks.
+    Blocks(&'a BlockArray),
+}
+
+/// How the levels of a file are packed beyond the texel format. DDS knows none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Supercompression {
+    /// Not at all: a reader can hand the bytes to the graphics processor as they lie in the file.
+    #[default]
+    None,
+    /// Zstandard, each level as one frame.
+    Zstd,
+}
+
+/// Sizes and texel format of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Shape {
+    pub width: usize,
+    pub height: usize,
+    pub layers: usize,
+    pub levels: usize,
+    pub format: TexelFormat,
+}
+
+impl Shape {
+    /// Width and height of a level.
+    pub fn level_size(&self, level: usize) -> (usize, usize) {
+        (level_side(self.width, level), level_side(self.height, level))
+    }
+
+    /// Bytes of one layer of a level; `None` where the number does not fit.
+    pub fn layer_bytes(&self, level: usize) -> Option<usize> {
+        let (width, height) = self.level_size(level);
+        self.format.bytes(width, height)
+    }
+
+    /// Bytes of all layers of a level; `None` where the number does not fit.
+    pub fn level_bytes(&self, level: usize) -> Option<usize> {
+        self.layer_bytes(level)?.checked_mul(self.layers)
+    }
+
+    /// Refuses shapes that no file may have, or that hold more pixels than the caller allows.
+    pub fn check(&self, container: &'static str, limits: Limits) -> Result<(), ReadError> {
+        let (width, height) = (self.width as u64, self.height as u64);
+        if width == 0 || height == 0 {
+            let fault = format!("its size is {width}x{height}");
+            return Err(ReadError::Malformed { format: container, fault });
+        }
+        let pixels = width.checked_mul(height).and_then(|pixels| pixels.checked_mul(self.layers as u64));
+        if pixels.is_none_or(|pixels| pixels > limits.max_pixels) {
+            // Layers are counted as rows, so that the number in the message is the one that broke the limit.
+            let height = height.saturating_mul(self.layers as u64);
+            return Err(ReadError::TooLarge { width, height, max_pixels: limits.max_pixels });
+        }
+        if self.levels > full_chain(self.width, self.height) {
+            let fault = format!("{} levels are more than {width}x{height} texels can have", self.levels);
+            return Err(ReadError::Malformed { format: container, fault });
+        }
+        Ok(())
+    }
+
+    /// Whether [`Payload`]s of this format are written, and thus read back as textures.
+    pub fn is_of_a_payload(&self) -> bool {
+        match &self.format {
+            TexelFormat::Plain(plain) => {
+                let kept = !matches!(plain.encoding, Encoding::Snorm8 | Encoding::Snorm16);
+                kept && plain.order == Order::Rgba && matches!(plain.channels, 1 | 2 | 4)
+            }
+            TexelFormat::Packed(_) => false,
+            TexelFormat::Blocks(code) => {
+                matches!(code, BlockCode::Bc4 | BlockCode::Bc5 | BlockCode::Bc7)
+            }
+        }
+    }
+}
+
+impl Payload<'_> {
+    /// What the texels mean.
+    pub fn info(&self) -> &TextureInfo {
+        match self {
+            Payload::Texels(array) => &array.info,
+            Payload::Blocks(array) => &array.info,
+        }
+    }
+
+    /// The shape, once it is certain that every level has the size and the format that the shape says.
+    pub(crate) fn shape(&self, container: &'static str) -> Result<Shape, WriteError> {
+        let unsupported =
+            |what: String, mend: &'static str| WriteError::Unsupported { container, what, mend };
+        let shape = match self {
+            Payload::Texels(array) => shape_of_texels(array, &unsupported)?,
+            Payload::Blocks(array) => Shape {
+                width: array.width,
+                height: array.height,
+                layers: array.layers.len(),
+                levels: array.layers.first().map_or(0, |layer| layer.levels.len()),
+                format: TexelFormat::Blocks(array.format.code()),
+            },
+        };
+        let side_fits = |side: usize| (1..=i32::MAX as usize).contains(&side);
+        if !side_fits(shape.width) || !side_fits(shape.height) {
+            return Err(unsupported(format!("{}x{} texels", shape.width, shape.height), "scale it down"));
+        }
+        let chain = 1..=full_chain(shape.width, shape.height);
+        if shape.layers == 0 || !chain.contains(&shape.levels) {
+            let what = format!("{} layers of {} levels", shape.layers, shape.levels);
+            return Err(unsupported(what, "give every layer the same levels, each half of the one before"));
+        }
+        if !self.fits(&shape) {
+            let what = "layers or levels of different formats, or sizes that do not halve".to_owned();
+            return Err(unsupported(what, "give all layers the same format and the same sizes"));
+        }
+        Ok(shape)
+    }
+
+    fn fits(&self, shape: &Shape) -> bool {
+        let same = |level: usize, image: &Image| {
+            (image.width(), image.height()) == shape.level_size(level)
+                && TexelFormat::Plain(plain_of(image)) == shape.format
+        };
+        match self {
+            Payload::Texels(array) => array.layers.iter().all(|layer| {
+                layer.levels.len() == shape.levels && layer.levels.iter().enumerate().all(|(k, l)| same(k, l))
+            }),
+            Payload::Blocks(array) => array.layers.iter().all(|layer| {
+                let right = |(level, bytes): (usize, &Vec<u8>)| Some(bytes.len()) == shape.layer_bytes(level);
+                layer.levels.len() == shape.levels && layer.levels.iter().enumerate().all(right)
+            }),
+        }
+    }
+
+    /// The bytes of one layer of a level, as they go into the file.
+    pub(crate) fn bytes(&self, layer: usize, level: usize) -> Cow<'_, [u8]> {
+        match self {
+            Payload::Texels(array) => little_endian_bytes(array.layers[layer].levels[level].samples()),
+            Payload::Blocks(array) => Cow::Borrowed(&array.layers[layer].levels[level]),
+        }
+    }
+}
+
+fn plain_of(image: &Image) -> Plain {
+    let encoding = Encoding::of_samples(image.samples().sample_type());
+    Plain { channels: image.channels(), encoding, order: Order::Rgba }
+}
+
+fn shape_of_texels(
+    array: &TextureArray,
+    unsupported: &dyn Fn(String, &'static str) -> WriteError,
+) -> Result<Shape, WriteError> {
+    let Some(first) = array.layers.first().and_then(|layer| layer.levels.first()) else {
+        return Err(unsupported("a texture without texels".to_owned(), "bake at least one level"));
+    };
+    let channels = first.channels();
+    if channels == 3 {
+        let mend = "graphics processors seldom take 3 channels: choose a layout of 1, 2 or 4, or write EXR";
+        return Err(unsupported("3 channels".to_owned(), mend));
+    }
+    if channels > 4 {
+        return Err(unsupported(format!("{channels} channels"), "write EXR, or choose a layout of up to 4"));
+    }
+    Ok(Shape {
+        width: first.width(),
+        height: first.height(),
+        layers: array.layers.len(),
+        levels: array.layers[0].levels.len(),
+        format: TexelFormat::Plain(plain_of(first)),
+    })
+}
+
+/// Builds the textures of a file of ours; `bytes_of(layer, level)` has [`Shape::layer_bytes`] bytes.
+pub(crate) fn textures_from<'a>(
+    container: &'static str,
+    info: TextureInfo,
+    shape: &Shape,
+    bytes_of: impl Fn(usize, usize) -> &'a [u8],
+) -> Result<TextureArray, ReadError> {
+    let specs = layer_specs(container, &info, shape)?;
+    let layers = specs.into_iter().enumerate().map(|(layer, (name, channels))| {
+        let levels = (0..shape.levels).map(|level| {
+            let (width, height) = shape.level_size(level);
+            shape.format.decode(bytes_of(layer, level), width, height)
+        });
+        Texture { name, channels, levels: levels.collect() }
+    });
+    Ok(TextureArray { info, layers: layers.collect() })
+}
+
+type LayerSpec = (&'static str, Vec<&'static str>);
+
+/// Names of the layers and of their channels.
+///
+/// MERGE: take them from `roughcast::texture::layers_of(info)` where its numbers of layers and of channels are those of
+/// the file. Otherwise layers are numbered and channels are called R, G, B, A; the layout's decoder will say what it
+/// misses.
+fn layer_specs(
+    container: &'static str,
+    _info: &TextureInfo,
+    shape: &Shape,
+) -> Result<Vec<LayerSpec>, ReadError> {
+    const NUMBERED: [&str; 8] =
+        ["layer0", "layer1", "layer2", "layer3", "layer4", "layer5", "layer6", "layer7"];
+    if shape.layers > NUMBERED.len() {
+        let fault = format!("{} layers are more than any layout has", shape.layers);
+        return Err(ReadError::Malformed { format: container, fault });
+    }
+    let channels = shape.format.channel_names();
+    Ok(NUMBERED[..shape.layers].iter().map(|&name| (name, channels.to_vec())).collect())
+}

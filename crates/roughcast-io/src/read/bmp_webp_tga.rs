@@ -1,0 +1,105 @@
+//! The 8-bit formats that the `image` crate reads: BMP, WebP and TGA.
+
+use std::error::Error as _;
+use std::io::Cursor;
+
+use image::codecs::{bmp::BmpDecoder, tga::TgaDecoder, webp::WebPDecoder};
+use image::error::UnsupportedErrorKind;
+use image::{ColorType, ImageDecoder, ImageError};
+use roughcast::{Image, Samples};
+
+use super::memory::{check_size, malformed, unsupported, zeros};
+use crate::{Decoded, FileInfo, Limits, ReadError, ValueRange};
+
+/// Memory that a decoder may use beside the image, per pixel: a frame of RGBA and one of indices.
+const WORKING_BYTES_PER_PIXEL: u64 = 16;
+/// Memory that a decoder may use beside that: tables and single rows.
+const WORKING_BYTES: u64 = 64 << 20;
+
+/// Reads a BMP: RGB, or RGBA where it has an alpha channel. Palettes become RGB.
+pub(super) fn read_bmp(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
+    decode("BMP", BmpDecoder::new(Cursor::new(bytes)).map_err(|e| fault("BMP", e))?, limits)
+}
+
+/// Reads a WebP: RGB, or RGBA where it has an alpha channel. Animations are refused.
+pub(super) fn read_webp(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
+    let decoder = WebPDecoder::new(Cursor::new(bytes)).map_err(|e| fault("WebP", e))?;
+    if decoder.has_animation() {
+        return Err(unsupported("WebP", "an animation", "save the frame that is meant as a PNG"));
+    }
+    decode("WebP", decoder, limits)
+}
+
+/// Reads a TGA: grey, grey and alpha, RGB or RGBA. Palettes become RGB or RGBA, five bits become eight.
+pub(super) fn read_tga(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
+    // A format without a signature: what its header says is the only sign that this is one.
+    const IMAGE_TYPE_OFFSET: usize = 2;
+    const IMAGE_TYPES: [u8; 6] = [1, 2, 3, 9, 10, 11];
+    match bytes.get(IMAGE_TYPE_OFFSET) {
+        Some(image_type) if IMAGE_TYPES.contains(image_type) => {}
+        Some(image_type) => {
+            return Err(malformed("TGA", format_args!("there is no image type {image_type}")));
+        }
+        None => return Err(malformed("TGA", "the file ends too early")),
+    }
+    decode("TGA", TgaDecoder::new(Cursor::new(bytes)).map_err(|e| fault("TGA", e))?, limits)
+}
+
+fn decode(
+    format: &'static str,
+    mut decoder: impl ImageDecoder,
+    limits: &Limits,
+) -> Result<Decoded, ReadError> {
+    let (width, height) = decoder.dimensions();
+    let (width, height) = check_size(format, width.into(), height.into(), limits)?;
+    let mut decoder_limits = image::Limits::no_limits();
+    decoder_limits.max_alloc = Some(WORKING_BYTES + WORKING_BYTES_PER_PIXEL * (width * height) as u64);
+    decoder.set_limits(decoder_limits).map_err(|e| fault(format, e))?;
+
+    let (channels, words): (&[&str], _) = match decoder.color_type() {
+        ColorType::L8 => (&["Y"], "grey 8-bit"),
+        ColorType::La8 => (&["Y", "A"], "grey and alpha 8-bit"),
+        ColorType::Rgb8 => (&["R", "G", "B"], "RGB 8-bit"),
+        ColorType::Rgba8 => (&["R", "G", "B", "A"], "RGBA 8-bit"),
+        other => return Err(unsupported(format, format_args!("{other:?}"), "save it as PNG")),
+    };
+    let mut samples = zeros::<u8>(width * height * channels.len())?;
+    decoder.read_image(&mut samples).map_err(|e| fault(format, e))?;
+    let image =
+        Image::new(width, height, channels.len(), Samples::U8(samples)).map_err(|e| malformed(format, e))?;
+    let info = FileInfo {
+        container: format,
+        format: words.to_owned(),
+        width,
+        height,
+        layers: 1,
+        levels: 1,
+        range: ValueRange::Unorm,
+        channels: channels.iter().map(|&name| name.to_owned()).collect(),
+        metadata: Default::default(),
+    };
+    Ok(Decoded { image, info })
+}
+
+fn fault(format: &'static str, error: ImageError) -> ReadError {
+    const SAVE_AS_PNG: &str = "save it as PNG";
+    match error {
+        ImageError::Unsupported(error) => match error.kind() {
+            UnsupportedErrorKind::Color(color) => {
+                unsupported(format, format_args!("the colour type {color:?}"), SAVE_AS_PNG)
+            }
+            UnsupportedErrorKind::GenericFeature(feature) => unsupported(format, feature, SAVE_AS_PNG),
+            _ => unsupported(format, error, SAVE_AS_PNG),
+        },
+        ImageError::Limits(_) => malformed(format, "it needs more memory than its size allows"),
+        ImageError::IoError(e) if e.kind() == std::io::ErrorKind::UnexpectedEof => {
+            malformed(format, "the file ends too early")
+        }
+        // What the decoder says, without the words by which the crate introduces it.
+        ImageError::Decoding(error) => match error.source() {
+            Some(source) => malformed(format, source),
+            None => malformed(format, error),
+        },
+        error => malformed(format, error),
+    }
+}

@@ -1,0 +1,151 @@
+//! OpenEXR: scan lines and tiles, level 0 of mip and rip maps, the first flat part of several.
+//!
+//! The `exr` crate reads the header and undoes the compression. The way from one to the other, that is, which block
+//! lies where in the file and where its rows belong in the image, is taken here, since the crate's own way allocates by
+//! what the file states before it has looked whether the bytes are there. See [`blocks`].
+
+mod blocks;
+mod channels;
+mod dwa;
+
+use std::collections::BTreeMap;
+use std::io::Cursor;
+
+use exr::compression::Compression;
+use exr::meta::attribute::{AttributeValue, LevelMode, Text};
+use exr::meta::header::Header;
+use exr::meta::{BlockDescription, MetaData, compute_level_count};
+use roughcast::{Image, SampleType, Samples};
+
+use self::channels::Selection;
+use super::memory::{check_size, malformed, unsupported, zeros};
+use super::metadata::insert;
+use crate::{Decoded, FileInfo, Limits, ReadError, ValueRange};
+
+const FORMAT: &str = "EXR";
+/// The compressions numbered 10 and above came after those that are read here.
+const FIRST_UNKNOWN_COMPRESSION: u8 = 10;
+const SAVE_AS_ZIP: &str = "save it with ZIP compression";
+
+/// Reads the first flat part of an EXR: the pixels of its data window, at level 0.
+///
+/// Channels come in the order that [`channels::select`] gives; halves stay halves unless a channel beside them is a
+/// float. Unsigned integers are refused, for they name objects, and a float would round them. Text attributes become
+/// metadata. `FileInfo::levels` of a rip map counts the levels along its longer side.
+pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
+    let mut input = Cursor::new(bytes);
+    let meta = MetaData::read_from_buffered(&mut input, false).map_err(|e| header_fault(bytes, e))?;
+    let tables_start = input.position();
+    let part = meta
+        .headers
+        .iter()
+        .position(|header| !header.deep)
+        .ok_or_else(|| unsupported(FORMAT, "deep data", "flatten it first"))?;
+    let header = &meta.headers[part];
+    let (width, height) =
+        check_size(FORMAT, header.layer_size.width() as u64, header.layer_size.height() as u64, limits)?;
+    if matches!(header.compression, Compression::HTJ2K32 | Compression::HTJ2K256) {
+        return Err(unsupported(FORMAT, "HTJ2K compression", SAVE_AS_ZIP));
+    }
+    let selection = channels::select(&header.channels)?;
+    let source = blocks::Source::locate(bytes, tables_start, &meta, part)?;
+
+    let len = width * height * selection.channels.len();
+    let samples = match selection.sample_type {
+        SampleType::F16 => {
+            let mut samples = zeros(len)?;
+            source.read_into(&selection, &mut samples)?;
+            Samples::F16(samples)
+        }
+        _ => {
+            let mut samples = zeros(len)?;
+            source.read_into(&selection, &mut samples)?;
+            Samples::F32(samples)
+        }
+    };
+    let channels = selection.channels.len();
+    let image = Image::new(width, height, channels, samples).map_err(|e| malformed(FORMAT, e))?;
+    Ok(Decoded { info: file_info(header, &selection, (width, height)), image })
+}
+
+fn file_info(header: &Header, selection: &Selection, (width, height): (usize, usize)) -> FileInfo {
+    let names: Vec<String> = selection.channels.iter().map(|channel| channel.name.clone()).collect();
+    let sample = if selection.sample_type == SampleType::F16 { "half" } else { "float" };
+    let layer = selection.layer.as_ref().map(|layer| format!(" of layer {layer}")).unwrap_or_default();
+    FileInfo {
+        container: FORMAT,
+        format: format!("{sample} {}{layer}, {}", names.join(", "), header.compression),
+        width,
+        height,
+        layers: 1,
+        levels: level_count(header),
+        range: ValueRange::Float,
+        channels: names,
+        metadata: text_pairs(header),
+    }
+}
+
+fn level_count(header: &Header) -> usize {
+    match header.blocks {
+        BlockDescription::Tiles(tiles) if tiles.level_mode != LevelMode::Singular => {
+            let longer_side = header.layer_size.width().max(header.layer_size.height());
+            compute_level_count(tiles.rounding_mode, longer_side)
+        }
+        _ => 1,
+    }
+}
+
+/// The attributes that hold text, under the names that they have in the file.
+fn text_pairs(header: &Header) -> BTreeMap<String, String> {
+    let own = &header.own_attributes;
+    let standard: [(&str, &Option<Text>); 8] = [
+        ("name", &own.layer_name),
+        ("view", &own.view_name),
+        ("owner", &own.owner),
+        ("comments", &own.comments),
+        ("capDate", &own.capture_date),
+        ("wrapmodes", &own.wrap_mode_name),
+        ("software", &own.software_name),
+        ("renderingTransform", &own.rendering_transform_name),
+    ];
+    let mut pairs = BTreeMap::new();
+    for (key, value) in standard {
+        if let Some(value) = value {
+            insert(&mut pairs, key, &text(value));
+        }
+    }
+    for (key, value) in &own.other {
+        if let AttributeValue::Text(value) = value {
+            insert(&mut pairs, &text(key), &text(value));
+        }
+    }
+    pairs
+}
+
+/// The crate gives each byte as the character of that number; the files hold UTF-8.
+fn text(value: &Text) -> String {
+    String::from_utf8_lossy(value.as_slice()).into_owned()
+}
+
+/// Why the header could not be read. The crate skips an attribute that it does not understand and then misses it: of a
+/// compression that is too new it only says that there is none.
+fn header_fault(bytes: &[u8], error: exr::error::Error) -> ReadError {
+    const COMPRESSION_ATTRIBUTE: &[u8] = b"compression\0compression\0\x01\0\0\0";
+    let end = bytes.windows(COMPRESSION_ATTRIBUTE.len()).position(|window| window == COMPRESSION_ATTRIBUTE);
+    let number = end.and_then(|start| bytes.get(start + COMPRESSION_ATTRIBUTE.len()));
+    match (number, error) {
+        (Some(&number), _) if number >= FIRST_UNKNOWN_COMPRESSION => {
+            unsupported(FORMAT, format_args!("the compression of number {number}"), SAVE_AS_ZIP)
+        }
+        (_, error) => fault(error),
+    }
+}
+
+fn fault(error: exr::error::Error) -> ReadError {
+    use exr::error::Error;
+    match error {
+        Error::NotSupported(what) => unsupported(FORMAT, what, SAVE_AS_ZIP),
+        Error::Invalid(what) => malformed(FORMAT, what),
+        error => malformed(FORMAT, error),
+    }
+}

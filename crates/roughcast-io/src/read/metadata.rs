@@ -1,0 +1,37 @@
+//! The pairs of text that files keep beside the pixels, in bounded number and size.
+
+use std::collections::BTreeMap;
+
+/// Pairs that are kept of one file. A texture of ours has about twenty.
+const MAX_PAIRS: usize = 256;
+/// Longest key kept, in bytes: EXR allows 255, PNG 79.
+const MAX_KEY_BYTES: usize = 255;
+/// Longest value kept, in bytes. Whole XMP packets and thumbnails are not what these pairs are for.
+pub(super) const MAX_VALUE_BYTES: usize = 16 << 10;
+
+/// Adds a pair, unless the bounds are reached. A value that is too long is left out, for half of it would be a lie.
+/// The first of two values under one key stays.
+pub(super) fn insert(pairs: &mut BTreeMap<String, String>, key: &str, value: &str) {
+    let fits = pairs.len() < MAX_PAIRS && key.len() <= MAX_KEY_BYTES && value.len() <= MAX_VALUE_BYTES;
+    if fits && !key.is_empty() {
+        pairs.entry(key.to_owned()).or_insert_with(|| value.to_owned());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn number_and_size_are_bounded() {
+        let mut pairs = BTreeMap::new();
+        insert(&mut pairs, "long", &"x".repeat(MAX_VALUE_BYTES + 1));
+        insert(&mut pairs, "", "no key");
+        assert!(pairs.is_empty());
+        insert(&mut pairs, "key", "first");
+        insert(&mut pairs, "key", "second");
+        assert_eq!(pairs["key"], "first");
+        (0..1000).for_each(|i| insert(&mut pairs, &format!("key {i}"), ""));
+        assert_eq!(pairs.len(), MAX_PAIRS);
+    }
+}

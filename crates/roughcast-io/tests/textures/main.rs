@@ -1,0 +1,9 @@
+//! KTX2, DDS and block compression, held against real files and independent readers.
+
+mod blocks;
+mod broken;
+mod foreign_files;
+mod ktx2_reader;
+mod round_trip;
+mod same_picture;
+mod support;

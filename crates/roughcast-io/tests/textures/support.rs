@@ -1,0 +1,155 @@
+//! What several of these tests need.
+
+use std::path::PathBuf;
+
+use half::f16;
+use roughcast::texture::{Layout, Part, Texture, TextureArray, TextureInfo};
+use roughcast::{Image, SampleType, Samples};
+use roughcast_io::{Decoded, Limits, Payload, ReadError, Supercompression};
+
+/// The folder of real files. Its absence is a failure, not a reason to skip.
+pub fn data_folder() -> PathBuf {
+    let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"));
+    assert!(
+        folder.join("MANIFEST.tsv").is_file(),
+        "the test files are missing: no {}/MANIFEST.tsv",
+        folder.display()
+    );
+    folder
+}
+
+pub fn bytes_of(path: &str) -> Vec<u8> {
+    let path = data_folder().join(path);
+    std::fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// Names of the files of a folder, sorted; at least one.
+pub fn names_in(folder: &str) -> Vec<String> {
+    let path = data_folder().join(folder);
+    let entries = std::fs::read_dir(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let name = |entry: std::io::Result<std::fs::DirEntry>| entry.unwrap().file_name().into_string().unwrap();
+    let mut names: Vec<String> = entries.map(name).collect();
+    names.sort();
+    assert!(!names.is_empty(), "{} is empty", path.display());
+    names
+}
+
+/// Reads by extension.
+pub fn read_image(path: &str) -> Result<Decoded, ReadError> {
+    let bytes = bytes_of(path);
+    if path.to_lowercase().ends_with(".dds") {
+        roughcast_io::dds::read_image(&bytes, Limits::default())
+    } else {
+        roughcast_io::ktx2::read_image(&bytes, Limits::default())
+    }
+}
+
+pub fn decoded(path: &str) -> Decoded {
+    read_image(path).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+/// The same numbers on every machine (Marsaglia's xorshift).
+pub struct Random(u64);
+
+impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
+    }
+
+    pub fn next(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0 >> 11
+    }
+}
+
+/// Samples of arbitrary bits: floats hold NaNs, infinities and subnormals, too.
+fn noise(random: &mut Random, sample_type: SampleType, len: usize) -> Samples {
+    let bits = (0..len).map(|_| random.next() as u32);
+    match sample_type {
+        SampleType::U8 => Samples::U8(bits.map(|b| b as u8).collect()),
+        SampleType::U16 => Samples::U16(bits.map(|b| b as u16).collect()),
+        SampleType::F16 => Samples::F16(bits.map(|b| f16::from_bits(b as u16)).collect()),
+        SampleType::F32 => Samples::F32(bits.map(f32::from_bits).collect()),
+    }
+}
+
+/// A texture of noise with all levels down to 1 x 1.
+pub fn noise_texture(
+    random: &mut Random,
+    sample_type: SampleType,
+    channels: usize,
+    (width, height): (usize, usize),
+) -> Texture {
+    let levels = (0..=width.max(height).ilog2()).map(|level| {
+        let (width, height) = ((width >> level).max(1), (height >> level).max(1));
+        let samples = noise(random, sample_type, width * height * channels);
+        Image::new(width, height, channels, samples).unwrap()
+    });
+    Texture { name: "noise", channels: vec!["c"; channels], levels: levels.collect() }
+}
+
+pub fn noise_array(
+    sample_type: SampleType,
+    channels: usize,
+    size: (usize, usize),
+    layers: usize,
+) -> TextureArray {
+    let mut random = Random::new((size.0 * 1000 + size.1 * 10 + layers) as u64);
+    TextureArray {
+        info: TextureInfo {
+            scale: 1.25,
+            base_variance: 1.0 / 3.0,
+            ..TextureInfo::new(Layout::Lean, Part::Whole)
+        },
+        layers: (0..layers).map(|_| noise_texture(&mut random, sample_type, channels, size)).collect(),
+    }
+}
+
+pub fn ktx2_bytes(payload: Payload<'_>, supercompression: Supercompression) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    roughcast_io::ktx2::write(payload, supercompression, &mut bytes).unwrap();
+    bytes
+}
+
+pub fn dds_bytes(payload: Payload<'_>) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    roughcast_io::dds::write(payload, &mut bytes).unwrap();
+    bytes
+}
+
+/// Equal info, sizes and bits. Names are not compared: they come from the layout, and the noise has none.
+pub fn assert_same_texels(got: &TextureArray, wanted: &TextureArray, what: &str) {
+    assert_eq!(got.info, wanted.info, "{what}");
+    assert_eq!(got.layers.len(), wanted.layers.len(), "{what}: layers");
+    for (got, wanted) in got.layers.iter().zip(&wanted.layers) {
+        assert_eq!(got.channels.len(), wanted.channels.len(), "{what}: channels");
+        assert_eq!(got.levels.len(), wanted.levels.len(), "{what}: levels");
+        for (level, (got, wanted)) in got.levels.iter().zip(&wanted.levels).enumerate() {
+            let size = |image: &Image| (image.width(), image.height(), image.channels());
+            assert_eq!(size(got), size(wanted), "{what}: level {level}");
+            assert!(bits(got.samples()) == bits(wanted.samples()), "{what}: level {level} differs");
+        }
+    }
+}
+
+/// NaN is not equal to itself, its bits are.
+fn bits(samples: &Samples) -> (SampleType, Vec<u32>) {
+    let bits = match samples {
+        Samples::U8(v) => v.iter().map(|&s| u32::from(s)).collect(),
+        Samples::U16(v) => v.iter().map(|&s| u32::from(s)).collect(),
+        Samples::F16(v) => v.iter().map(|s| u32::from(s.to_bits())).collect(),
+        Samples::F32(v) => v.iter().map(|s| s.to_bits()).collect(),
+    };
+    (samples.sample_type(), bits)
+}
+
+/// The picture as floats in 0 ..= 1, `channels` a texel.
+pub fn floats(image: &Image, channels: usize) -> Vec<f32> {
+    let texels = image.width() * image.height();
+    let of_texel = |texel: usize| {
+        (0..channels).map(move |channel| image.samples().get(texel * image.channels() + channel))
+    };
+    (0..texels).flat_map(of_texel).collect()
+}

@@ -1,0 +1,148 @@
+//! Guesses how normals are stored: which components, and in which range.
+
+use super::green::{GreenVerdict, test_green};
+use super::sample::{quantile, share, texels};
+use super::vectors::{MAX_MEAN_TILT, MAX_XY_LENGTH, UNIT, decoded, length, mean_xy};
+use crate::{Image, NormalChannels, NormalRange, Samples};
+
+/// A blue whose z varies by less than this, but for 1 % at each end, is constant: 8 of 255 steps, since a
+/// JPEG mixes red and green into a constant blue.
+const CONSTANT_BLUE: f32 = 16.0 / 255.0;
+
+/// Constant blues that stand for no z: nothing, the middle, or everything stored.
+const VOID_BLUES: [f32; 3] = [-1.0, 0.0, 1.0];
+
+/// A z further than this from that of x and y is another vector's.
+const WRONG_Z: f32 = 0.1;
+
+/// A constant blue is no z if this share of the texels has the wrong z. One real map has, its blue being 255.
+const WRONG_Z_SHARE: f64 = 0.01;
+
+/// Texels with z below this, but not quite at the horizon, tell how blue stands for z: where z is near 1, all
+/// ways agree.
+const TILTED: std::ops::Range<f32> = 0.15..0.9;
+
+/// Fewest texels of a map that must be tilted, as a share.
+const TILTED_SHARE: f64 = 0.01;
+
+/// Blue is z itself if the median difference of the two is below this. The real map where it is has 0.004,
+/// the smallest of the others 0.03.
+const PLAIN_Z_ERROR: f32 = 0.012;
+
+/// Share of the texels whose x and y must be those of a normal.
+const NEARLY_ALL: f64 = 0.99;
+
+/// A negative value below this is more than the rounding of a zero.
+const NEGATIVE: f32 = -1.0 / 255.0;
+
+/// A larger share of texels with a negative value means a signed map; a smaller one the overshoot of a
+/// resampling filter.
+const NEGATIVE_SHARE: f64 = 0.01;
+
+/// Slopes are taken from normals with z no smaller than this: the test of slopes cuts long ones anyway.
+const MIN_Z: f32 = 0.01;
+
+/// Side of the square, in texels, that is cut from the middle of a map to see whether it holds slopes.
+const CURL_CROP: usize = 1024;
+
+/// Which components the colour channels of a normal map hold, and by which it should thus be read.
+///
+/// One or two channels hold x and y. So do three whose blue is not z with scale and bias, as that of x and y
+/// is: maps exist with a blue that is constant (0, 128 or 255), and with z itself over 0 ..= 1.
+///
+/// `channels` and `range` as for [`crate::detect::guess_kind`].
+pub fn guess_components(image: &Image, channels: &[impl AsRef<str>], range: NormalRange) -> NormalChannels {
+    match *colour_channels(image, channels) {
+        [r, g, b, ..] => match guess_blue(&decoded(texels(image, [r, g, b]), range), range) {
+            Blue::Other => NormalChannels::Xyz,
+            Blue::Void | Blue::PlainZ => NormalChannels::Xy,
+        },
+        _ => NormalChannels::Xy,
+    }
+}
+
+/// Whether the components of the normals of a map are stored as they are or with scale and bias.
+///
+/// For images whose file does not say. Integers always have scale and bias; of floats, negative values tell
+/// and, of maps without any, the reading under which more vectors have unit length.
+pub fn guess_range(image: &Image) -> NormalRange {
+    if matches!(image.samples(), Samples::U8(_) | Samples::U16(_)) {
+        return NormalRange::Unorm;
+    }
+    if image.channels() < 3 {
+        let stored = texels(image, [0, image.channels() - 1]);
+        let signed = share(&stored, |[x, y]| x.min(y) < NEGATIVE) > NEGATIVE_SHARE;
+        return if signed { NormalRange::Signed } else { NormalRange::Unorm };
+    }
+    let stored = texels(image, [0, 1, 2]);
+    if share(&stored, |[x, y, z]| x.min(y).min(z) < NEGATIVE) > NEGATIVE_SHARE {
+        return NormalRange::Signed;
+    }
+    let unit_share = |range: NormalRange| {
+        share(&stored, |texel| UNIT.contains(&length(texel.map(|value| range.component_from_stored(value)))))
+    };
+    if unit_share(NormalRange::Signed) > unit_share(NormalRange::Unorm) {
+        NormalRange::Signed
+    } else {
+        NormalRange::Unorm
+    }
+}
+
+/// Indices of the channels that are no alpha.
+pub(super) fn colour_channels(image: &Image, channels: &[impl AsRef<str>]) -> Vec<usize> {
+    let is_alpha = |name: &str| name == "A" || name.ends_with(".A");
+    (0..image.channels()).filter(|&i| !channels.get(i).is_some_and(|name| is_alpha(name.as_ref()))).collect()
+}
+
+/// What the blue of three channels is, beside the usual: z with scale and bias, or a colour of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Blue {
+    /// A constant that is no z, while red and green can be x and y.
+    Void,
+    /// z as it is, over 0 ..= 1, where red and green have scale and bias.
+    PlainZ,
+    /// Anything else.
+    Other,
+}
+
+/// What blue is, judged by the components that follow from the `range`.
+pub(super) fn guess_blue(vectors: &[[f32; 3]], range: NormalRange) -> Blue {
+    let in_disc = share(vectors, |[x, y, _]| length([x, y]) <= MAX_XY_LENGTH);
+    if in_disc < NEARLY_ALL || length(mean_xy(vectors)) > MAX_MEAN_TILT {
+        return Blue::Other;
+    }
+    let mut blues: Vec<f32> = vectors.iter().map(|v| v[2]).collect();
+    let (low, high) = (quantile(&mut blues, 0.01), quantile(&mut blues, 0.99));
+    if high - low <= CONSTANT_BLUE {
+        let is_void =
+            VOID_BLUES.iter().any(|blue| (low - CONSTANT_BLUE..=high + CONSTANT_BLUE).contains(blue));
+        let wrong = share(vectors, |[x, y, z]| (z - z_from_xy(x, y)).abs() > WRONG_Z);
+        return if is_void && wrong > WRONG_Z_SHARE { Blue::Void } else { Blue::Other };
+    }
+    let tilted = vectors.iter().filter(|[x, y, _]| TILTED.contains(&z_from_xy(*x, *y)));
+    let mut errors: Vec<f32> = tilted.map(|&[x, y, z]| ((z + 1.0) / 2.0 - z_from_xy(x, y)).abs()).collect();
+    let tilted_share = errors.len() as f64 / vectors.len() as f64;
+    let is_plain = tilted_share >= TILTED_SHARE && quantile(&mut errors, 0.5) <= PLAIN_Z_ERROR;
+    if range == NormalRange::Unorm && is_plain { Blue::PlainZ } else { Blue::Other }
+}
+
+fn z_from_xy(x: f32, y: f32) -> f32 {
+    (1.0 - x * x - y * y).max(0.0).sqrt()
+}
+
+/// Whether two channels, as x and y of normals, are the slopes of a surface, green up or down: what two
+/// channels of an arbitrary picture are not. Looks at the middle of the map only.
+pub(super) fn looks_like_slopes(image: &Image, channels: [usize; 2], range: NormalRange) -> bool {
+    let (width, height) = (image.width().min(CURL_CROP), image.height().min(CURL_CROP));
+    let (left, top) = ((image.width() - width) / 2, (image.height() - height) / 2);
+    let (mut bx, mut by) = (Vec::with_capacity(width * height), Vec::with_capacity(width * height));
+    for y in top..top + height {
+        for x in left..left + width {
+            let normal = channels.map(|channel| range.component_from_stored(image.get(x, y, channel)));
+            let z = z_from_xy(normal[0], normal[1]).max(MIN_Z);
+            bx.push(normal[0] / z);
+            by.push(normal[1] / z);
+        }
+    }
+    test_green(&bx, &by, width, height).is_some_and(|test| test.verdict() != GreenVerdict::Undecided)
+}

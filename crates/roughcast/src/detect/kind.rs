@@ -1,0 +1,185 @@
+//! Guesses from channels and texels whether a map holds normals or heights.
+
+use super::components::{Blue, colour_channels, guess_blue, looks_like_slopes};
+use super::sample::{quantile, share, spread, texels};
+use super::vectors::{MAX_MEAN_TILT, MAX_XY_LENGTH, UNIT, decoded, length, mean_xy};
+use crate::{Image, Kind, NormalRange};
+
+/// Stored values closer than this, of a full scale of 1, are equal but for rounding and lossy compression:
+/// two 8-bit steps, and a little room for the rounding of the comparison.
+const SAME: f32 = 2.1 / 255.0;
+
+/// In a grey picture fewer than 1 texel in 1000 has channels further apart than this, of a full scale of 1.
+/// Of the real grey maps 1 in 1000 reaches 5/255 at most; of the greyest coloured albedo 19 in 1000 exceed
+/// 10/255.
+const GREY_SPREAD: f32 = 10.0 / 255.0;
+const GREY_QUANTILE: f64 = 0.999;
+
+/// Largest mean spread of a grey picture over its mean brightness, 0.07 for the real grey maps. The spread
+/// itself is small in dark pictures, too.
+const GREY_SATURATION: f64 = 0.15;
+
+/// Of float images the full scale is the value that this share of the texels does not exceed.
+const FULL_SCALE_QUANTILE: f64 = 0.99;
+
+/// Lengths that are called near 1. Some real maps were filtered without renormalising (3 % of the vectors of
+/// one are shorter than 0.5), some went through lossy compression (1 % of another are longer than 1.23).
+const NEAR_UNIT: std::ops::RangeInclusive<f32> = 0.5..=1.3;
+
+/// The share of texels that must be as they should. The real normal maps have at least 0.95 near unit length
+/// and outward, albedo at most 0.56, other pictures at most 0.85 (a mask, whose colour is far from upright).
+const MOST: f64 = 0.9;
+
+/// Share of the texels of a two-channel map that must be normals. Backgrounds are often stored as (0, 0),
+/// which is (-1, -1): 40 % of the texels of a real map.
+const SHARE_OF_TWO: f64 = 0.5;
+
+const NOTHING_FINITE: &str = "none of its values is finite";
+
+/// What [`guess_kind`] makes of a map.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum KindGuess {
+    /// It is this.
+    Certain(Kind),
+    /// It may be neither: the user has to say.
+    Doubtful {
+        /// What was seen, in one short clause: `it has 6 channels beside alpha`.
+        reason: String,
+    },
+}
+
+impl KindGuess {
+    fn doubtful(reason: impl Into<String>) -> Self {
+        KindGuess::Doubtful { reason: reason.into() }
+    }
+}
+
+/// Whether a map holds normals or heights.
+///
+/// `channels` names each channel of the image, in order; an alpha (`A`, or a name that ends in `.A`) does not
+/// count. `range` is how the components of normals are stored: ask [`crate::detect::guess_range`] where the
+/// file does not say.
+///
+/// One channel is a height, two are a normal's x and y. Three are judged by what is in them: grey is a
+/// height, vectors of about unit length that point out of the surface are normals. Maps of roughness or
+/// occlusion are grey, too, and are taken for heights: no pixel tells the difference.
+pub fn guess_kind(image: &Image, channels: &[impl AsRef<str>], range: NormalRange) -> KindGuess {
+    match *colour_channels(image, channels) {
+        [_] => KindGuess::Certain(Kind::Height),
+        [x, y] => guess_two(&decoded(texels(image, [x, y]), range)),
+        [r, g, b] if x_is_in_alpha(image, [r, g, b]) => {
+            KindGuess::doubtful("only green and alpha vary, like those of a normal map with x in alpha")
+        }
+        [r, g, b] => guess_three(image, [r, g, b], range),
+        ref others => KindGuess::doubtful(format!("it has {} channels beside alpha", others.len())),
+    }
+}
+
+/// Whether red and blue are constant while green and the channel beside the three vary: x in alpha, y in
+/// green, which block compression (BC3) stores best.
+fn x_is_in_alpha(image: &Image, [r, g, b]: [usize; 3]) -> bool {
+    let Some(alpha) = (0..image.channels()).find(|channel| ![r, g, b].contains(channel)) else {
+        return false;
+    };
+    let stored = texels(image, [r, g, b, alpha]);
+    let varies = |index: usize| spread(stored.iter().map(|texel| texel[index])) > SAME;
+    !varies(0) && varies(1) && !varies(2) && varies(3)
+}
+
+fn guess_two(vectors: &[[f32; 2]]) -> KindGuess {
+    if vectors.is_empty() {
+        return KindGuess::doubtful(NOTHING_FINITE);
+    }
+    let inside = share(vectors, |xy| length(xy) <= MAX_XY_LENGTH);
+    if inside >= SHARE_OF_TWO {
+        return KindGuess::Certain(Kind::Normal);
+    }
+    let inside = percent(inside);
+    KindGuess::doubtful(format!(
+        "it has two channels, but x^2 + y^2 is at most 1 in only {inside} of its texels"
+    ))
+}
+
+fn guess_three(image: &Image, channels: [usize; 3], range: NormalRange) -> KindGuess {
+    let stored = texels(image, channels);
+    if stored.is_empty() {
+        return KindGuess::doubtful(NOTHING_FINITE);
+    }
+    let scale = full_scale(image, &stored);
+    if [0, 1, 2].iter().all(|&c| spread(stored.iter().map(|texel| texel[c])) <= SAME * scale) {
+        return guess_constant(stored[0], scale, range);
+    }
+    let vectors = decoded(stored.clone(), range);
+    match guess_blue(&vectors, range) {
+        Blue::PlainZ => KindGuess::Certain(Kind::Normal),
+        Blue::Void if looks_like_slopes(image, [channels[0], channels[1]], range) => {
+            KindGuess::Certain(Kind::Normal)
+        }
+        Blue::Void => {
+            KindGuess::doubtful("its blue is constant, and red and green are not the slopes of a surface")
+        }
+        Blue::Other if is_grey(&stored, scale) => KindGuess::Certain(Kind::Height),
+        Blue::Other => guess_vectors(&vectors),
+    }
+}
+
+/// The stored value that stands for white: 1 for integers, some large value found for floats.
+fn full_scale(image: &Image, stored: &[[f32; 3]]) -> f32 {
+    if !image.samples().sample_type().is_float() {
+        return 1.0;
+    }
+    let mut sizes: Vec<f32> =
+        stored.iter().map(|texel| texel.iter().fold(0.0, |a, c| c.abs().max(a))).collect();
+    let scale = quantile(&mut sizes, FULL_SCALE_QUANTILE);
+    if scale > 0.0 { scale } else { 1.0 }
+}
+
+fn guess_constant(stored: [f32; 3], scale: f32, range: NormalRange) -> KindGuess {
+    let [x, y, z] = stored.map(|value| range.component_from_stored(value));
+    // A step of the stored value is two of the component.
+    if x.abs() <= 2.0 * SAME && y.abs() <= 2.0 * SAME && UNIT.contains(&z) {
+        return KindGuess::Certain(Kind::Normal);
+    }
+    if spread(stored) <= SAME * scale {
+        return KindGuess::Certain(Kind::Height);
+    }
+    let [r, g, b] = stored;
+    KindGuess::doubtful(format!("all of it is one colour, ({r:.2}, {g:.2}, {b:.2}), which is no flat normal"))
+}
+
+fn is_grey(stored: &[[f32; 3]], scale: f32) -> bool {
+    let mut spreads: Vec<f32> = stored.iter().map(|texel| spread(*texel)).collect();
+    // Sums, both over the same texels.
+    let total_spread: f64 = spreads.iter().copied().map(f64::from).sum();
+    let brightness: f64 = stored.iter().flatten().map(|value| f64::from(value.abs()) / 3.0).sum();
+    total_spread <= GREY_SATURATION * brightness
+        && quantile(&mut spreads, GREY_QUANTILE) <= GREY_SPREAD * scale
+}
+
+/// Judges pictures that have colours by whether the colours are normals.
+fn guess_vectors(vectors: &[[f32; 3]]) -> KindGuess {
+    let unit = share(vectors, |v| UNIT.contains(&length(v)));
+    let outward = share(vectors, |[_, _, z]| z > 0.0);
+    if unit >= MOST && outward >= MOST {
+        return KindGuess::Certain(Kind::Normal);
+    }
+    if unit >= MOST {
+        let inward = percent(1.0 - outward);
+        return KindGuess::doubtful(format!(
+            "its vectors have unit length, but {inward} point into the surface, like those of an object-space map"
+        ));
+    }
+    let near = share(vectors, |v| NEAR_UNIT.contains(&length(v)) && v[2] > 0.0);
+    if near >= MOST && length(mean_xy(vectors)) <= MAX_MEAN_TILT {
+        return KindGuess::Certain(Kind::Normal);
+    }
+    let near = percent(near);
+    KindGuess::doubtful(format!(
+        "it is not grey, and only {near} of its texels are normals that point out of it"
+    ))
+}
+
+/// A share in words: `37 %`.
+fn percent(share: f64) -> String {
+    format!("{:.0} %", share * 100.0)
+}

@@ -1,0 +1,179 @@
+//! How far a storage type carries: measured and bounded error of the variance, and the exponents that it allows.
+//!
+//! Source: "Shiny and CLEAN" and DESIGN's correction of it. With `V = M - B²`, texels of half a code's error over their
+//! range give `e_V = e_M + 2 |B| e_B + e_B²`, and the lobe is safe while `1/s > e_V`.
+
+use rayon::prelude::*;
+
+use crate::bake::{BakeError, bake};
+use crate::options::{BakeOptions, Bits, SourceOptions};
+use crate::texture::{self, Bounds, Layout, Part, Peaks, TextureArray, TextureInfo};
+use crate::{Image, Moments};
+
+/// What one storage type does to a map stored as LEAN.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Precision {
+    /// The storage type.
+    pub bits: Bits,
+    /// Range of the stored slopes; 1 for floats.
+    pub scale: f32,
+    /// Largest error that the type can make with this map.
+    pub bound: Bounds,
+    /// Largest error that it made, over all texels of all levels, of a variance along an axis.
+    pub measured_variance: f32,
+    /// The same of the smaller eigenvalue of the covariance, mixed term included.
+    pub measured_eigenvalue: f32,
+}
+
+impl Precision {
+    /// Largest Blinn-Phong exponent that is safe for certain.
+    pub fn usable_specular_power(&self) -> f32 {
+        self.bound.usable_specular_power()
+    }
+
+    /// Largest exponent that this map, as it is, allows.
+    pub fn measured_specular_power(&self) -> f32 {
+        1.0 / self.measured_variance.max(f32::MIN_POSITIVE)
+    }
+}
+
+/// Stores a map as LEAN in every type and compares the variances that come back with those of the pyramid.
+///
+/// # Errors
+/// As [`bake`], for any of the types.
+pub fn measure(image: &Image, source: &SourceOptions) -> Result<Vec<Precision>, BakeError> {
+    // The pyramid's own covariance, of which nothing has been subtracted: a deviation's square is exact to f32.
+    let reference = BakeOptions { layout: Layout::Schilling, bits: Bits::Float, ..BakeOptions::default() };
+    let reference = bake(image, source, None, &reference)?.arrays;
+    Bits::ALL.iter().map(|bits| measure_one(image, source, *bits, &reference[0])).collect()
+}
+
+fn measure_one(
+    image: &Image,
+    source: &SourceOptions,
+    bits: Bits,
+    reference: &TextureArray,
+) -> Result<Precision, BakeError> {
+    let options = BakeOptions { bits, ..BakeOptions::default() };
+    let baked = bake(image, source, None, &options)?;
+    let stored = &baked.arrays[0];
+    let (mut variance, mut eigenvalue) = (0.0_f32, 0.0_f32);
+    for level in 0..stored.level_count() {
+        let (width, height) =
+            (stored.layers[0].levels[level].width(), stored.layers[0].levels[level].height());
+        let worst = (0..height)
+            .into_par_iter()
+            .map(|y| {
+                (0..width).map(|x| errors_at(stored, reference, level, x, y)).fold((0.0, 0.0), larger_of_both)
+            })
+            .reduce(|| (0.0, 0.0), larger_of_both);
+        (variance, eigenvalue) = larger_of_both((variance, eigenvalue), worst);
+    }
+    Ok(Precision {
+        bits,
+        scale: baked.report.scale,
+        bound: baked.report.bounds,
+        measured_variance: variance,
+        measured_eigenvalue: eigenvalue,
+    })
+}
+
+fn larger_of_both(a: (f32, f32), b: (f32, f32)) -> (f32, f32) {
+    (a.0.max(b.0), a.1.max(b.1))
+}
+
+/// Errors of a texel's variances and of its smaller eigenvalue, before anything is mended.
+fn errors_at(
+    stored: &TextureArray,
+    reference: &TextureArray,
+    level: usize,
+    x: usize,
+    y: usize,
+) -> (f32, f32) {
+    let texel = |array: &TextureArray| -> [f32; 8] {
+        std::array::from_fn(|channel| array.layers[channel / 4].levels[level].get(x, y, channel % 4))
+    };
+    let sample_type = stored.layers[0].sample_type();
+    let decoded = texture::decode_lean_raw(&stored.info, sample_type, &texel(stored));
+    let [xx, yy, xy] = raw_covariance(decoded);
+    let [_, _, _, d2, _, _, d1, d3] = texel(reference).map(f64::from);
+    let (true_xx, true_yy, true_xy) = (d1 * d1 + d2 * d2, d3 * d3, d2 * d3);
+    let smaller = |xx: f64, yy: f64, xy: f64| 0.5 * (xx + yy) - (0.5 * (xx - yy)).hypot(xy);
+    let variance = (xx - true_xx).abs().max((yy - true_yy).abs());
+    let eigenvalue = (smaller(xx, yy, xy) - smaller(true_xx, true_yy, true_xy)).abs();
+    (variance as f32, eigenvalue as f32)
+}
+
+fn raw_covariance(moments: Moments) -> [f64; 3] {
+    let (x, y) = (f64::from(moments.mean.x), f64::from(moments.mean.y));
+    [f64::from(moments.xx) - x * x, f64::from(moments.yy) - y * y, f64::from(moments.xy) - x * y]
+}
+
+/// The steepest slope, per component, with which a type still carries an exponent: the bound turned round.
+pub fn steepest_slope(bits: Bits, specular_power: f32) -> f32 {
+    let allowed = |slope: f32| {
+        let scale = if bits.sample_type().is_float() { 1.0 } else { slope };
+        let info = TextureInfo { scale, ..TextureInfo::new(Layout::Lean, Part::Whole) };
+        let peaks = Peaks { component: slope, slope, variance: 0.0 };
+        texture::bounds(&info, bits.sample_type(), &peaks).usable_specular_power() >= specular_power
+    };
+    // The error grows with the slope, so halving the interval finds the last that is allowed.
+    let (mut safe, mut unsafe_slope) = (0.0_f32, 1024.0_f32);
+    if allowed(unsafe_slope) {
+        return unsafe_slope;
+    }
+    for _ in 0..48 {
+        let middle = 0.5 * (safe + unsafe_slope);
+        if allowed(middle) { safe = middle } else { unsafe_slope = middle }
+    }
+    safe
+}
+
+/// The cheapest type that carries an exponent with this map; `None` where none does.
+pub fn recommend(measured: &[Precision], specular_power: f32) -> Option<Bits> {
+    let order = [Bits::Eight, Bits::Sixteen, Bits::Half, Bits::Float];
+    order.into_iter().find(|bits| {
+        measured.iter().any(|row| row.bits == *bits && row.usable_specular_power() >= specular_power)
+    })
+}
+
+/// The exponent that unsigned texels carry where the components of slopes reach `slope`, with the scale that fits.
+pub fn unorm_specular_power(bits: Bits, slope: f32) -> f32 {
+    let info = TextureInfo { scale: slope, ..TextureInfo::new(Layout::Lean, Part::Whole) };
+    let peaks = Peaks { component: slope, slope, variance: 0.0 };
+    texture::bounds(&info, bits.sample_type(), &peaks).usable_specular_power()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_published_figures_come_out() {
+        // 0.4 % for the text's rounding step of R / 2^(n+1), where an 8-bit code's is R / (2 (2^n - 1)); 3 % for the f32
+        // arithmetic on the way into a code of 16 bits, which the bound counts too.
+        const NOT_COUNTED_IN_THE_TEXT: f32 = 0.035;
+        for (bits, slope, power) in [
+            (Bits::Eight, 0.5, 409.0),
+            (Bits::Eight, 1.0, 102.2),
+            (Bits::Eight, 2.0, 25.55),
+            (Bits::Sixteen, 1.0, 26_214.0),
+        ] {
+            let got = unorm_specular_power(bits, slope);
+            assert!((got / power - 1.0).abs() < NOT_COUNTED_IN_THE_TEXT, "{bits} bits, {slope}: {got}, not {power}");
+        }
+    }
+
+    #[test]
+    fn the_steepest_slope_is_the_bound_turned_round() {
+        const BISECTION: f32 = 1e-4;
+        for bits in [Bits::Eight, Bits::Sixteen] {
+            for slope in [0.25, 1.0, 3.0] {
+                let power = unorm_specular_power(bits, slope);
+                let back = steepest_slope(bits, power);
+                assert!((back / slope - 1.0).abs() < BISECTION, "{bits}: {slope} -> {power} -> {back}");
+            }
+        }
+        assert!(steepest_slope(Bits::Float, 100.0) > steepest_slope(Bits::Half, 100.0));
+    }
+}

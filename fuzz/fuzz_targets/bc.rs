@@ -1,0 +1,5 @@
+//! The target `bc` for cargo-fuzz.
+
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| roughcast_fuzz::bc(data));

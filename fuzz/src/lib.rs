@@ -1,0 +1,136 @@
+//! Hostile bytes for the readers: each target takes any bytes, and must neither panic nor take long nor much memory.
+//!
+//! `cargo run -p roughcast-fuzz --bin short -- --seconds 30` runs all of them on a stable compiler. For a long search
+//! guided by coverage there is cargo-fuzz: `cargo fuzz run ktx2 --features libfuzzer`.
+//!
+//! A new target is a function here and one line in [`TARGETS`]; for cargo-fuzz also a bin like those in `fuzz_targets/`.
+
+#![forbid(unsafe_code)]
+
+pub mod corpus;
+pub mod mutate;
+
+use roughcast::texture::TextureArray;
+use roughcast_io::{Decoded, Limits, Payload, ReadError, Supercompression};
+
+/// Something that takes hostile bytes.
+pub struct Target {
+    /// Its name, which is also that of its folder in `corpus/`.
+    pub name: &'static str,
+    /// Which of the broken files of others concern it.
+    pub extensions: &'static [&'static str],
+    /// Runs it once; panics where a promise is broken.
+    pub run: fn(&[u8]),
+}
+
+/// All targets.
+pub const TARGETS: &[Target] = &[
+    Target { name: "ktx2", extensions: &["ktx2", "ktx"], run: ktx2 },
+    Target { name: "dds", extensions: &["dds"], run: dds },
+    Target { name: "bc", extensions: &[], run: bc },
+];
+
+/// Small, so that a file which may claim a large texture shows up as a slow run at worst.
+const LIMITS: Limits = Limits { max_pixels: 1 << 18 };
+
+/// Both readers of KTX2. What reads as textures must survive being written again.
+pub fn ktx2(data: &[u8]) {
+    check_image(roughcast_io::ktx2::read_image(data, LIMITS));
+    if let Ok(textures) = roughcast_io::ktx2::read_textures(data, LIMITS) {
+        check_rewritten(&textures);
+    }
+}
+
+/// Both readers of DDS. What reads as textures must survive being written again.
+pub fn dds(data: &[u8]) {
+    check_image(roughcast_io::dds::read_image(data, LIMITS));
+    if let Ok(textures) = roughcast_io::dds::read_textures(data, LIMITS) {
+        check_rewritten(&textures);
+    }
+}
+
+/// The FourCCs of the block codes; BC7 has none of its own.
+const BLOCK_CODES: [(&[u8; 4], usize); 8] = [
+    (b"DXT1", 8),
+    (b"DXT3", 16),
+    (b"DXT5", 16),
+    (b"ATI1", 8),
+    (b"BC4S", 8),
+    (b"ATI2", 16),
+    (b"BC5S", 16),
+    (b"DX10", 16),
+];
+
+/// Any bytes are blocks, so decoding must succeed: the first byte selects the code, the next two the size, the rest are
+/// blocks, repeated as often as needed.
+pub fn bc(data: &[u8]) {
+    let [code, width, height, blocks @ ..] = data else { return };
+    if blocks.is_empty() {
+        return;
+    }
+    let (four_cc, block_bytes) = BLOCK_CODES[usize::from(*code) % BLOCK_CODES.len()];
+    let (width, height) = (usize::from(*width % 64) + 1, usize::from(*height % 64) + 1);
+    let mut file = dds_header(four_cc, width as u32, height as u32);
+    let length = width.div_ceil(4) * height.div_ceil(4) * block_bytes;
+    file.extend(blocks.iter().cycle().take(length));
+    let decoded = roughcast_io::dds::read_image(&file, LIMITS).expect("blocks of any bits are valid");
+    assert_eq!((decoded.image.width(), decoded.image.height()), (width, height));
+    assert_finite(&decoded);
+}
+
+fn dds_header(four_cc: &[u8; 4], width: u32, height: u32) -> Vec<u8> {
+    const DXGI_BC7_UNORM: u32 = 98;
+    let mut words = [0; 32];
+    words[0] = u32::from_le_bytes(*b"DDS ");
+    [words[1], words[3], words[4]] = [124, height, width];
+    [words[19], words[20], words[21]] = [32, 0x4, u32::from_le_bytes(*four_cc)];
+    let mut header: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+    if four_cc == b"DX10" {
+        header.extend([DXGI_BC7_UNORM, 3, 0, 1, 0].iter().flat_map(|word| word.to_le_bytes()));
+    }
+    header
+}
+
+/// Blocks hold no infinities: whatever comes out is a number within -1 ..= 1.
+fn assert_finite(decoded: &Decoded) {
+    let samples = decoded.image.samples();
+    assert!(
+        (0..samples.len()).all(|index| (-1.0..=1.0).contains(&samples.get(index))),
+        "outside of -1 ..= 1"
+    );
+}
+
+/// What an image says of itself fits its pixels; an error is one line.
+fn check_image(result: Result<Decoded, ReadError>) {
+    match result {
+        Ok(Decoded { image, info }) => {
+            assert_eq!((image.width(), image.height()), (info.width, info.height));
+            assert_eq!(image.channels(), info.channels.len());
+            assert!(info.layers > 0 && info.levels > 0);
+            assert!((image.width() * image.height()) as u64 <= LIMITS.max_pixels);
+        }
+        Err(error) => assert!(!error.to_string().contains('\n'), "{error}"),
+    }
+}
+
+/// Writes textures, reads them back and writes them again: both files must be the same. (Texels cannot be compared
+/// themselves, since NaN is not equal to itself.)
+fn check_rewritten(textures: &TextureArray) {
+    let ktx2 = |array: &TextureArray| {
+        let mut file = Vec::new();
+        roughcast_io::ktx2::write(Payload::Texels(array), Supercompression::Zstd, &mut file)
+            .expect("it was read");
+        file
+    };
+    let dds = |array: &TextureArray| {
+        let mut file = Vec::new();
+        roughcast_io::dds::write(Payload::Texels(array), &mut file).expect("it was read");
+        file
+    };
+    let (ktx2_file, dds_file) = (ktx2(textures), dds(textures));
+    let of_ktx2 = roughcast_io::ktx2::read_textures(&ktx2_file, LIMITS).expect("it was written");
+    let of_dds = roughcast_io::dds::read_textures(&dds_file, LIMITS).expect("it was written");
+    assert!(ktx2(&of_ktx2) == ktx2_file && dds(&of_dds) == dds_file, "a second writing differs");
+    // The other way round the bits of a NaN among the metadata may differ, which KTX2 spells out as text.
+    assert!(ktx2(&of_dds) == ktx2_file, "DDS and KTX2 hold different texels");
+}

@@ -1,0 +1,75 @@
+"""Proves that dependencies between the crates run one way, as ARCHITECTURE.md draws them.
+
+Reads `cargo metadata`. An arrow that is not in the tables below, a crate that is not in them, and a dependency of the
+library on anything but a few small crates are faults.
+"""
+
+import sys
+
+from workspace import cargo_metadata, members, report
+
+# Crate -> crates of this workspace that it may depend on, at run time or in its build script.
+ALLOWED = {
+    "roughcast": set(),
+    "roughcast-io": {"roughcast"},
+    "roughcast-scene": {"roughcast"},
+    "roughcast-gpu": {"roughcast", "roughcast-scene"},
+    "roughcast-cli": {"roughcast", "roughcast-io", "roughcast-gpu"},
+    "roughcast-py": {"roughcast"},
+    "roughcast-fuzz": {"roughcast", "roughcast-io"},
+}
+
+# The same for tests alone: those of crates above the library may also read real files. The library's may not: cargo
+# would build it twice, and the types of the two would not fit each other.
+ALLOWED_IN_TESTS = {
+    "roughcast-scene": {"roughcast-io"},
+    "roughcast-gpu": {"roughcast-io"},
+    "roughcast-py": {"roughcast-io"},
+}
+
+# Crates of others that the library may use (tests are free). It is arithmetic on images in memory, and whoever takes it
+# into an engine takes these along.
+LIBRARY = "roughcast"
+LIBRARY_MAY_USE = {"half", "rayon", "thiserror"}
+
+
+def arrow_faults(package, workspace_names):
+    """Faults of the dependencies of one workspace crate on others."""
+    name = package["name"]
+    if name not in ALLOWED:
+        yield f"{name}: unknown crate: add it to the table in tools/arrows.py"
+        return
+    for dependency in package["dependencies"]:
+        target, in_tests = dependency["name"], dependency["kind"] == "dev"
+        if target in workspace_names:
+            allowed = ALLOWED[name] | (ALLOWED_IN_TESTS.get(name, set()) if in_tests else set())
+            if target not in allowed:
+                yield f"{name} -> {target}: this arrow is not allowed{' in tests' if in_tests else ''}"
+        elif dependency["source"] is None:
+            yield f"{name} -> {target}: a path outside the workspace"
+        elif name == LIBRARY and not in_tests and target not in LIBRARY_MAY_USE:
+            yield f"{name} -> {target}: the library may use only {', '.join(sorted(LIBRARY_MAY_USE))}"
+
+
+def faults(metadata):
+    """Every fault of the workspace, one line each."""
+    packages = members(metadata)
+    names = {package["name"] for package in packages}
+    missing = [] if LIBRARY in names else [f"{LIBRARY}: the library is not in the workspace"]
+    return missing + [fault for package in packages for fault in arrow_faults(package, names)]
+
+
+def main():
+    metadata = cargo_metadata()
+    names = {package["name"] for package in members(metadata)}
+    arrows = sorted(
+        f"{package['name']} -> {dependency['name']}"
+        for package in members(metadata)
+        for dependency in package["dependencies"]
+        if dependency["name"] in names
+    )
+    return report(faults(metadata), f"{len(names)} crates; arrows: {'; '.join(arrows)}")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

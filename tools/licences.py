@@ -1,0 +1,136 @@
+"""Checks that every crate in the lock file comes under a licence that the project can live with.
+
+Reads `cargo metadata`: all dependencies, also those of tests and of build scripts, on all platforms. A licence is an SPDX
+expression; it is satisfied if the licences on the list below satisfy it.
+"""
+
+import collections
+import re
+import sys
+
+from workspace import cargo_metadata, members, report
+
+ALLOWED = {
+    "0BSD",
+    "Apache-2.0",
+    "Apache-2.0 WITH LLVM-exception",
+    "BSD-2-Clause",
+    "BSD-3-Clause",
+    "BSL-1.0",
+    "CC0-1.0",
+    "ISC",
+    "MIT",
+    "MIT-0",
+    "Unicode-3.0",
+    "Unlicense",
+    "Zlib",
+}
+
+TOKEN = re.compile(r"\s*([()]|[A-Za-z0-9.+-]+)")
+
+
+def tokens(expression):
+    """The words and parentheses of an expression. `MIT/Apache-2.0` is the old way to write OR."""
+    expression = expression.replace("/", " OR ").strip()
+    found, position = [], 0
+    while position < len(expression):
+        match = TOKEN.match(expression, position)
+        if match is None:
+            raise ValueError(f"'{expression[position]}' in '{expression}'")
+        found.append(match[1])
+        position = match.end()
+    return found
+
+
+class Parser:
+    """Evaluates an SPDX expression: WITH binds before AND, and AND before OR."""
+
+    def __init__(self, expression):
+        self.tokens = tokens(expression)
+        self.expression = expression
+
+    def peek(self):
+        return self.tokens[0] if self.tokens else None
+
+    def take(self):
+        if not self.tokens:
+            raise ValueError(f"'{self.expression}' ends too early")
+        return self.tokens.pop(0)
+
+    def whole(self):
+        satisfied = self.any_of()
+        if self.tokens:
+            raise ValueError(f"'{self.peek()}' is too much in '{self.expression}'")
+        return satisfied
+
+    def any_of(self):
+        satisfied = self.all_of()
+        while self.peek() == "OR":
+            self.take()
+            # Parsed first: `or` would leave the rest unread.
+            other = self.all_of()
+            satisfied = satisfied or other
+        return satisfied
+
+    def all_of(self):
+        satisfied = self.one()
+        while self.peek() == "AND":
+            self.take()
+            other = self.one()
+            satisfied = satisfied and other
+        return satisfied
+
+    def one(self):
+        word = self.take()
+        if word == "(":
+            satisfied = self.any_of()
+            if self.take() != ")":
+                raise ValueError(f"a parenthesis is not closed in '{self.expression}'")
+            return satisfied
+        if word in {")", "AND", "OR", "WITH"}:
+            raise ValueError(f"'{word}' where a licence should be in '{self.expression}'")
+        if self.peek() == "WITH":
+            self.take()
+            word = f"{word} WITH {self.take()}"
+        return word in ALLOWED
+
+
+def is_satisfied(expression):
+    """Whether licences on the list satisfy the expression. ValueError where it is none."""
+    return Parser(expression).whole()
+
+
+def dependencies(metadata):
+    """Every package that is not of the workspace."""
+    own = {package["id"] for package in members(metadata)}
+    return [package for package in metadata["packages"] if package["id"] not in own]
+
+
+def fault_of(package):
+    """What is wrong with the licence of a package, or None."""
+    name = f"{package['name']} {package['version']}"
+    if not package["license"]:
+        return f"{name}: states no licence"
+    try:
+        if is_satisfied(package["license"]):
+            return None
+    except ValueError as error:
+        return f"{name}: its licence is no SPDX expression: {error}"
+    return f"{name}: '{package['license']}' needs a licence that is not on the list in tools/licences.py"
+
+
+def faults(metadata):
+    """Every fault, one line each."""
+    return [fault for fault in map(fault_of, dependencies(metadata)) if fault]
+
+
+def main():
+    metadata = cargo_metadata()
+    packages = dependencies(metadata)
+    for licence, count in collections.Counter(package["license"] for package in packages).most_common():
+        print(f"{count:4} {licence}")
+    return report(faults(metadata), f"{len(packages)} dependencies, all under licences on the list")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
