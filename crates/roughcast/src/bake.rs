@@ -130,7 +130,7 @@ pub fn bake_reusing(
     let encoder = texture::encoder(&info, sample_type, shape);
     let outs = level_outs(&mut arrays, encoder.as_ref());
     let built = pyramid::build(&source, pyramid_options, outs);
-    let bounds = texture::bounds(&info, sample_type, &peaks);
+    let bounds = texture::bounds_of_shape(&info, sample_type, shape, &peaks);
     let report = BakeReport {
         counts: built.counts,
         texels: looked_at.texels,
@@ -140,7 +140,7 @@ pub fn bake_reusing(
         rms_slope: f64::from(built.whole.xx + built.whole.yy).sqrt(),
         whole: built.whole,
         bounds,
-        advice: advice(&info, sample_type, &looked_at, &peaks, options),
+        advice: advice(&info, shape, &looked_at, &peaks, options),
         levels: level_sizes(image.width(), image.height()).into_iter().zip(built.levels).collect(),
     };
     Ok(Baked { arrays, report })
@@ -225,8 +225,9 @@ fn limit_slopes(
         )));
     }
     if let ScaleChoice::Fixed(scale) = options.scale {
+        // Only raw second moments share their range with the base; a variance has a range of its own.
         let base = match roughness {
-            Some(BaseRoughness::Variance(variance)) if options.base == Base::Baked => variance,
+            Some(roughness) if options.base == Base::Baked && stores_squares => roughness.largest_variance(),
             _ => 0.0,
         };
         let room = scale * scale - base;
@@ -323,21 +324,24 @@ fn set_scales(
 
 fn advice(
     info: &TextureInfo,
-    sample_type: SampleType,
+    shape: EncoderShape,
     looked_at: &Survey,
     peaks: &Peaks,
     options: &BakeOptions,
 ) -> Option<ScaleAdvice> {
+    let sample_type = options.bits.sample_type();
     if sample_type.is_float() || options.scale != ScaleChoice::Auto {
         return None;
     }
     let max_slope = looked_at.slope_exceeded_by(STEEP_PART);
     let limited = Peaks { component: max_slope.min(peaks.component), slope: max_slope, ..*peaks };
     let limited_info = TextureInfo { scale: limited.second().sqrt().max(SMALLEST_SCALE), ..*info };
-    let now = texture::bounds(info, sample_type, peaks).usable_specular_power();
-    let then = texture::bounds(&limited_info, sample_type, &limited).usable_specular_power();
-    let factor = then / now;
-    (max_slope > 0.0 && factor > STEEP_COST).then_some(ScaleAdvice { max_slope, factor })
+    let power = |info: &TextureInfo, peaks: &Peaks| {
+        texture::bounds_of_shape(info, sample_type, shape, peaks).usable_specular_power()
+    };
+    let factor = power(&limited_info, &limited) / power(info, peaks);
+    // Where nothing can be relied upon now, no factor says how much better it would be.
+    (max_slope > 0.0 && factor > STEEP_COST && factor.is_finite()).then_some(ScaleAdvice { max_slope, factor })
 }
 
 /// Textures of all of a layout's files, taken from `earlier` where these have the right shape.

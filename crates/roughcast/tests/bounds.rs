@@ -18,6 +18,9 @@ const AVERAGING: f64 = 24.0;
 /// A bound has to come within this factor of the worst error on some map.
 const LOOSEST: f64 = 20.0;
 
+/// `M = Σ + B Bᵀ` is rounded to single floats when decoded: each of its three numbers once or twice.
+const SEMIDEFINITE: f64 = 4.0;
+
 struct Map {
     name: &'static str,
     image: Image,
@@ -34,6 +37,10 @@ fn maps() -> Vec<Map> {
     let steep: Vec<[f64; 2]> = (0..64 * 64).map(|_| steep(&mut random)).collect();
     let (steep, steep_source) = maps::slope_map(64, 64, &steep);
     let (flat, flat_source) = maps::slope_map(16, 12, &[[0.0, 0.0]; 16 * 12]);
+    // Brushed metal: hardly any variance across, where the root of a rounding is what counts.
+    let mut groove = |x: usize| [if x % 2 == 0 { 0.6 } else { -0.6 }, 0.002 * random.signed()];
+    let grooves: Vec<[f64; 2]> = (0..48 * 48).map(|i| groove(i % 48)).collect();
+    let (grooves, grooves_source) = maps::slope_map(48, 48, &grooves);
     let (one, one_source) = maps::slope_map(1, 1, &[[0.4, -0.9]]);
     let heights = SourceOptions { kind: Kind::Height, ..SourceOptions::default() };
     let real = |name, path, source| Map { name, image: real_files::read(path), source };
@@ -41,6 +48,7 @@ fn maps() -> Vec<Map> {
         Map { name: "wavy", image: wavy, source: wavy_source },
         Map { name: "gentle", image: gentle, source: gentle_source },
         Map { name: "steep", image: steep, source: steep_source },
+        Map { name: "grooves", image: grooves, source: grooves_source },
         Map { name: "flat", image: flat, source: flat_source },
         Map { name: "one texel", image: one, source: one_source },
         real("ocean", "materials/surfgrad_ocean16/normals_64crop_16bit_derived.png", SourceOptions::default()),
@@ -146,7 +154,7 @@ fn given(case: &Case, texel: Texel, promise: &Promise) -> Vec<f64> {
     }
 }
 
-/// Worst errors, in bounds.
+/// Worst errors, in what was allowed.
 #[derive(Clone, Copy, Debug, Default)]
 struct Worst {
     slope: f64,
@@ -163,11 +171,11 @@ fn check(map: &Map, case: &Case, report: &BakeReport, got: &[Level], wanted: &[L
             let promise = promised(case, wanted, normal);
             let rounding = AVERAGING * EPS * (wanted.rms() + 1.0);
             let what = || format!("{} {case:?} level {number} texel {index}: {got:?} for {wanted:?}", map.name);
-            let mut keep = |error: f64, bound: f32, name: &str| {
+            let keep = |error: f64, bound: f32, name: &str| {
                 // The float pyramid's own rounding; M's is at most twice the slope's of B, times B.
                 let allowed = f64::from(bound) + rounding * (1.0 + wanted.rms());
                 assert!(error <= allowed, "{name} off by {error:e} > {allowed:e}, {}", what());
-                error / f64::from(bound)
+                error / allowed
             };
             for (g, w) in got.b.iter().zip(&promise.slope) {
                 worst.slope = worst.slope.max(keep((g - w).abs(), bounds.slope, "slope"));
@@ -223,13 +231,13 @@ fn what_files_give_back_is_within_the_bounds_and_the_bounds_are_near() {
         }
     }
     for (case, worst) in cases.iter().zip(&worst) {
-        println!("{:?} {} {} {} {:?} {worst:?}", case.options.layout, case.options.bits, case.options.lobe, case.options.roughness_stored, case.base);
         if !case.options.bits.sample_type().is_float() {
             assert!(worst.slope * LOOSEST >= 1.0, "{case:?}: {worst:?}");
             assert!(worst.variance * LOOSEST >= 1.0, "{case:?}: {worst:?}");
+            if matches!(case.options.layout, Layout::Lean | Layout::Schilling) {
+                assert!(worst.eigenvalue * LOOSEST >= 1.0, "{case:?}: {worst:?}");
+            }
         }
     }
 }
 
-/// `M = Σ + B Bᵀ` is rounded to single floats when decoded: each of its three numbers once or twice.
-const SEMIDEFINITE: f64 = 4.0;

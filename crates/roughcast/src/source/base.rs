@@ -25,6 +25,38 @@ pub enum BaseRoughness<'a> {
     Map(RoughnessMap<'a>),
 }
 
+impl BaseRoughness<'_> {
+    /// The largest variance of any texel.
+    pub(crate) fn largest_variance(&self) -> f32 {
+        match self {
+            BaseRoughness::Variance(variance) => *variance,
+            BaseRoughness::Map(map) if map.channel < map.image.channels() => {
+                let mut row = vec![0.0; map.image.width()];
+                (0..map.image.height())
+                    .map(|y| {
+                        map.fill_variance(0, y, &mut row);
+                        row.iter().copied().fold(0.0, f32::max)
+                    })
+                    .fold(0.0, f32::max)
+            }
+            // Refused when it is read.
+            BaseRoughness::Map(_) => 0.0,
+        }
+    }
+}
+
+impl RoughnessMap<'_> {
+    /// Slope variances of a stretch of row `y` that starts at column `x`.
+    fn fill_variance(&self, x: usize, y: usize, plane: &mut [f32]) {
+        load_channel(self.image, self.channel, x, y, plane);
+        for value in plane {
+            let variance = variance_from_stored(*value, self.stored);
+            // A NaN or negative roughness says nothing: none.
+            *value = if variance.is_finite() && variance > 0.0 { variance } else { 0.0 };
+        }
+    }
+}
+
 /// A base roughness and what becomes of it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BaseSource<'a> {
@@ -100,14 +132,7 @@ impl<'a> BaseSource<'a> {
     pub(super) fn fill_variance(&self, x: usize, y: usize, plane: &mut [f32]) {
         match self.roughness {
             BaseRoughness::Variance(variance) => plane.fill(variance),
-            BaseRoughness::Map(map) => {
-                load_channel(map.image, map.channel, x, y, plane);
-                for value in plane {
-                    let variance = variance_from_stored(*value, map.stored);
-                    // A NaN or negative roughness says nothing: none.
-                    *value = if variance.is_finite() && variance > 0.0 { variance } else { 0.0 };
-                }
-            }
+            BaseRoughness::Map(map) => map.fill_variance(x, y, plane),
         }
     }
 
