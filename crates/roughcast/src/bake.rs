@@ -341,7 +341,8 @@ fn advice(
     };
     let factor = power(&limited_info, &limited) / power(info, peaks);
     // Where nothing can be relied upon now, no factor says how much better it would be.
-    (max_slope > 0.0 && factor > STEEP_COST && factor.is_finite()).then_some(ScaleAdvice { max_slope, factor })
+    (max_slope > 0.0 && factor > STEEP_COST && factor.is_finite())
+        .then_some(ScaleAdvice { max_slope, factor })
 }
 
 /// Textures of all of a layout's files, taken from `earlier` where these have the right shape.

@@ -39,7 +39,8 @@ fn threads_make_no_difference() {
 fn threads_make_no_difference_to_any_layout() {
     let (normals, source) = maps::plain_normal_map(514, 258, 63);
     for layout in Layout::ALL {
-        let bits = if matches!(layout, Layout::Moments | Layout::BumpSlopes) { Bits::Half } else { Bits::Sixteen };
+        let bits =
+            if matches!(layout, Layout::Moments | Layout::BumpSlopes) { Bits::Half } else { Bits::Sixteen };
         check(&normals, &source, &BakeOptions { base: Base::Baked, ..options(*layout, bits) });
     }
 }

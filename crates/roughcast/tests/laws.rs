@@ -45,7 +45,11 @@ fn a_constant_slope_stays_constant_exactly() {
                     for level in &arrays[0].layers[0].levels {
                         let Samples::F32(samples) = level.samples() else { panic!("floats were asked for") };
                         for texel in samples.chunks_exact(5) {
-                            assert_eq!(texel, [x, y, x * x, y * y, x * y], "{width}x{height} {filter} {wrap}");
+                            assert_eq!(
+                                texel,
+                                [x, y, x * x, y * y, x * y],
+                                "{width}x{height} {filter} {wrap}"
+                            );
                         }
                     }
                 }
@@ -65,7 +69,8 @@ fn the_roughness_pyramid_holds_the_covariance_of_the_whole_footprint() {
         for filter in PyramidFilter::ALL {
             for wrap in Wrap::ALL {
                 let source = SourceOptions { wrap: *wrap, ..source };
-                let bake_options = roughcast::BakeOptions { filter: *filter, ..options(Layout::Schilling, Bits::Float) };
+                let bake_options =
+                    roughcast::BakeOptions { filter: *filter, ..options(Layout::Schilling, Bits::Float) };
                 let got = schilling_levels(&baked(&image, &source, &bake_options));
                 let level_0 = slope_oracle::slopes(&image, &source);
                 let wanted = footprints(&level_0, got.len(), *filter, *wrap);
@@ -73,7 +78,8 @@ fn the_roughness_pyramid_holds_the_covariance_of_the_whole_footprint() {
                     for (index, (g, w)) in got.iter().zip(wanted).enumerate() {
                         let trace = w.m[0] + w.m[1];
                         let rms = (trace + w.b[0].powi(2) + w.b[1].powi(2)).sqrt();
-                        let tolerance = ROUNDINGS * EPS * (trace + trace.sqrt() * rms) + (ROUNDINGS * EPS * rms).powi(2);
+                        let tolerance =
+                            ROUNDINGS * EPS * (trace + trace.sqrt() * rms) + (ROUNDINGS * EPS * rms).powi(2);
                         for k in 0..3 {
                             let error = (g.m[k] - w.m[k]).abs();
                             assert!(
@@ -233,8 +239,12 @@ fn turning_a_height_map_turns_its_moments() {
                 for symmetry in &SYMMETRIES {
                     let (w, h) = (symmetry.size)(width, height);
                     // Heights are parts of the width, and that may be another one now.
-                    let got =
-                        bake_heights(&symmetry.moved(&heights, width, height), w, h, scale * width as f32 / w as f32);
+                    let got = bake_heights(
+                        &symmetry.moved(&heights, width, height),
+                        w,
+                        h,
+                        scale * width as f32 / w as f32,
+                    );
                     let rounding = Rounding { floor: f64::from(scale) * width as f64, ..AVERAGING };
                     let result = compare_rounded(&got, &symmetry.levels(&levels), rounding);
                     expect(result, &(symmetry.name, width, height, gradient, wrap));
@@ -249,8 +259,12 @@ fn with_green_turned(image: &Image, range: NormalRange) -> Image {
     let mut turned = image.clone();
     let green = |i: usize| i % channels == 1;
     match turned.samples_mut() {
-        Samples::U8(v) => v.iter_mut().enumerate().filter(|(i, _)| green(*i)).for_each(|(_, v)| *v = 255 - *v),
-        Samples::U16(v) => v.iter_mut().enumerate().filter(|(i, _)| green(*i)).for_each(|(_, v)| *v = 65535 - *v),
+        Samples::U8(v) => {
+            v.iter_mut().enumerate().filter(|(i, _)| green(*i)).for_each(|(_, v)| *v = 255 - *v)
+        }
+        Samples::U16(v) => {
+            v.iter_mut().enumerate().filter(|(i, _)| green(*i)).for_each(|(_, v)| *v = 65535 - *v)
+        }
         Samples::F32(v) if range == NormalRange::Signed => {
             v.iter_mut().enumerate().filter(|(i, _)| green(*i)).for_each(|(_, v)| *v = -*v);
         }
@@ -290,7 +304,8 @@ fn heights_k_times_as_high_have_slopes_k_times_as_steep() {
         let scaled: Vec<Level> = levels
             .iter()
             .map(|level| {
-                let texels = level.texels().map(|t| Texel { b: t.b.map(|v| v * k), m: t.m.map(|v| v * k * k) });
+                let texels =
+                    level.texels().map(|t| Texel { b: t.b.map(|v| v * k), m: t.m.map(|v| v * k * k) });
                 Level::from_texels(level.width, level.height, texels)
             })
             .collect();
@@ -310,7 +325,8 @@ fn heights_k_times_as_high_have_slopes_k_times_as_steep() {
 fn the_sense_of_heights_turns_slopes_and_leaves_second_moments() {
     let (image, up) = maps::height_map(64, 64, SampleType::U8, 27);
     let down = SourceOptions { height_sense: roughcast::HeightSense::WhiteDeep, ..up };
-    let levels = |source: &SourceOptions| raw_moments(&baked(&image, source, &float_moments(PyramidFilter::Box)));
+    let levels =
+        |source: &SourceOptions| raw_moments(&baked(&image, source, &float_moments(PyramidFilter::Box)));
     for (up, down) in levels(&up).iter().zip(&levels(&down)) {
         for (up, down) in up.texels().zip(down.texels()) {
             assert_eq!((down.b, down.m), (up.b.map(|v| -v), up.m));
@@ -328,11 +344,17 @@ fn the_decoder_returns_the_stored_moments() {
     let decoded = common::level::decoded(&baked.arrays);
     for (plane, name) in common::level::NAMES.iter().enumerate() {
         let planes = |levels: &[Level]| -> Vec<Plane> {
-            let plane = |l: &Level| Plane { width: l.width, height: l.height, values: l.planes[plane].clone() };
+            let plane =
+                |l: &Level| Plane { width: l.width, height: l.height, values: l.planes[plane].clone() };
             levels.iter().map(plane).collect()
         };
         // Mending moves a second moment by its own rounding, at slopes up to 2.
-        let result = compare_planes(&planes(&decoded), &planes(&raw), |_| if plane < 2 { 0.0 } else { 4.0 * 4.0 * EPS });
+        let result =
+            compare_planes(
+                &planes(&decoded),
+                &planes(&raw),
+                |_| if plane < 2 { 0.0 } else { 4.0 * 4.0 * EPS },
+            );
         expect(result.map(|_| ()), name);
     }
 }

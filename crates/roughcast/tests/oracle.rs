@@ -225,5 +225,9 @@ fn holes_and_spikes_in_heights_are_mended_and_counted() {
     let (image, options) = maps::height_map(width, height, SampleType::F32, 6);
     let options = SourceOptions { height_scale: 2.0, max_slope: 3.0, ..options };
     let (_, report) = check(&image, &options, Rounding { count: ROUNDINGS, floor: 2.0 * width as f64 });
-    assert!(report.counts.clamped > 0 && report.counts.clamped == report.counts.total(), "{:?}", report.counts);
+    assert!(
+        report.counts.clamped > 0 && report.counts.clamped == report.counts.total(),
+        "{:?}",
+        report.counts
+    );
 }

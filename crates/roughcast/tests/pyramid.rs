@@ -101,13 +101,17 @@ fn the_reports_levels_are_the_oracles() {
             assert_eq!(*size, (level.width, level.height));
             let texels = (level.width * level.height) as f64;
             let mean = |axis: usize| level.texels().map(|t| t.covariance()[axis]).sum::<f64>() / texels;
-            let largest = level.texels().flat_map(|t| [t.covariance()[0], t.covariance()[1]]).fold(0.0, f64::max);
+            let largest =
+                level.texels().flat_map(|t| [t.covariance()[0], t.covariance()[1]]).fold(0.0, f64::max);
             for (got, wanted) in [
                 (stats.mean_variance_x, mean(0)),
                 (stats.mean_variance_y, mean(1)),
                 (f64::from(stats.max_variance), largest),
             ] {
-                assert!((got - wanted).abs() <= ROUNDING * largest + f64::EPSILON, "{size:?}: {got} {wanted}");
+                assert!(
+                    (got - wanted).abs() <= ROUNDING * largest + f64::EPSILON,
+                    "{size:?}: {got} {wanted}"
+                );
             }
         }
     }

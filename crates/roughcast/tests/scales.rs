@@ -68,10 +68,9 @@ fn the_chosen_scale_is_the_smallest_that_holds_every_texel() {
                     close(report.scale, needs.second.sqrt());
                     assert_eq!(report.variance_scale, 1.0);
                 }
-                for (layout, scale) in [
-                    (Layout::Variance, needs.variance),
-                    (Layout::Schilling, needs.variance.sqrt()),
-                ] {
+                for (layout, scale) in
+                    [(Layout::Variance, needs.variance), (Layout::Schilling, needs.variance.sqrt())]
+                {
                     let report = report(layout);
                     close(report.scale, needs.slope);
                     close(report.variance_scale, scale);
@@ -79,7 +78,10 @@ fn the_chosen_scale_is_the_smallest_that_holds_every_texel() {
                 // Its eigenvalue is bounded by the sum of two variances, not known beforehand.
                 let scale = f64::from(report(Layout::SchillingIsotropic).variance_scale);
                 let needed = needs.eigenvalue.sqrt();
-                assert!(scale >= needed * (1.0 - ROUNDINGS * EPS) && scale <= needed * 2.0_f64.sqrt() * (1.0 + ROUNDINGS * EPS));
+                assert!(
+                    scale >= needed * (1.0 - ROUNDINGS * EPS)
+                        && scale <= needed * 2.0_f64.sqrt() * (1.0 + ROUNDINGS * EPS)
+                );
             }
         }
     }
@@ -106,8 +108,12 @@ fn flat_maps_bake_and_stay_flat() {
             if matches!(layout, Layout::Moments | Layout::BumpSlopes) && !bits.sample_type().is_float() {
                 continue;
             }
-            let baked =
-                baked_with(&heights, &height_source, Some(BaseRoughness::Variance(0.01)), &options(*layout, *bits));
+            let baked = baked_with(
+                &heights,
+                &height_source,
+                Some(BaseRoughness::Variance(0.01)),
+                &options(*layout, *bits),
+            );
             let report = &baked.report;
             assert!(report.scale > 0.0 && report.variance_scale > 0.0 && report.advice.is_none());
             assert_eq!(report.steepest, 0.0);
@@ -137,7 +143,9 @@ fn a_fixed_scale_clamps_slopes_and_counts_them() {
     let map_variances: Vec<f64> =
         (0..53 * 37).map(|i| if i == 700 { f64::from(0.1_f32) } else { f64::from(0.0025_f32) }).collect();
     let scale = 0.5_f32;
-    for layout in [Layout::Lean, Layout::Clean, Layout::Schilling, Layout::Variance, Layout::SchillingIsotropic] {
+    for layout in
+        [Layout::Lean, Layout::Clean, Layout::Schilling, Layout::Variance, Layout::SchillingIsotropic]
+    {
         let holds_squares = matches!(layout, Layout::Lean | Layout::Clean);
         for (base, largest, variances) in [
             (None, 0.0, vec![0.0; 53 * 37]),
@@ -145,7 +153,8 @@ fn a_fixed_scale_clamps_slopes_and_counts_them() {
             (Some(BaseRoughness::Map(map)), f64::from(0.1_f32), map_variances.clone()),
         ] {
             // The base takes its part of the range of the second moments.
-            let room = if holds_squares { f64::from(scale).powi(2) - largest } else { f64::from(scale).powi(2) };
+            let room =
+                if holds_squares { f64::from(scale).powi(2) - largest } else { f64::from(scale).powi(2) };
             let limited = SourceOptions { max_slope: room.sqrt() as f32, ..source };
             let slopes = slope_oracle::slopes(&image, &limited);
             assert!(slopes.counts.clamped > 100);
@@ -195,7 +204,10 @@ fn advice_is_given_where_few_steep_texels_cost_much_and_keeps_its_promise() {
             let followed = SourceOptions { max_slope: advice.max_slope, ..source };
             let after = baked(&image, &followed, &options(layout, bits)).report;
             let factor = after.bounds.usable_specular_power() / before.bounds.usable_specular_power();
-            assert!((factor / advice.factor - 1.0).abs() < WITHIN, "{layout} {bits}: {factor} for {advice:?}");
+            assert!(
+                (factor / advice.factor - 1.0).abs() < WITHIN,
+                "{layout} {bits}: {factor} for {advice:?}"
+            );
             // No more texels are cut than it speaks of.
             assert!(after.counts.clamped <= after.texels / 1000 + 1, "{:?}", after.counts);
         }
@@ -234,7 +246,8 @@ fn combinations_that_make_no_sense_are_refused() {
     let fixed = |scale| BakeOptions { scale: ScaleChoice::Fixed(scale), ..plain };
     let blocks = |layout, bits| BakeOptions { blocks: Blocks::Bc, ..with(layout, bits) };
     let folded = BakeOptions { base: Base::Baked, ..plain };
-    let power = BakeOptions { roughness_stored: RoughnessStored::SpecularPower, ..with(Layout::Pbr, Bits::Eight) };
+    let power =
+        BakeOptions { roughness_stored: RoughnessStored::SpecularPower, ..with(Layout::Pbr, Bits::Eight) };
     let steep = SourceOptions { max_slope: 300.0, ..source };
     type Case<'a> = (&'a str, &'a Image, SourceOptions, Option<BaseRoughness<'a>>, BakeOptions);
     let cases: Vec<Case<'_>> = vec![
@@ -255,7 +268,13 @@ fn combinations_that_make_no_sense_are_refused() {
         ("half float", &image, steep, None, with(Layout::Lean, Bits::Half)),
         ("half float", &image, steep, None, with(Layout::Moments, Bits::Half)),
         ("raise --scale", &image, source, base, BakeOptions { base: Base::Baked, ..fixed(0.09) }),
-        ("raise --scale", &image, source, map(&three_channels, 1), BakeOptions { base: Base::Baked, ..fixed(0.02) }),
+        (
+            "raise --scale",
+            &image,
+            source,
+            map(&three_channels, 1),
+            BakeOptions { base: Base::Baked, ..fixed(0.02) },
+        ),
         ("finite and not negative", &image, source, Some(BaseRoughness::Variance(-1.0)), plain),
         ("finite and not negative", &image, source, Some(BaseRoughness::Variance(f32::NAN)), plain),
         ("resize", &image, source, map(&other_size, 0), plain),

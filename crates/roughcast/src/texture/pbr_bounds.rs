@@ -74,7 +74,9 @@ fn along_error(units: Units, info: &TextureInfo, peaks: &Peaks) -> f32 {
         (error + 0.25 * across, across)
     };
     let (first_order, across) = match info.roughness_stored {
-        RoughnessStored::Perceptual | RoughnessStored::Gloss => (stored * (2.0 + stored), stored * (2.0 + stored)),
+        RoughnessStored::Perceptual | RoughnessStored::Gloss => {
+            (stored * (2.0 + stored), stored * (2.0 + stored))
+        }
         RoughnessStored::Alpha => (stored, stored),
         RoughnessStored::AlphaSquared => by_square(stored),
         RoughnessStored::SpecularPower => by_square(2.0 * power_error(units, peaks)),

@@ -52,7 +52,8 @@ pub fn compare_levels(
                 let (g, w) = (got.planes[plane][index], wanted.planes[plane][index]);
                 let error = (g - w).abs();
                 // Not `>`: that would let NaN pass.
-                if !(error <= allowed) {
+                let is_within = error <= allowed;
+                if !is_within {
                     let (x, y) = (index % wanted.width, index / wanted.width);
                     return Err(format!(
                         "level {number}, texel ({x}, {y}), {name}: {g} instead of {w}, off by {error:e} > {allowed:e}"
@@ -86,7 +87,8 @@ pub fn compare_planes(
         }
         for (index, (g, w)) in got.values.iter().zip(&wanted.values).enumerate() {
             let (error, allowed) = ((g - w).abs(), tolerance(*w));
-            if !(error <= allowed) {
+            let is_within = error <= allowed;
+            if !is_within {
                 let (x, y) = (index % wanted.width, index / wanted.width);
                 return Err(format!(
                     "level {number}, texel ({x}, {y}): {g} instead of {w}, off by {error:e} > {allowed:e}"
@@ -105,7 +107,8 @@ pub fn check_means(levels: &[Level], tolerance: (f64, f64)) -> Result<(), String
         let top = levels[0].mean(plane);
         for (number, level) in levels.iter().enumerate() {
             let mean = level.mean(plane);
-            if !((mean - top).abs() <= allowed) {
+            let is_within = (mean - top).abs() <= allowed;
+            if !is_within {
                 return Err(format!(
                     "the mean of {name} is {mean} on level {number} and {top} on level 0: off by {:e} > {allowed:e}",
                     (mean - top).abs()
@@ -122,8 +125,11 @@ pub fn check_semidefinite(levels: &[Level], roundings: f64) -> Result<(), String
         for (index, texel) in level.texels().enumerate() {
             let smaller = eigenvalues(texel.covariance()).1;
             let allowed = roundings * EPS * (texel.m[0] + texel.m[1]);
-            if !(smaller >= -allowed) {
-                return Err(format!("level {number}, texel {index}: eigenvalue {smaller:e} < -{allowed:e}, {texel:?}"));
+            let is_within = smaller >= -allowed;
+            if !is_within {
+                return Err(format!(
+                    "level {number}, texel {index}: eigenvalue {smaller:e} < -{allowed:e}, {texel:?}"
+                ));
             }
         }
     }

@@ -94,13 +94,18 @@ pub fn channel_of(image: &Image, channel: usize) -> Plane {
 
 /// The layer of a file that has this name.
 pub fn layer<'a>(array: &'a TextureArray, name: &str) -> &'a Texture {
-    array.layers.iter().find(|layer| layer.name == name).unwrap_or_else(|| panic!("no layer is called {name}"))
+    array
+        .layers
+        .iter()
+        .find(|layer| layer.name == name)
+        .unwrap_or_else(|| panic!("no layer is called {name}"))
 }
 
 /// The channel of that name of every level of a texture, as stored.
 pub fn stored(texture: &Texture, channel: &str) -> Vec<Plane> {
     let index = texture.channels.iter().position(|name| *name == channel);
-    let index = index.unwrap_or_else(|| panic!("{} has no channel {channel}: {:?}", texture.name, texture.channels));
+    let index =
+        index.unwrap_or_else(|| panic!("{} has no channel {channel}: {:?}", texture.name, texture.channels));
     texture.levels.iter().map(|image| channel_of(image, index)).collect()
 }
 
@@ -124,9 +129,29 @@ pub fn decoded(arrays: &[TextureArray]) -> Vec<Level> {
 }
 
 fn from_decoded(level: &MomentLevel) -> Level {
-    let texels = level.moments.iter().map(|m| Texel {
-        b: [m.mean.x.into(), m.mean.y.into()],
-        m: [m.xx.into(), m.yy.into(), m.xy.into()],
-    });
+    let texels = level
+        .moments
+        .iter()
+        .map(|m| Texel { b: [m.mean.x.into(), m.mean.y.into()], m: [m.xx.into(), m.yy.into(), m.xy.into()] });
     Level::from_texels(level.width, level.height, texels)
+}
+
+/// A quantity of every texel of every level.
+pub fn planes(levels: &[Level], quantity: impl Fn(Texel) -> f64) -> Vec<Plane> {
+    let plane =
+        |l: &Level| Plane { width: l.width, height: l.height, values: l.texels().map(&quantity).collect() };
+    levels.iter().map(plane).collect()
+}
+
+/// The same made of several stored channels.
+pub fn combined<const N: usize>(channels: [Vec<Plane>; N], f: impl Fn([f64; N]) -> f64) -> Vec<Plane> {
+    let levels = channels[0].len();
+    let value = |level: usize, i: usize| f(std::array::from_fn(|k| channels[k][level].values[i]));
+    (0..levels)
+        .map(|level| {
+            let (width, height) = (channels[0][level].width, channels[0][level].height);
+            let values = (0..width * height).map(|i| value(level, i)).collect();
+            Plane { width, height, values }
+        })
+        .collect()
 }

@@ -1,6 +1,7 @@
 //! Synthetic maps: slopes and heights in f64, and every way to store them.
 
 use half::f16;
+use roughcast::texture::RoughnessStored;
 use roughcast::{
     Green, HeightSense, Image, Kind, NormalChannels, NormalRange, SampleType, Samples, SourceOptions,
 };
@@ -93,7 +94,8 @@ pub fn image(width: usize, height: usize, channels: usize, samples: Samples) -> 
 /// A height map with its options.
 pub fn height_map(width: usize, height: usize, sample_type: SampleType, seed: u64) -> (Image, SourceOptions) {
     let values = heights(width, height, seed);
-    let options = SourceOptions { kind: Kind::Height, height_sense: HeightSense::WhiteHigh, ..Default::default() };
+    let options =
+        SourceOptions { kind: Kind::Height, height_sense: HeightSense::WhiteHigh, ..Default::default() };
     (image(width, height, 1, samples(&values, sample_type)), options)
 }
 
@@ -137,4 +139,29 @@ pub fn plain_normal_map(width: usize, height: usize, seed: u64) -> (Image, Sourc
     let options = SourceOptions::default();
     let map = normal_map((width, height), &slopes(width, height, seed), SampleType::U8, &options, 3);
     (map, options)
+}
+
+/// Slopes gentle enough that no roughness exceeds 1, where the stored forms end.
+pub fn gentle_map(width: usize, height: usize) -> (Image, SourceOptions) {
+    let slopes: Vec<[f64; 2]> = slopes(width, height, 31).into_iter().map(|b| b.map(|v| 0.5 * v)).collect();
+    slope_map(width, height, &slopes)
+}
+
+/// A packed material texture: occlusion, perceptual roughness, metalness.
+pub fn material_map(width: usize, height: usize) -> Image {
+    let heights = heights(width, height, 32);
+    let values: Vec<f64> = heights.iter().flat_map(|h| [1.0 - 0.5 * h, 0.2 + 0.4 * h, h * h]).collect();
+    image(width, height, 3, samples(&values, SampleType::U8))
+}
+
+/// Slope variances of a roughness map, by the table of conventions.
+pub fn variances(image: &Image, channel: usize, stored: RoughnessStored) -> Vec<f64> {
+    let variance = |r: f64| match stored {
+        RoughnessStored::Perceptual => r.powi(4) / 2.0,
+        RoughnessStored::Alpha => r * r / 2.0,
+        RoughnessStored::AlphaSquared => r / 2.0,
+        RoughnessStored::Gloss => (1.0 - r).powi(4) / 2.0,
+        RoughnessStored::SpecularPower => 1.0 / r,
+    };
+    super::level::channel_of(image, channel).values.into_iter().map(variance).collect()
 }

@@ -38,3 +38,9 @@ pub fn options(layout: roughcast::texture::Layout, bits: Bits) -> BakeOptions {
 pub fn float_moments(filter: PyramidFilter) -> BakeOptions {
     BakeOptions { filter, ..options(roughcast::texture::Layout::Moments, Bits::Float) }
 }
+
+/// The oracle's levels of a map; `base` is the slope variance of each texel's base roughness.
+pub fn oracle_of(image: &Image, source: &SourceOptions, base: &[f64]) -> Vec<level::Level> {
+    let slopes = slope_oracle::slopes(image, source);
+    pyramid_oracle::moments(&slopes, base, PyramidFilter::Box, source.wrap)
+}

@@ -27,7 +27,8 @@ pub fn entries(kind: &str) -> Vec<Entry> {
         .unwrap_or_else(|error| panic!("the shared test data is not there: {}: {error}", path.display()));
     let mut lines = text.lines().map(|line| line.split('\t').collect::<Vec<_>>());
     let header = lines.next().expect("the manifest has a header");
-    let column = |name: &str| header.iter().position(|h| *h == name).unwrap_or_else(|| panic!("no column {name}"));
+    let column =
+        |name: &str| header.iter().position(|h| *h == name).unwrap_or_else(|| panic!("no column {name}"));
     let (path, kinds) = (column("path"), column("kind"));
     let (convention, slope_rms) = (column("convention"), column("slope_rms"));
     let readable = |path: &str| ["png", "jpg", "webp"].iter().any(|end| path.ends_with(&format!(".{end}")));
@@ -60,4 +61,18 @@ pub fn read(path: &str) -> Image {
         other => panic!("{path}: no test reads {:?}", other.color()),
     };
     Image::new(width, height, channels, samples).expect("the decoder gives what it says")
+}
+
+/// Reads a file of the shared data, of which at most so many columns and rows from the top left are kept.
+pub fn read_part(path: &str, largest_side: usize) -> Image {
+    let image = read(path);
+    let (width, height) = (image.width().min(largest_side), image.height().min(largest_side));
+    let (row_length, kept) = (image.width() * image.channels(), width * image.channels());
+    let rows = || (0..height).map(|y| y * row_length..y * row_length + kept);
+    let samples = match image.samples() {
+        Samples::U8(v) => Samples::U8(rows().flat_map(|row| &v[row]).copied().collect()),
+        Samples::U16(v) => Samples::U16(rows().flat_map(|row| &v[row]).copied().collect()),
+        other => panic!("{path}: no picture is read as {:?}", other.sample_type()),
+    };
+    Image::new(width, height, image.channels(), samples).expect("the rows are as long as they are many")
 }
