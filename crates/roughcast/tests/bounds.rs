@@ -3,13 +3,13 @@
 mod common;
 
 use common::compare::{EPS, check_semidefinite, expect};
-use common::level::{Level, Plane, Texel, decoded, eigenvalues};
+use common::level::{Level, Plane, Texel, decoded, eigenvalues, raw_lean, raw_moments};
 use common::maps::{self, Random};
 use common::{baked_with, options, pyramid_oracle, real_files, slope_oracle};
 use roughcast::texture::{Base, Layout, RoughnessStored};
 use roughcast::{
-    BakeOptions, BakeReport, BaseRoughness, Bits, Blocks, Image, Kind, Lobe, PyramidFilter, RoughnessTexture,
-    SourceOptions,
+    BakeOptions, BakeReport, Baked, BaseRoughness, Bits, Blocks, Image, Kind, Lobe, PyramidFilter,
+    RoughnessTexture, SourceOptions,
 };
 
 /// Float moments are made in single floats: this many roundings of a texel's rms come on top of a bound.
@@ -208,6 +208,24 @@ fn check(
     worst
 }
 
+/// The covariance along every direction, mixed term included, before the decoder makes it semidefinite.
+fn check_before_mending(baked: &Baked, case: &Case, wanted: &[Level]) {
+    let raw = match case.options.layout {
+        Layout::Lean => raw_lean(baked),
+        Layout::Moments => raw_moments(baked),
+        _ => return,
+    };
+    for (got, wanted) in raw.iter().zip(wanted) {
+        for (got, wanted) in got.texels().zip(wanted.texels()) {
+            let (g, w) = (got.covariance(), wanted.covariance());
+            let (most, least) = eigenvalues([g[0] - w[0], g[1] - w[1], g[2] - w[2]]);
+            let rounding = AVERAGING * EPS * (1.0 + wanted.rms()).powi(2);
+            let allowed = f64::from(baked.report.bounds.eigenvalue) + rounding;
+            assert!(most.abs().max(least.abs()) <= allowed, "{case:?}: {got:?} for {wanted:?}");
+        }
+    }
+}
+
 /// Averages of the unit normals of level 0.
 fn averaged_normals(slopes: &slope_oracle::Slopes, source: &SourceOptions) -> Vec<[Plane; 3]> {
     let pyramids: [Vec<Plane>; 3] = std::array::from_fn(|component| {
@@ -239,6 +257,7 @@ fn what_files_give_back_is_within_the_bounds_and_the_bounds_are_near() {
             let got = decoded(&baked.arrays);
             expect(check_semidefinite(&got, SEMIDEFINITE), &(map.name, case));
             let here = check(&map, case, &baked.report, &got, wanted, &normals);
+            check_before_mending(&baked, case, wanted);
             worst.slope = worst.slope.max(here.slope);
             worst.variance = worst.variance.max(here.variance);
             worst.eigenvalue = worst.eigenvalue.max(here.eigenvalue);

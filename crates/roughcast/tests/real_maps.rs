@@ -3,13 +3,11 @@
 mod common;
 
 use common::compare::{EPS, check_means, check_semidefinite, compare_levels, expect};
-use common::level::{Level, Plane, decoded, layer, raw_moments, stored};
+use common::level::{decoded, raw_lean, raw_moments};
 use common::real_files::{self, Entry};
 use common::{baked, float_moments, maps, options, slope_oracle};
 use roughcast::texture::Layout;
-use roughcast::{
-    Baked, Bits, Green, Image, Kind, NormalRange, PyramidFilter, Samples, SourceCounts, SourceOptions,
-};
+use roughcast::{Bits, Green, Image, Kind, NormalRange, PyramidFilter, Samples, SourceCounts, SourceOptions};
 
 /// How many maps there are at least; fewer means that the manifest was not understood.
 const NORMAL_MAPS: usize = 35;
@@ -23,31 +21,6 @@ const ROUNDINGS: f64 = 24.0;
 
 /// Decoded moments are rounded to single floats.
 const SEMIDEFINITE: f64 = 4.0;
-
-/// B and M of LEAN's textures as stored, without the decoder's mending.
-fn raw_lean(baked: &Baked) -> Vec<Level> {
-    let sc = f64::from(baked.report.scale);
-    let (first, second) = (layer(&baked.arrays[0], "lean1"), layer(&baked.arrays[0], "lean2"));
-    let channel = |texture, name, load: &dyn Fn(f64) -> f64| -> Vec<Plane> {
-        let mut planes = stored(texture, name);
-        planes.iter_mut().flat_map(|plane| &mut plane.values).for_each(|v| *v = load(*v));
-        planes
-    };
-    let mut planes = [
-        channel(second, "B.x", &|v| (2.0 * v - 1.0) * sc),
-        channel(second, "B.y", &|v| (2.0 * v - 1.0) * sc),
-        channel(second, "M.xx", &|v| v * sc * sc),
-        channel(second, "M.yy", &|v| v * sc * sc),
-        channel(first, "M.xy", &|v| (2.0 * v - 1.0) * sc * sc),
-    ];
-    (0..planes[0].len())
-        .map(|level| Level {
-            width: planes[0][level].width,
-            height: planes[0][level].height,
-            planes: std::array::from_fn(|k| std::mem::take(&mut planes[k][level].values)),
-        })
-        .collect()
-}
 
 /// Every law that a real map has to keep.
 fn check(name: &str, image: &Image, source: &SourceOptions) -> SourceCounts {

@@ -122,6 +122,34 @@ pub fn raw_moments(baked: &Baked) -> Vec<Level> {
         .collect()
 }
 
+/// B and M of LEAN's textures as stored, without the decoder's mending.
+pub fn raw_lean(baked: &Baked) -> Vec<Level> {
+    let sc = f64::from(baked.report.scale);
+    let is_float = layer(&baked.arrays[0], "lean2").sample_type().is_float();
+    // Floats hold the values themselves.
+    let signed = |v: f64| if is_float { v } else { 2.0 * v - 1.0 };
+    let (first, second) = (layer(&baked.arrays[0], "lean1"), layer(&baked.arrays[0], "lean2"));
+    let channel = |texture, name, load: &dyn Fn(f64) -> f64| -> Vec<Plane> {
+        let mut planes = stored(texture, name);
+        planes.iter_mut().flat_map(|plane| &mut plane.values).for_each(|v| *v = load(*v));
+        planes
+    };
+    let mut planes = [
+        channel(second, "B.x", &|v| signed(v) * sc),
+        channel(second, "B.y", &|v| signed(v) * sc),
+        channel(second, "M.xx", &|v| v * sc * sc),
+        channel(second, "M.yy", &|v| v * sc * sc),
+        channel(first, "M.xy", &|v| signed(v) * sc * sc),
+    ];
+    (0..planes[0].len())
+        .map(|level| Level {
+            width: planes[0][level].width,
+            height: planes[0][level].height,
+            planes: std::array::from_fn(|k| std::mem::take(&mut planes[k][level].values)),
+        })
+        .collect()
+}
+
 /// What the library's decoder gives.
 pub fn decoded(arrays: &[TextureArray]) -> Vec<Level> {
     let levels = roughcast::texture::decode(arrays).unwrap_or_else(|error| panic!("{error}"));
