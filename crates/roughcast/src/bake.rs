@@ -147,8 +147,8 @@ pub fn bake_reusing(
         steepest: finest.steepest,
         rms_slope: f64::from(built.whole.xx + built.whole.yy).sqrt(),
         whole: built.whole,
-        bounds: texture::bounds(&info, sample_type, &peaks),
-        advice: looked_at.and_then(|looked_at| advice(&info, sample_type, &looked_at, &peaks)),
+        bounds: texture::bounds_of_shape(&info, sample_type, shape, &peaks),
+        advice: looked_at.and_then(|looked_at| advice(&info, sample_type, shape, &looked_at, &peaks)),
         levels: level_sizes(image.width(), image.height()).into_iter().zip(built.levels).collect(),
     };
     Ok(Baked { arrays, report })
@@ -233,8 +233,9 @@ fn limit_slopes(
         )));
     }
     if let ScaleChoice::Fixed(scale) = options.scale {
+        // Only raw second moments share their range with the base; a variance has a range of its own.
         let base = match roughness {
-            Some(BaseRoughness::Variance(variance)) if options.base == Base::Baked => variance,
+            Some(roughness) if options.base == Base::Baked && stores_squares => roughness.largest_variance(),
             _ => 0.0,
         };
         let room = scale * scale - base;
@@ -334,16 +335,20 @@ fn smallest_scale(layout: Layout, peaks: &Peaks) -> f32 {
 fn advice(
     info: &TextureInfo,
     sample_type: SampleType,
+    shape: EncoderShape,
     looked_at: &Survey,
     peaks: &Peaks,
 ) -> Option<ScaleAdvice> {
     let max_slope = looked_at.slope_exceeded_by(STEEP_PART);
     let limited = Peaks { component: max_slope.min(peaks.component), slope: max_slope, ..*peaks };
     let limited_info = TextureInfo { scale: smallest_scale(info.layout, &limited), ..*info };
-    let now = texture::bounds(info, sample_type, peaks).usable_specular_power();
-    let then = texture::bounds(&limited_info, sample_type, &limited).usable_specular_power();
-    let factor = then / now;
-    (max_slope > 0.0 && factor > STEEP_COST).then_some(ScaleAdvice { max_slope, factor })
+    let power = |info: &TextureInfo, peaks: &Peaks| {
+        texture::bounds_of_shape(info, sample_type, shape, peaks).usable_specular_power()
+    };
+    let factor = power(&limited_info, &limited) / power(info, peaks);
+    // Where nothing can be relied upon now, no factor says how much better it would be.
+    (max_slope > 0.0 && factor > STEEP_COST && factor.is_finite())
+        .then_some(ScaleAdvice { max_slope, factor })
 }
 
 /// Textures of all of a layout's files, taken from `earlier` where these have the right shape.

@@ -144,7 +144,7 @@ impl MapSource<'_> {
             },
             Extra::BaseVariance | Extra::Occlusion | Extra::Metalness => match &self.base {
                 Some(base) => base.fill_extra(extra, x, y, plane),
-                None => plane.fill(0.0),
+                None => plane.fill(base::where_nothing_says(extra)),
             },
         }
     }

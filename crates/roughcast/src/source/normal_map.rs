@@ -2,7 +2,7 @@
 
 use half::f16;
 
-use super::{count_unusable, mend, unorm8, unorm16};
+use super::{count_unusable, mend};
 use crate::options::{Green, NormalChannels, SourceOptions};
 use crate::row::SourceScratch;
 use crate::slope::SourceCounts;
@@ -53,19 +53,22 @@ pub(super) fn fill(
         return SourceCounts::default();
     }
     mend(bx, by, options.max_slope, |i| {
-        let outside = z_from_xy && nx[i] * nx[i] + ny[i] * ny[i] > INVALID_XY_SQUARED;
+        // An infinite component is no empty background: `mended_slope` counts it as what it is.
+        let finite = nx[i].is_finite() && ny[i].is_finite();
+        let outside = z_from_xy && finite && nx[i] * nx[i] + ny[i] * ny[i] > INVALID_XY_SQUARED;
         (!outside).then_some([nx[i], ny[i], nz[i]])
     })
 }
 
 vectorised! {
-    /// Slopes of normals. A z that is not above zero gives NaN, which no comparison accepts, so that one test afterwards
-    /// finds every unusable texel.
+    /// Slopes of normals. A z that is not above zero, or infinite, gives NaN or infinity, which no comparison with the
+    /// largest slope accepts, so that one test afterwards finds every unusable texel.
     fn divide_by_z(nx: &[f32], ny: &[f32], nz: &[f32], bx: &mut [f32], by: &mut [f32]) {
         let n = nx.len();
         let (ny, nz, bx, by) = (&ny[..n], &nz[..n], &mut bx[..n], &mut by[..n]);
         for i in 0..n {
-            let inverse = if nz[i] > 0.0 { 1.0 / nz[i] } else { f32::NAN };
+            let inverse = 1.0 / nz[i];
+            let inverse = if inverse > 0.0 { inverse } else { f32::NAN };
             bx[i] = nx[i] * inverse;
             by[i] = ny[i] * inverse;
         }
@@ -95,6 +98,19 @@ fn load_components(
     }
 }
 
+// Twice the code less the full code is a whole number, so the quotient is rounded once, and opposite codes give
+// opposite numbers to the last bit: a map with green up and its twin with green down are one map.
+
+#[inline(always)]
+fn signed8(sample: u8) -> f32 {
+    (2.0 * f32::from(sample) - 255.0) / 255.0
+}
+
+#[inline(always)]
+fn signed16(sample: u16) -> f32 {
+    (2.0 * f32::from(sample) - 65535.0) / 65535.0
+}
+
 /// Where the components of a texel are.
 #[derive(Clone, Copy)]
 struct Split {
@@ -104,13 +120,13 @@ struct Split {
 
 vectorised! {
     fn split_u8(split: Split, texels: &[u8], nx: &mut [f32], ny: &mut [f32], nz: &mut [f32]) {
-        split.write_planes(texels, nx, ny, nz, |v| 2.0 * unorm8(v) - 1.0);
+        split.write_planes(texels, nx, ny, nz, signed8);
     }
 }
 
 vectorised! {
     fn split_u16(split: Split, texels: &[u16], nx: &mut [f32], ny: &mut [f32], nz: &mut [f32]) {
-        split.write_planes(texels, nx, ny, nz, |v| 2.0 * unorm16(v) - 1.0);
+        split.write_planes(texels, nx, ny, nz, signed16);
     }
 }
 
