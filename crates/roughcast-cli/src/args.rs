@@ -33,31 +33,36 @@ fn finite(text: &str) -> Result<f32, String> {
     }
 }
 
+/// Headings under which the help lists options of several subcommands.
+pub const READING: &str = "Reading the map";
+pub const REPORT: &str = "Report";
+
 /// How the input is to be read.
 #[derive(Args, Clone, Debug)]
-#[command(next_help_heading = "Reading the map")]
+#[command(next_help_heading = READING)]
 pub struct SourceArgs {
     /// What the picture is [default: decided from its pixels; an error where they leave it open]
-    #[arg(long, value_parser = one_of::<Kind>())]
+    #[arg(long, value_name = "KIND", value_parser = one_of::<Kind>())]
     pub kind: Option<Kind>,
 
     /// Which way green points in a normal map: up is OpenGL and glTF, down is DirectX
     #[arg(long, default_value = "up", value_parser = one_of::<Green>())]
     pub green: Green,
 
-    /// Whether a normal's components are stored as 0 to 1 or as they are, -1 to 1 [default: decided from the pixels]
+    /// How a normal's components are stored: unorm, 0 to 1 with 0.5 for none, as in pictures; or signed, -1 to 1 [default: by the
+    /// file's format, for floats by the pixels]
     #[arg(long, value_parser = one_of::<NormalRange>())]
     pub range: Option<NormalRange>,
 
     /// Channels that hold the normal: xyz, xy (z is worked out), or ag (x in alpha, "DXT5nm") [default: decided from the pixels]
-    #[arg(long, value_parser = one_of::<NormalChannels>())]
+    #[arg(long, value_name = "CHANNELS", value_parser = one_of::<NormalChannels>())]
     pub normal_channels: Option<NormalChannels>,
 
-    /// Height of a full-range height map, as a part of the map's width
-    #[arg(long, default_value_t = SourceOptions::DEFAULT_HEIGHT_SCALE, value_parser = finite, allow_negative_numbers = true)]
+    /// Height from black to white, as a part of the map's width: 0.02 is 20 texels on a map of 1000
+    #[arg(long, value_name = "X", default_value_t = SourceOptions::DEFAULT_HEIGHT_SCALE, value_parser = finite, allow_negative_numbers = true)]
     pub height_scale: f32,
 
-    /// White is deep: a depth map
+    /// White is deep, not high: the map holds depths
     #[arg(long)]
     pub invert_height: bool,
 
@@ -65,16 +70,16 @@ pub struct SourceArgs {
     #[arg(long, default_value = "sobel", value_parser = one_of::<Gradient>())]
     pub gradient: Gradient,
 
-    /// What lies beyond the edge of the map
+    /// What lies beyond the edge of the map: itself again, its edge, or its mirror image
     #[arg(long, default_value = "repeat", value_parser = one_of::<Wrap>())]
     pub wrap: Wrap,
 
-    /// Largest slope (tangent of the angle); steeper texels are scaled back to it and counted
-    #[arg(long, default_value_t = SourceOptions::DEFAULT_MAX_SLOPE, value_parser = positive)]
+    /// Steepest slope (tangent of the angle; 1 is 45 degrees); steeper texels are scaled back to it and counted
+    #[arg(long, value_name = "X", default_value_t = SourceOptions::DEFAULT_MAX_SLOPE, value_parser = positive)]
     pub max_slope: f32,
 
-    /// Largest number of pixels that a file may have
-    #[arg(long, default_value_t = Limits::default().max_pixels, value_hint = ValueHint::Other)]
+    /// Most pixels that a file may have
+    #[arg(long, value_name = "N", default_value_t = Limits::default().max_pixels, value_hint = ValueHint::Other)]
     pub max_pixels: u64,
 }
 

@@ -1,31 +1,32 @@
 //! `roughcast bake`: a map in, filtered textures out.
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, anyhow};
 use clap::ValueHint;
-use roughcast::texture::{Base, Brdf, Layout, Part, RoughnessStored, TextureArray};
+use roughcast::texture::{Brdf, Layout, Part, RoughnessStored, TextureArray};
 use roughcast::{
     BakeError, BakeOptions, Baked, Bits, Blocks, Lobe, Named, PyramidFilter, RoughnessTexture, ScaleChoice,
     bake, refuse_filter,
 };
 use roughcast_io::{BlockFormat, Supercompression, compress, decompress};
 
-use crate::UsageError;
-use crate::args::{SourceArgs, one_of, positive};
+use crate::args::{READING, REPORT, SourceArgs, one_of, positive};
 use crate::batch;
 use crate::input::{Map, read_map};
 use crate::output::{self, Container, OutputOptions, Stored};
 use crate::progress::Stages;
 use crate::report::{CompressionError, FileReport};
 use crate::roughness::{Roughness, RoughnessArgs};
+use crate::{UsageError, usage};
 
 /// Turn a normal or height map into textures whose mip levels keep the bumps as roughness.
 ///
-/// The extension of the output says the format: .ktx2, .dds (both ready for a GPU), .exr (tiled, half or float) or .png
-/// (one picture a level: NAME.L0.png, NAME.L1.png ...). Layouts of several files are written as NAME.PART.ext. With a
-/// folder as input every map in it is baked into the output folder.
+/// The extension of the output says the format: .ktx2 or .dds, both ready for a GPU; .exr, tiled, half or float; or .png,
+/// one picture a level (NAME.L0.png, NAME.L1.png ...). A layout of several files writes NAME.PART.ext. With a folder as
+/// input, every map in it is baked into the output folder, and a bad file does not stop the others.
 #[derive(clap::Args)]
 #[command(after_help = LAYOUT_HELP)]
 pub struct Args {
@@ -33,87 +34,107 @@ pub struct Args {
     #[arg(value_hint = ValueHint::AnyPath)]
     pub input: PathBuf,
 
-    /// The file to write, or the folder where the input is one
-    #[arg(short, long, value_hint = ValueHint::AnyPath)]
+    /// The file to write; the folder, where the input is one
+    #[arg(short, long, value_name = "PATH", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
 
     /// What to store; see the table below
     #[arg(long = "as", value_name = "LAYOUT", default_value = "lean", value_parser = one_of::<Layout>())]
     pub layout: Layout,
 
-    /// Bits of a texel's channel [default: half for .exr; 8 for pbr, toksvig and --compress bc; else 16]
+    /// Bits of each number stored [default: half for .exr, but float for moments; 8 for pbr, toksvig and --compress bc;
+    /// else 16]
     #[arg(long, value_parser = one_of::<Bits>())]
     pub bits: Option<Bits>,
 
-    /// Range of slopes that 8 and 16 bits cover: auto (the smallest that is safe) or a number; steeper texels are scaled
-    /// back to it and counted
+    /// Steepest slope that 8 and 16 bits can hold: auto (the smallest that is safe) or a number, to which steeper texels
+    /// are scaled back and counted
     #[arg(long, default_value = "auto", value_name = "auto|X", value_parser = scale)]
     pub scale: ScaleChoice,
 
-    /// Whether the roughness of the material itself is folded in: none (add it when shading) or baked
-    #[arg(long, default_value = "none", value_parser = one_of::<Base>())]
-    pub base: Base,
+    /// Filter that makes each level from the one before: box, triangle or gaussian
+    #[arg(long, default_value = "box", value_parser = filter)]
+    pub filter: PyramidFilter,
+
+    /// For pbr: also write the direction and strength of the roughness, as KHR_materials_anisotropy has them
+    #[arg(long)]
+    pub anisotropy: bool,
+
+    /// Block compression for pbr, variance and toksvig: BC5, BC4 and BC7. The report says what it costs
+    #[arg(long, default_value = "none", value_parser = one_of::<Blocks>())]
+    pub compress: Blocks,
+
+    /// Make .ktx2 files smaller on disk; GPUs see no difference
+    #[arg(long, value_enum, default_value_t = Supercompress::None)]
+    pub supercompress: Supercompress,
 
     #[command(flatten)]
     pub roughness: RoughnessArgs,
 
-    /// For pbr: two roughnesses and a direction, as KHR_materials_anisotropy has them
-    #[arg(long)]
-    pub anisotropy: bool,
-
-    /// The filter that makes each level of the one before: box, triangle or gaussian
-    #[arg(long, default_value = "box", value_parser = filter)]
-    pub filter: PyramidFilter,
-
-    /// Block compression for pbr, variance and toksvig: BC5, BC4 and BC7
-    #[arg(long, default_value = "none", value_parser = one_of::<Blocks>())]
-    pub compress: Blocks,
-
-    /// Supercompression of .ktx2 files
-    #[arg(long, default_value = "none", value_parser = ["zstd", "none"])]
-    pub supercompress: String,
-
-    /// Refuse maps with NaN or infinite texels instead of replacing these by flat ones
-    #[arg(long)]
-    pub strict: bool,
-
     #[command(flatten)]
     pub source: SourceArgs,
 
-    /// Maps that are baked at the same time, for a folder [default: the number of processors, at most 4]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    /// Refuse maps with NaN or infinite texels instead of replacing these by flat ones
+    #[arg(long, help_heading = READING)]
+    pub strict: bool,
+
+    /// Maps baked at the same time [default: the number of processors, at most 4]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256), help_heading = FOLDERS)]
     pub jobs: Option<u16>,
 
-    /// Format of the outputs, for a folder
-    #[arg(long, default_value = "ktx2", value_parser = one_of::<Container>())]
-    pub format: Container,
+    /// Format of the outputs [default: ktx2]
+    #[arg(long, value_parser = one_of::<Container>(), help_heading = FOLDERS)]
+    pub format: Option<Container>,
 
     /// Print the report as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = REPORT)]
     pub json: bool,
 
     /// Show the time of each stage
-    #[arg(short, long)]
+    #[arg(short, long, help_heading = REPORT)]
     pub verbose: bool,
 }
 
+const FOLDERS: &str = "With a folder as input";
+
+// Lines of at most 80 characters, so that a terminal of 80 columns keeps the columns.
 const LAYOUT_HELP: &str = "\
 Layouts:
-  lean                 two RGBA textures: normal, mean slope and second moments (LEAN mapping); 16 bits
-  clean                one texture: mean slope and one second moment (CLEAN mapping); no anisotropy
-  schilling            two RGBA textures: mean slope and a factor of the covariance (Schilling)
-  schilling-isotropic  one texture: mean slope and the larger deviation
-  variance             one texture: mean slope and variance per axis; 8 bits will do
-  toksvig              averaged normal and gloss factor; needs --specular-power or --roughness
-  bump-slopes          the six channels of maketx --bumpslopes (OpenImageIO, RenderMan); .exr
-  pbr                  normal and roughness textures for any renderer; see --roughness, --anisotropy
-  moments              mean slope and second moments as floats; .exr
+  lean                 LEAN mapping: normal, mean slope and second moments in
+                       two RGBA textures; keeps anisotropy; wants 16 bits
+  clean                CLEAN mapping: mean slope and one second moment in one
+                       texture; no anisotropy; wants 16 bits
+  schilling            mean slope and a factor of the covariance (Schilling) in
+                       two RGBA textures
+  schilling-isotropic  mean slope and the larger deviation in one texture
+  variance             mean slope and variance along x and y; 8 bits will do
+  toksvig              averaged normal and gloss factor; for --specular-power S
+  bump-slopes          the six channels of maketx --bumpslopes (OpenImageIO,
+                       RenderMan); .exr
+  pbr                  normal and roughness textures for any renderer or engine;
+                       see --roughness and --anisotropy
+  moments              mean slope and second moments as they are; .exr
 
 Examples:
-  roughcast bake bricks_normal.png -o bricks.ktx2
-  roughcast bake bricks_normal.png -o bricks.ktx2 --as pbr --roughness bricks_rough.png --compress bc
-  roughcast bake terrain.tif -o terrain.exr --as bump-slopes --height-scale 0.1
-  roughcast bake maps/ -o baked/ --format dds --green down";
+  LEAN textures of a DirectX normal map, for a GPU:
+    roughcast bake bricks_normal.png -o bricks.ktx2 --green down
+  Normal and roughness of a material, block-compressed:
+    roughcast bake bricks_normal.png -o bricks.dds --as pbr \\
+        --roughness bricks_roughness.png --compress bc
+  A height map for a film renderer:
+    roughcast bake terrain.tif -o terrain.exr --as bump-slopes \\
+        --height-scale 0.1
+  All maps of a folder:
+    roughcast bake maps -o baked --format dds";
+
+/// The library's [`Supercompression`], as the command line names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Supercompress {
+    /// As they are
+    None,
+    /// Zstandard
+    Zstd,
+}
 
 fn scale(text: &str) -> Result<ScaleChoice, String> {
     if text == "auto" { Ok(ScaleChoice::Auto) } else { positive(text).map(ScaleChoice::Fixed) }
@@ -133,13 +154,17 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if args.input.is_dir() {
         return batch::run(args);
     }
-    Container::of(&args.output)?;
     if args.output.is_dir() {
-        return Err(UsageError(format!(
-            "{}: it is a folder; name the file to write, with .ktx2, .dds, .exr or .png at its end",
-            args.output.display()
-        ))
-        .into());
+        return Err(usage(
+            &args.output,
+            "it is a folder; name the file to write, with .ktx2, .dds, .exr or .png at its end",
+        ));
+    }
+    if args.format.is_some() || args.jobs.is_some() {
+        return Err(usage(
+            &args.input,
+            "--format and --jobs are for folders, and this is a file: leave them out",
+        ));
     }
     let mut stages = Stages::new(4);
     let report = bake_file(&args.input, &args.output, args, &mut stages);
@@ -148,7 +173,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if args.verbose {
         report.times = times;
     }
-    report.print(args.json);
+    report.print(args.json)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -156,6 +181,8 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 pub fn bake_file(input: &Path, output: &Path, args: &Args, stages: &mut Stages) -> Result<FileReport> {
     let named = || input.display().to_string();
     let container = Container::of(output)?;
+    args.check(container)?;
+    output::check_destination(output, container, args.first_part())?;
     stages.begin("reading");
     let mut map = read_map(input, &args.source)?;
     let roughness = match args.roughness.load(&args.source.limits())? {
@@ -174,7 +201,7 @@ pub fn bake_file(input: &Path, output: &Path, args: &Args, stages: &mut Stages) 
         }
         roughness => roughness,
     };
-    let options = options(args, container, roughness.as_ref());
+    let options = args.options(container, roughness.as_ref());
     stages.begin("baking");
     let baked = bake(&map.image, &map.options, roughness.as_ref().map(Roughness::base), &options)
         .map_err(usage_where_options)
@@ -191,11 +218,13 @@ pub fn bake_file(input: &Path, output: &Path, args: &Args, stages: &mut Stages) 
     let Baked { arrays, report } = baked;
     let (stored, compression) = stored_of(arrays, args.compress).with_context(named)?;
     stages.begin("writing");
-    let supercompression = match args.supercompress.as_str() {
-        "zstd" => Supercompression::Zstd,
-        _ => Supercompression::None,
+    let supercompression = match args.supercompress {
+        Supercompress::None => Supercompression::None,
+        Supercompress::Zstd => Supercompression::Zstd,
     };
-    let files = output::write(output, &stored, OutputOptions { supercompression, wrap: source.wrap })?;
+    let inputs: Vec<&Path> = [Some(input), args.roughness.file()].into_iter().flatten().collect();
+    let output_options = OutputOptions { supercompression, wrap: source.wrap, inputs: &inputs };
+    let files = output::write(output, &stored, output_options)?;
     Ok(FileReport {
         input: input.to_owned(),
         files,
@@ -210,38 +239,10 @@ pub fn bake_file(input: &Path, output: &Path, args: &Args, stages: &mut Stages) 
     })
 }
 
-fn usage_where_options(error: BakeError) -> anyhow::Error {
+pub fn usage_where_options(error: BakeError) -> anyhow::Error {
     match error {
         BakeError::Options(line) => UsageError(line).into(),
         error => error.into(),
-    }
-}
-
-fn options(args: &Args, container: Container, roughness: Option<&Roughness>) -> BakeOptions {
-    let bits = args.bits.unwrap_or(match (container, args.layout, args.compress) {
-        (_, _, Blocks::Bc) => Bits::Eight,
-        (Container::Exr, Layout::Moments, _) => Bits::Float,
-        (Container::Exr, ..) | (_, Layout::BumpSlopes | Layout::Moments, _) => Bits::Half,
-        (_, Layout::Pbr | Layout::Toksvig, _) => Bits::Eight,
-        _ => Bits::Sixteen,
-    });
-    // Blinn-Phong renderers want exponents, which only floats hold.
-    let stored = match (args.roughness.roughness_stored, args.roughness.brdf) {
-        (Some(stored), _) => stored,
-        (None, Brdf::BlinnPhong) if bits.sample_type().is_float() => RoughnessStored::SpecularPower,
-        (None, _) => RoughnessStored::Perceptual,
-    };
-    BakeOptions {
-        layout: args.layout,
-        bits,
-        scale: args.scale,
-        base: args.base,
-        brdf: args.roughness.brdf,
-        roughness_stored: stored,
-        lobe: if args.anisotropy { Lobe::Anisotropic } else { Lobe::Isotropic },
-        roughness_texture: roughness.map_or(RoughnessTexture::Alone, Roughness::texture),
-        blocks: args.compress,
-        filter: args.filter,
     }
 }
 
@@ -269,7 +270,63 @@ fn block_format(part: Part) -> BlockFormat {
 
 impl Args {
     /// Names that a folder's outputs get: all parts and levels start with it.
-    pub fn output_in_folder(&self, stem: &str) -> PathBuf {
-        self.output.join(format!("{stem}.{}", self.format.name()))
+    pub fn output_in_folder(&self, mut name: OsString) -> PathBuf {
+        name.push(".");
+        name.push(self.format.unwrap_or(Container::Ktx2).name());
+        self.output.join(name)
+    }
+
+    /// The library's options; where nothing was said, those that suit the container.
+    fn options(&self, container: Container, roughness: Option<&Roughness>) -> BakeOptions {
+        let bits = self.bits.unwrap_or(match (container, self.layout, self.compress) {
+            (_, _, Blocks::Bc) => Bits::Eight,
+            (Container::Exr, Layout::Moments, _) => Bits::Float,
+            (Container::Exr, ..) | (_, Layout::BumpSlopes | Layout::Moments, _) => Bits::Half,
+            (_, Layout::Pbr | Layout::Toksvig, _) => Bits::Eight,
+            _ => Bits::Sixteen,
+        });
+        // Blinn-Phong renderers want exponents, which only floats hold.
+        let stored = match (self.roughness.roughness_stored, self.roughness.brdf) {
+            (Some(stored), _) => stored,
+            (None, Brdf::BlinnPhong) if bits.sample_type().is_float() => RoughnessStored::SpecularPower,
+            (None, _) => RoughnessStored::Perceptual,
+        };
+        BakeOptions {
+            layout: self.layout,
+            bits,
+            scale: self.scale,
+            base: self.roughness.base,
+            brdf: self.roughness.brdf,
+            roughness_stored: stored,
+            lobe: if self.anisotropy { Lobe::Anisotropic } else { Lobe::Isotropic },
+            roughness_texture: roughness.map_or(RoughnessTexture::Alone, Roughness::texture),
+            blocks: self.compress,
+            filter: self.filter,
+        }
+    }
+
+    /// Refuses options that do not go together, before any work is done.
+    fn check(&self, container: Container) -> Result<(), UsageError> {
+        container.check(&self.options(container, None))?;
+        if self.supercompress == Supercompress::Zstd && container != Container::Ktx2 {
+            return Err(UsageError(format!(
+                "--supercompress is for .ktx2, not for .{container}: leave it out"
+            )));
+        }
+        if self.anisotropy && self.layout != Layout::Pbr {
+            return Err(UsageError(format!(
+                "--anisotropy is for --as pbr; the layout '{}' has no texture for it: leave it out",
+                self.layout
+            )));
+        }
+        Ok(())
+    }
+
+    /// The part of the first file that is written.
+    fn first_part(&self) -> Part {
+        match (self.layout, self.compress) {
+            (Layout::Pbr, _) | (Layout::Toksvig, Blocks::Bc) => Part::Normal,
+            _ => Part::Whole,
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! A folder of maps: one bad file does not stop the rest.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Mutex;
@@ -9,9 +10,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use anyhow::{Context, Result, anyhow};
 
 use crate::bake::{Args, bake_file};
+use crate::output::{Container, is_same_file};
 use crate::progress::{Stages, bar};
 use crate::report::FileReport;
-use crate::{UsageError, one_line, say};
+use crate::{complain, one_line, say_json, usage};
 
 /// Extensions of the files that are tried.
 const EXTENSIONS: [&str; 14] =
@@ -21,31 +23,40 @@ const EXTENSIONS: [&str; 14] =
 const DEFAULT_JOBS: usize = 4;
 
 pub fn run(args: &Args) -> Result<ExitCode> {
+    check_output_folder(args)?;
     let inputs = maps_in(&args.input)?;
-    if args.output.exists() && !args.output.is_dir() {
-        let path = args.output.display();
-        return Err(
-            UsageError(format!("{path}: the input is a folder, so the output must be one too")).into()
-        );
-    }
     std::fs::create_dir_all(&args.output).with_context(|| args.output.display().to_string())?;
+    if is_same_file(&args.input, &args.output) {
+        return Err(usage(
+            &args.output,
+            "it is the folder of the maps, and the next run would take the outputs for maps: name another",
+        ));
+    }
     let outputs = output_names(&inputs, args);
     let jobs = args.jobs.map_or_else(|| rayon::current_num_threads().min(DEFAULT_JOBS), usize::from);
     let results = bake_all(&inputs, &outputs, args, jobs);
     let failed = results.iter().filter(|result| result.is_err()).count();
     for result in &results {
         match result {
-            Ok(report) if !args.json => report.print(false),
-            Ok(_) => {}
-            Err(error) => eprintln!("{}", one_line(error)),
+            Ok(report) if args.json => report.warn(),
+            Ok(report) => report.print(false)?,
+            Err(error) => complain(&one_line(error)),
         }
     }
     if args.json {
-        let rows: Vec<_> = inputs.iter().zip(&results).map(|(input, result)| row(input, result)).collect();
-        say(&serde_json::to_string_pretty(&rows).expect("a report is plain data"));
+        say_json(&inputs.iter().zip(&results).map(|(input, result)| row(input, result)).collect())?;
     }
-    eprintln!("{} of {} maps baked", inputs.len() - failed, inputs.len());
+    complain(&format!("{} of {} maps baked", inputs.len() - failed, inputs.len()));
     Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// A folder whose name ends like a file's is more likely a slip than a wish.
+fn check_output_folder(args: &Args) -> Result<()> {
+    let is_file = args.output.exists() && !args.output.is_dir();
+    if is_file || (!args.output.exists() && Container::of(&args.output).is_ok()) {
+        return Err(usage(&args.output, "the input is a folder, so name a folder for the outputs"));
+    }
+    Ok(())
 }
 
 fn row(input: &Path, result: &Result<FileReport>) -> serde_json::Value {
@@ -75,8 +86,8 @@ fn maps_in(folder: &Path) -> Result<Vec<PathBuf>> {
 
 /// `NAME.ktx2` for `NAME.png`; where several inputs share a name, `NAME_png.ktx2` and so on, so that none is lost.
 fn output_names(inputs: &[PathBuf], args: &Args) -> Vec<PathBuf> {
-    let stem = |path: &Path| path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let mut uses: BTreeMap<String, usize> = BTreeMap::new();
+    let stem = |path: &Path| path.file_stem().unwrap_or_default().to_owned();
+    let mut uses: BTreeMap<OsString, usize> = BTreeMap::new();
     for input in inputs {
         *uses.entry(stem(input)).or_default() += 1;
     }
@@ -86,14 +97,14 @@ fn output_names(inputs: &[PathBuf], args: &Args) -> Vec<PathBuf> {
         .map(|input| {
             let mut name = stem(input);
             if uses[&name] > 1 {
-                let extension = input.extension().unwrap_or_default().to_string_lossy().into_owned();
-                name = format!("{name}_{extension}");
+                name.push("_");
+                name.push(input.extension().unwrap_or_default());
             }
             // `a.png`, `a.jpg` and `a_png.png` would still meet.
             while !taken.insert(name.clone()) {
-                name.push('_');
+                name.push("_");
             }
-            args.output_in_folder(&name)
+            args.output_in_folder(name)
         })
         .collect()
 }

@@ -3,16 +3,16 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use clap::ValueHint;
-use roughcast::texture::{MomentLevel, TextureInfo, decode};
+use roughcast::texture::{Layout, MomentLevel, Texture, TextureArray, TextureInfo, decode};
 use roughcast::{BakeOptions, Bits, Image, bake};
 use roughcast_io::{Decoded, FileInfo};
 use serde_json::{Map as JsonMap, Value, json};
 
-use crate::args::SourceArgs;
-use crate::input::{read_image, read_map};
-use crate::{say, textures};
+use crate::args::{REPORT, SourceArgs};
+use crate::input::{image_of, layout_named_in, map_of};
+use crate::{say, say_json, textures, warn};
 
 /// Show what a file holds: size, format, levels, layout, scale, value ranges, and the slopes of each level.
 ///
@@ -25,7 +25,7 @@ pub struct Args {
     file: PathBuf,
 
     /// Print JSON
-    #[arg(long)]
+    #[arg(long, help_heading = REPORT)]
     json: bool,
 
     #[command(flatten)]
@@ -39,61 +39,44 @@ struct Findings {
 }
 
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let limits = args.source.limits();
-    let mut findings = Findings { lines: Vec::new(), json: JsonMap::new() };
-    findings.put("file", json!(args.file.display().to_string()), args.file.display().to_string());
-    // A file of ours is decoded as such; anything else is a picture, and perhaps a map.
-    match textures::read_with_parts(&args.file, &limits) {
-        Ok(arrays) => {
-            if let Ok(Decoded { image, info }) = read_image(&args.file, &limits) {
-                findings.describe(&image, &info);
-            } else {
-                let (width, height) = arrays[0].size();
-                findings.put("size", json!([width, height]), format!("{width}x{height}"));
-                findings.put("levels", json!(arrays[0].level_count()), arrays[0].level_count().to_string());
-            }
-            findings.layout(&arrays[0].info);
-            match decode(&arrays) {
-                Ok(levels) => findings.slopes(&levels),
-                Err(error) => findings.put("slopes", Value::Null, error.to_string()),
-            }
-        }
-        Err(_) => picture(args, &mut findings)?,
-    }
+    let findings = look_at(args).with_context(|| args.file.display().to_string())?;
     if args.json {
-        say(&serde_json::to_string_pretty(&findings.json).expect("a report is plain data"));
+        say_json(&Value::Object(findings.json))?;
     } else {
-        findings.lines.iter().for_each(|line| say(line));
+        findings.lines.iter().try_for_each(|line| say(line))?;
     }
     Ok(ExitCode::SUCCESS)
 }
 
-fn picture(args: &Args, findings: &mut Findings) -> Result<()> {
-    let Decoded { image, info } = read_image(&args.file, &args.source.limits())?;
-    findings.describe(&image, &info);
-    drop(image);
-    match read_map(&args.file, &args.source) {
-        Err(error) => findings.put("kind", Value::Null, error.root_cause().to_string()),
-        Ok(map) => {
-            findings.put("kind", json!(map.options.kind.name()), map.options.kind.name().to_owned());
-            if let Some(correlation) = map.green_correlation {
-                findings.put("green_correlation", json!(correlation), format!("{correlation:.3}"));
+fn look_at(args: &Args) -> Result<Findings> {
+    let limits = args.source.limits();
+    let bytes = std::fs::read(&args.file)?;
+    let picture = image_of(&args.file, &bytes, &limits);
+    let mut findings = Findings { lines: Vec::new(), json: JsonMap::new() };
+    findings.put("file", json!(args.file.display().to_string()), args.file.display().to_string());
+    match textures::read_bytes(&bytes, &limits) {
+        Ok(array) => {
+            drop(bytes);
+            findings.describe(&picture?.info);
+            findings.textures(args, array);
+        }
+        Err(fault) => {
+            drop(bytes);
+            let picture = picture?;
+            if layout_named_in(&picture.info).is_some() {
+                warn(
+                    &args.file,
+                    &format!("described as a picture, since its textures cannot be read: {fault}"),
+                );
             }
-            for warning in &map.warnings {
-                eprintln!("warning: {}: {warning}", args.file.display());
-            }
-            let options = BakeOptions {
-                layout: roughcast::texture::Layout::Moments,
-                bits: Bits::Float,
-                ..Default::default()
-            };
-            let baked = bake(&map.image, &map.options, None, &options)?;
-            let counts = baked.report.counts;
-            findings.put("mended", json!(counts.total()), format!("{} texels", counts.total()));
-            findings.slopes(&decode(&baked.arrays)?);
+            findings.describe(&picture.info);
+            let channels = picture.info.channels.iter().map(String::as_str).enumerate();
+            findings
+                .ranges(channels.map(|(channel, name)| (name.to_owned(), range_of(&picture.image, channel))));
+            findings.map(args, picture)?;
         }
     }
-    Ok(())
+    Ok(findings)
 }
 
 impl Findings {
@@ -102,23 +85,70 @@ impl Findings {
         self.lines.push(format!("{:<18} {line}", key.replace('_', " ")));
     }
 
-    fn describe(&mut self, image: &Image, info: &FileInfo) {
+    fn describe(&mut self, info: &FileInfo) {
         self.put("container", json!(info.container), info.container.to_owned());
         self.put("format", json!(info.format), info.format.clone());
         self.put("size", json!([info.width, info.height]), format!("{}x{}", info.width, info.height));
         self.put("layers", json!(info.layers), info.layers.to_string());
         self.put("levels", json!(info.levels), info.levels.to_string());
-        let mut ranges = JsonMap::new();
-        let mut shown = Vec::new();
-        for (channel, name) in info.channels.iter().enumerate() {
-            let (low, high) = range_of(image, channel);
-            ranges.insert(name.clone(), json!([low, high]));
-            shown.push(format!("{name} {low:.4} to {high:.4}"));
-        }
-        self.put("ranges", Value::Object(ranges), shown.join(", "));
         let metadata: JsonMap<String, Value> =
             info.metadata.iter().map(|(key, value)| (key.clone(), json!(value))).collect();
         self.json.insert("metadata".to_owned(), Value::Object(metadata));
+    }
+
+    /// Smallest and largest value of each channel.
+    fn ranges(&mut self, ranges: impl Iterator<Item = (String, Option<(f32, f32)>)>) {
+        let (mut rows, mut shown) = (JsonMap::new(), Vec::new());
+        for (name, range) in ranges {
+            match range {
+                Some((low, high)) => shown.push(format!("{name} {low:.4} to {high:.4}")),
+                None => shown.push(format!("{name} without a finite value")),
+            }
+            rows.insert(name, range.map_or(Value::Null, |(low, high)| json!([low, high])));
+        }
+        self.put("ranges", Value::Object(rows), shown.join(", "));
+    }
+
+    /// A file that `bake` wrote: what its texels mean, and the slopes that they decode to.
+    fn textures(&mut self, args: &Args, array: TextureArray) {
+        self.layout(&array.info);
+        let named = |(texture, channel): (&Texture, usize)| {
+            (format!("{}.{}", texture.name, texture.channels[channel]), range_over_levels(texture, channel))
+        };
+        let channels = |texture: &Texture| texture.levels[0].channels().min(texture.channels.len());
+        let all = array.layers.iter().flat_map(|texture| (0..channels(texture)).map(move |c| (texture, c)));
+        self.ranges(all.map(named));
+        let parts = textures::with_other_parts(&args.file, array, &args.source.limits());
+        match parts.and_then(|parts| Ok(decode(&parts)?)) {
+            Ok(levels) => self.slopes(&levels),
+            Err(fault) => {
+                self.json.insert("slopes".to_owned(), Value::Null);
+                warn(&args.file, &format!("its slopes cannot be decoded: {fault:#}"));
+            }
+        }
+    }
+
+    /// A picture: whether it is a map, and the slopes that `bake` would see.
+    fn map(&mut self, args: &Args, picture: Decoded) -> Result<()> {
+        let map = match map_of(picture, &args.source) {
+            Ok(map) => map,
+            Err(reason) => {
+                self.json.insert("kind".to_owned(), Value::Null);
+                self.put("no_map", json!(reason.to_string()), reason.to_string());
+                return Ok(());
+            }
+        };
+        self.put("kind", json!(map.options.kind.name()), map.options.kind.name().to_owned());
+        if let Some(correlation) = map.green_correlation {
+            self.put("green_correlation", json!(correlation), format!("{correlation:.3}"));
+        }
+        map.warnings.iter().for_each(|warning| warn(&args.file, warning));
+        let options = BakeOptions { layout: Layout::Moments, bits: Bits::Float, ..Default::default() };
+        let baked = bake(&map.image, &map.options, None, &options)?;
+        let mended = baked.report.counts.total();
+        self.put("mended", json!(mended), format!("{mended} texels"));
+        self.slopes(&decode(&baked.arrays)?);
+        Ok(())
     }
 
     fn layout(&mut self, info: &TextureInfo) {
@@ -127,7 +157,10 @@ impl Findings {
         self.put("scale", json!(info.scale), info.scale.to_string());
         self.put("variance_scale", json!(info.variance_scale), info.variance_scale.to_string());
         self.put("base", json!(info.base.name()), info.base.name().to_owned());
-        self.put("base_variance", json!(info.base_variance), info.base_variance.to_string());
+        let varies = info.base_variance.is_nan();
+        let base_variance =
+            if varies { "varies over the map".to_owned() } else { info.base_variance.to_string() };
+        self.put("base_variance", json!(info.base_variance), base_variance);
         self.put("brdf", json!(info.brdf.name()), info.brdf.name().to_owned());
         let stored = info.roughness_stored.name();
         self.put("roughness_stored", json!(stored), stored.to_owned());
@@ -195,11 +228,18 @@ impl LevelSlopes {
     }
 }
 
-/// Smallest and largest finite value of a channel.
-fn range_of(image: &Image, channel: usize) -> (f32, f32) {
+/// Smallest and largest finite value of a channel over all levels; `None` where no value is finite.
+fn range_over_levels(texture: &Texture, channel: usize) -> Option<(f32, f32)> {
+    texture.levels.iter().filter_map(|level| range_of(level, channel)).reduce(larger_range)
+}
+
+fn larger_range((low, high): (f32, f32), other: (f32, f32)) -> (f32, f32) {
+    (low.min(other.0), high.max(other.1))
+}
+
+/// Smallest and largest finite value of a channel; `None` where no value is finite.
+fn range_of(image: &Image, channel: usize) -> Option<(f32, f32)> {
     let samples = image.samples();
     let values = (channel..samples.len()).step_by(image.channels()).map(|index| samples.get(index));
-    values
-        .filter(|v| v.is_finite())
-        .fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
+    values.filter(|value| value.is_finite()).map(|value| (value, value)).reduce(larger_range)
 }

@@ -6,8 +6,9 @@ use anyhow::{Context, Result, anyhow};
 use roughcast::detect::{
     GreenVerdict, KindGuess, guess_channels, guess_kind, guess_range, test_green_of_map,
 };
+use roughcast::texture::Layout;
 use roughcast::{Green, Image, Kind, NormalChannels, NormalRange, SourceOptions};
-use roughcast_io::{Decoded, FileInfo, Limits, ValueRange};
+use roughcast_io::{Decoded, FileInfo, Limits, ReadError, ValueRange};
 
 use crate::args::SourceArgs;
 
@@ -27,11 +28,21 @@ pub fn read_image(path: &Path, limits: &Limits) -> Result<Decoded> {
     roughcast_io::read_image_file(path, limits).with_context(|| path.display().to_string())
 }
 
+/// Reads the bytes of an image file; the path's extension helps where they leave the format open.
+pub fn image_of(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
+    let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
+    roughcast_io::read_image(bytes, extension.as_deref(), limits)
+}
+
 /// Reads a map and settles what the arguments left open.
 pub fn read_map(path: &Path, args: &SourceArgs) -> Result<Map> {
-    let Decoded { image, info } = read_image(path, &args.limits())?;
+    map_of(read_image(path, &args.limits())?, args).with_context(|| path.display().to_string())
+}
+
+/// Settles what the arguments left open for an image that was read.
+pub fn map_of(Decoded { image, info }: Decoded, args: &SourceArgs) -> Result<Map> {
     let range = args.range.unwrap_or_else(|| range_of(&image, &info));
-    let kind = kind_of(&image, &info, range, args.kind).with_context(|| path.display().to_string())?;
+    let kind = kind_of(&image, &info, range, args.kind)?;
     let channels = args.normal_channels.unwrap_or_else(|| match kind {
         Kind::Normal => guess_channels(&image, &info.channels, range),
         Kind::Height => NormalChannels::Xyz,
@@ -39,6 +50,7 @@ pub fn read_map(path: &Path, args: &SourceArgs) -> Result<Map> {
     let options = args.options(kind, range, channels);
     let mut map = Map { image, info, options, green_correlation: None, warnings: Vec::new() };
     map.test_green();
+    map.warn_of_textures();
     Ok(map)
 }
 
@@ -66,7 +78,22 @@ fn kind_of(image: &Image, info: &FileInfo, range: NormalRange, wanted: Option<Ki
     }
 }
 
+/// The layout that a file of ours names in its metadata.
+pub fn layout_named_in(info: &FileInfo) -> Option<&str> {
+    info.metadata.get("roughcast.layout").map(String::as_str)
+}
+
 impl Map {
+    /// Of the six channels of bump slopes the first is the height; other layouts' channels are not those of a map.
+    fn warn_of_textures(&mut self) {
+        if let Some(layout) = layout_named_in(&self.info).filter(|name| *name != Layout::BumpSlopes.name()) {
+            self.warnings.push(format!(
+                "it holds the layout '{layout}', that is, it was baked already, and is read as if it were a map: bake \
+                 the map itself instead"
+            ));
+        }
+    }
+
     /// Most maps are read with green up because nobody said otherwise; the curl of the slopes tells if that is wrong.
     fn test_green(&mut self) {
         if self.options.kind != Kind::Normal {

@@ -16,8 +16,11 @@ mod roughness;
 mod textures;
 mod unpack;
 
+use std::io::{ErrorKind, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
+use anyhow::Context;
 use clap::{Parser, Subcommand};
 
 /// Bumps in, roughness out: filters normal and height maps so that detail too small to see becomes roughness instead
@@ -55,7 +58,7 @@ fn main() -> ExitCode {
     match result {
         Ok(code) => code,
         Err(error) => {
-            eprintln!("{}", one_line(&error));
+            complain(&one_line(&error));
             let usage = error.chain().any(|cause| cause.is::<UsageError>());
             ExitCode::from(if usage { 2 } else { 1 })
         }
@@ -74,16 +77,39 @@ impl std::fmt::Display for UsageError {
 
 impl std::error::Error for UsageError {}
 
+/// A command line that makes no sense because of this path.
+fn usage(path: &Path, line: &str) -> anyhow::Error {
+    UsageError(format!("{}: {line}", path.display())).into()
+}
+
 /// An error with its causes on one line. Decoders' messages may hold line breaks or control characters, of which a
 /// terminal should see none.
 fn one_line(error: &anyhow::Error) -> String {
     let text = format!("error: {error:#}");
-    let printable: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    printable.split_whitespace().collect::<Vec<_>>().join(" ")
+    // Spaces stay as they are, since they may be part of a file's name.
+    let pieces = text.split(char::is_control).map(str::trim).filter(|piece| !piece.is_empty());
+    pieces.collect::<Vec<_>>().join(" ")
 }
 
-/// Prints a line to stdout. A reader that has gone away, such as `head`, is no error of ours.
-fn say(text: &str) {
-    use std::io::Write;
-    let _ = writeln!(std::io::stdout(), "{text}");
+/// Prints a line to stdout. A reader that has gone away, such as `head`, is no error of ours; a full disk is.
+fn say(text: &str) -> anyhow::Result<()> {
+    match writeln!(std::io::stdout(), "{text}") {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error).context("stdout"),
+        _ => Ok(()),
+    }
+}
+
+/// Prints JSON to stdout.
+fn say_json(value: &serde_json::Value) -> anyhow::Result<()> {
+    say(&serde_json::to_string_pretty(value).expect("a report is plain data"))
+}
+
+/// Prints a line to stderr. Where that is closed, nobody is left to be told.
+fn complain(text: &str) {
+    let _ = writeln!(std::io::stderr(), "{text}");
+}
+
+/// Prints a warning to stderr.
+fn warn(path: &Path, warning: &str) {
+    complain(&format!("warning: {}: {warning}", path.display()));
 }

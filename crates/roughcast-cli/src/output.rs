@@ -4,14 +4,14 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use roughcast::texture::{Part, TextureArray};
-use roughcast::{Named, Wrap};
+use roughcast::texture::{Layout, Part, TextureArray};
+use roughcast::{BakeOptions, Blocks, Named, Wrap};
 use roughcast_io::exr::{ExrCompression, ExrOptions};
 use roughcast_io::{
     AtomicFile, AtomicSet, BlockArray, Payload, Supercompression, WriteError, dds, exr, ktx2, png_levels,
 };
 
-use crate::UsageError;
+use crate::{UsageError, usage};
 
 /// Container formats that can be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,12 +42,44 @@ impl Container {
     pub fn of(path: &Path) -> Result<Self> {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
         Self::all().iter().copied().find(|container| container.name() == extension).ok_or_else(|| {
-            UsageError(format!(
-                "{}: the extension of the output says the format: .ktx2, .dds, .exr or .png",
-                path.display()
-            ))
-            .into()
+            usage(
+                path,
+                "the extension of the output says the format: end its name in .ktx2, .dds, .exr or .png",
+            )
         })
+    }
+
+    /// Refuses what this container cannot hold, before any work is done for it.
+    pub fn check(self, options: &BakeOptions) -> Result<(), UsageError> {
+        let (layout, bits) = (options.layout, options.bits);
+        let float = bits.sample_type().is_float();
+        let line = match self {
+            Container::Exr | Container::Png if options.blocks == Blocks::Bc => {
+                format!("{self} cannot hold compressed blocks: write .ktx2 or .dds, or leave --compress out")
+            }
+            Container::Exr if !float => {
+                format!("exr holds floats, not {bits} bits: say --bits half or --bits float")
+            }
+            Container::Png if matches!(layout, Layout::Moments | Layout::BumpSlopes) => {
+                format!("png holds no floats, which the layout '{layout}' needs: write .exr")
+            }
+            Container::Png if float => {
+                format!("png holds 8 or 16 bits, not {bits}: say --bits 8 or --bits 16, or write .exr")
+            }
+            Container::Ktx2 | Container::Dds if matches!(layout, Layout::Moments | Layout::BumpSlopes) => {
+                format!(
+                    "a texel of {self} has at most four channels, fewer than the layout '{layout}': write .exr"
+                )
+            }
+            _ => return Ok(()),
+        };
+        Err(UsageError(line))
+    }
+}
+
+impl std::fmt::Display for Container {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
     }
 }
 
@@ -72,64 +104,82 @@ impl Stored {
 
 /// How the containers are written.
 #[derive(Clone, Copy)]
-pub struct OutputOptions {
+pub struct OutputOptions<'a> {
     pub supercompression: Supercompression,
     pub wrap: Wrap,
+    /// Files that were read, over which nothing is written.
+    pub inputs: &'a [&'a Path],
+}
+
+/// Refuses a destination that cannot be written to, before any work is done for it.
+pub fn check_destination(path: &Path, container: Container, first: Part) -> Result<()> {
+    let target = match container {
+        Container::Png => path.with_extension("L0.png"),
+        _ => part_path(path, first, container),
+    };
+    // Creating the temporary file finds whatever is wrong; it vanishes when dropped.
+    AtomicFile::create(&target).map(drop).with_context(|| target.display().to_string())
+}
+
+/// Whether two paths lead to the same file.
+pub fn is_same_file(a: &Path, b: &Path) -> bool {
+    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
 /// Writes every part to `path`, or to `NAME.PART.ext` where there are several. All files appear, or none.
-pub fn write(path: &Path, stored: &[Stored], options: OutputOptions) -> Result<Vec<PathBuf>> {
+pub fn write(path: &Path, stored: &[Stored], options: OutputOptions<'_>) -> Result<Vec<PathBuf>> {
     let container = Container::of(path)?;
-    let mut set = AtomicSet::new();
-    let mut written = Vec::new();
+    let mut files = Files { set: AtomicSet::new(), written: Vec::new(), inputs: options.inputs };
     for part in stored {
         let target = part_path(path, part.part(), container);
-        match container {
-            Container::Png => write_png(&mut set, &target, part, &mut written)?,
-            Container::Exr => {
-                let Stored::Texels(array) = part else {
-                    return Err(
-                        UsageError("EXR cannot hold compressed blocks: write .ktx2 or .dds".into()).into()
-                    );
-                };
-                let exr_options = ExrOptions {
-                    compression: ExrCompression::Zip,
-                    attributes: BTreeMap::from([(
-                        "wrapmodes".to_owned(),
-                        wrap_modes(options.wrap).to_owned(),
-                    )]),
-                };
-                add(&mut set, &target, &mut written, |out| exr::write(array, &exr_options, out))?;
+        match (container, part) {
+            (Container::Png, Stored::Texels(array)) => write_png(&mut files, &target, array)?,
+            (Container::Exr, Stored::Texels(array)) => {
+                let attributes = [("wrapmodes".to_owned(), wrap_modes(options.wrap).to_owned())];
+                let exr_options =
+                    ExrOptions { compression: ExrCompression::Zip, attributes: BTreeMap::from(attributes) };
+                files.add(&target, |out| exr::write(array, &exr_options, out))?;
             }
-            Container::Ktx2 => add(&mut set, &target, &mut written, |out| {
-                ktx2::write(part.payload(), options.supercompression, out)
-            })?,
-            Container::Dds => add(&mut set, &target, &mut written, |out| dds::write(part.payload(), out))?,
+            (Container::Png | Container::Exr, Stored::Blocks(_)) => {
+                unreachable!("Container::check refuses blocks")
+            }
+            (Container::Ktx2, part) => {
+                files.add(&target, |out| ktx2::write(part.payload(), options.supercompression, out))?;
+            }
+            (Container::Dds, part) => files.add(&target, |out| dds::write(part.payload(), out))?,
         }
     }
-    set.commit()?;
-    Ok(written)
+    files.set.commit()?;
+    Ok(files.written)
 }
 
-fn add(
-    set: &mut AtomicSet,
-    target: &Path,
-    written: &mut Vec<PathBuf>,
-    write: impl FnOnce(&mut AtomicFile) -> Result<(), WriteError>,
-) -> Result<()> {
-    let named = || target.display().to_string();
-    let mut file = AtomicFile::create(target).with_context(named)?;
-    write(&mut file).with_context(named)?;
-    set.push(file).with_context(named)?;
-    written.push(target.to_owned());
-    Ok(())
+/// The files of one output.
+struct Files<'a> {
+    set: AtomicSet,
+    written: Vec<PathBuf>,
+    inputs: &'a [&'a Path],
+}
+
+impl Files<'_> {
+    fn add(
+        &mut self,
+        target: &Path,
+        write: impl FnOnce(&mut AtomicFile) -> Result<(), WriteError>,
+    ) -> Result<()> {
+        if self.inputs.iter().any(|input| is_same_file(input, target)) {
+            return Err(usage(target, "it is an input, which would be lost: give the output another name"));
+        }
+        let named = || target.display().to_string();
+        let mut file = AtomicFile::create(target).with_context(named)?;
+        write(&mut file).with_context(named)?;
+        self.set.push(file).with_context(named)?;
+        self.written.push(target.to_owned());
+        Ok(())
+    }
 }
 
 /// `NAME.L0.png` …, with the texture's name before the level where there are several textures.
-fn write_png(set: &mut AtomicSet, path: &Path, stored: &Stored, written: &mut Vec<PathBuf>) -> Result<()> {
-    let Stored::Texels(array) = stored else {
-        return Err(UsageError("PNG cannot hold compressed blocks: write .ktx2 or .dds".into()).into());
-    };
+fn write_png(files: &mut Files<'_>, path: &Path, array: &TextureArray) -> Result<()> {
     let text = array.info.to_pairs();
     for texture in &array.layers {
         for (level, image) in texture.levels.iter().enumerate() {
@@ -139,7 +189,7 @@ fn write_png(set: &mut AtomicSet, path: &Path, stored: &Stored, written: &mut Ve
                 format!("{}.L{level}.png", texture.name)
             };
             let target = path.with_extension(name);
-            add(set, &target, written, |out| png_levels::write_level(image, &text, out))?;
+            files.add(&target, |out| png_levels::write_level(image, &text, out))?;
         }
     }
     Ok(())

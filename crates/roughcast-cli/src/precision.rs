@@ -9,9 +9,10 @@ use roughcast::Bits;
 use roughcast::precision::{Precision, measure, recommend, steepest_slope};
 use serde_json::{Value, json};
 
-use crate::args::{SourceArgs, positive};
+use crate::args::{REPORT, SourceArgs, positive};
+use crate::bake::usage_where_options;
 use crate::input::read_map;
-use crate::say;
+use crate::{say, say_json, warn};
 
 /// Show how precise a map's variance is in 8 bits, 16 bits, half and float, and which of them will do.
 ///
@@ -29,7 +30,7 @@ pub struct Args {
     specular_power: f32,
 
     /// Print the table as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = REPORT)]
     json: bool,
 
     #[command(flatten)]
@@ -39,9 +40,11 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<ExitCode> {
     let map = read_map(&args.input, &args.source)?;
     for warning in &map.warnings {
-        eprintln!("warning: {}: {warning}", args.input.display());
+        warn(&args.input, warning);
     }
-    let rows = measure(&map.image, &map.options).with_context(|| args.input.display().to_string())?;
+    let rows = measure(&map.image, &map.options)
+        .map_err(usage_where_options)
+        .with_context(|| args.input.display().to_string())?;
     let best = recommend(&rows, args.specular_power);
     if args.json {
         let report = json!({
@@ -50,13 +53,13 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             "recommended": best.map(Bits::name),
             "storage": rows.iter().map(|row| as_json(row, args.specular_power)).collect::<Vec<_>>(),
         });
-        say(&serde_json::to_string_pretty(&report).expect("a report is plain data"));
+        say_json(&report)?;
         return Ok(ExitCode::SUCCESS);
     }
     say(&format!(
         "{:<6} {:>9} {:>12} {:>12} {:>12} {:>12} {:>14}",
         "bits", "scale", "error <=", "measured", "usable S", "on this map", "steepest slope"
-    ));
+    ))?;
     for row in &rows {
         say(&format!(
             "{:<6} {:>9.4} {:>12.3e} {:>12.3e} {:>12.0} {:>12.0} {:>14.3}",
@@ -67,9 +70,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             row.usable_specular_power(),
             row.measured_specular_power(),
             steepest_slope(row.bits, args.specular_power),
-        ));
+        ))?;
     }
-    say(&advice(best, args.specular_power));
+    say(&advice(best, args.specular_power))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -9,7 +9,7 @@ use roughcast::{BakeOptions, BakeReport, Kind, Moments, SourceOptions};
 use roughcast_io::FileInfo;
 use serde_json::{Value, json};
 
-use crate::say;
+use crate::{complain, say, say_json, warn};
 
 /// A map's report.
 pub struct FileReport {
@@ -51,18 +51,21 @@ impl CompressionError {
 
 impl FileReport {
     /// Prints the report to stdout and the warnings to stderr.
-    pub fn print(&self, as_json: bool) {
-        for warning in &self.warnings {
-            eprintln!("warning: {}: {warning}", self.input.display());
-        }
+    pub fn print(&self, as_json: bool) -> Result<()> {
+        self.warn();
         if as_json {
-            say(&serde_json::to_string_pretty(&self.json()).expect("a report is plain data"));
-        } else {
-            self.lines().iter().for_each(|line| say(line));
+            return say_json(&self.json());
         }
-        for (stage, time) in self.times.iter().filter(|_| !as_json) {
-            eprintln!("  {stage:<12} {:>8.1} ms", time.as_secs_f64() * 1e3);
+        self.lines().iter().try_for_each(|line| say(line))?;
+        for (stage, time) in &self.times {
+            complain(&format!("  {stage:<12} {:>8.1} ms", time.as_secs_f64() * 1e3));
         }
+        Ok(())
+    }
+
+    /// Prints the warnings to stderr.
+    pub fn warn(&self) {
+        self.warnings.iter().for_each(|warning| warn(&self.input, warning));
     }
 
     fn lines(&self) -> Vec<String> {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow};
 use clap::Args;
-use roughcast::texture::{Brdf, RoughnessStored};
+use roughcast::texture::{Base, Brdf, RoughnessStored};
 use roughcast::{BaseRoughness, Image, RoughnessMap, RoughnessTexture, variance_from_stored};
 use roughcast_io::Limits;
 
@@ -16,12 +16,12 @@ use crate::input::read_image;
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Roughness of the material itself")]
 pub struct RoughnessArgs {
-    /// Shininess as a Blinn-Phong exponent
+    /// The material's shininess, as a Blinn-Phong exponent
     #[arg(long, value_name = "S", value_parser = positive, conflicts_with = "roughness")]
     pub specular_power: Option<f32>,
 
-    /// Roughness: a number, or a picture of the map's size. In a packed picture (occlusion, roughness, metalness) it is
-    /// read from green, and the other two are kept
+    /// The material's roughness: a number, or a picture of the map's size. Of a colour picture it is green, as glTF packs
+    /// occlusion, roughness and metalness; pbr keeps the other two
     #[arg(long, value_name = "FILE|VALUE")]
     pub roughness: Option<String>,
 
@@ -29,14 +29,20 @@ pub struct RoughnessArgs {
     #[arg(long, value_name = "CHANNEL", value_parser = ["r", "g", "b", "a"], requires = "roughness")]
     pub roughness_channel: Option<String>,
 
-    /// How roughness is stored, in the picture and in what `pbr` writes; alpha is the width of the lobe and perceptual
-    /// its root, as glTF has it [default: perceptual; specular-power for --brdf blinn-phong with floats]
-    #[arg(long, value_parser = one_of::<RoughnessStored>())]
+    /// How roughness is stored, in the picture and in what pbr writes: perceptual is what glTF and most tools paint, alpha
+    /// its square, the width of the highlight; gloss is 1 minus perceptual [default: perceptual; exponents are
+    /// written with --brdf blinn-phong in floats]
+    #[arg(long, value_name = "HOW", value_parser = one_of::<RoughnessStored>())]
     pub roughness_stored: Option<RoughnessStored>,
 
-    /// The lobe for which the roughness is meant
+    /// The highlight's shape for which the roughness is meant
     #[arg(long, default_value = "ggx", value_parser = one_of::<Brdf>())]
     pub brdf: Brdf,
+
+    /// Whether this roughness is folded into the stored moments: none (the shader adds it) or baked (it is in, and the
+    /// shader must not). pbr and toksvig always hold it
+    #[arg(long, default_value = "none", value_parser = one_of::<Base>())]
+    pub base: Base,
 }
 
 /// A base roughness with the picture that it may come from.
@@ -83,6 +89,11 @@ impl RoughnessArgs {
     /// How roughness is stored where nothing was said.
     pub fn stored(&self) -> RoughnessStored {
         self.roughness_stored.unwrap_or(RoughnessStored::Perceptual)
+    }
+
+    /// The picture that the arguments name.
+    pub fn file(&self) -> Option<&Path> {
+        self.roughness.as_deref().filter(|text| text.parse::<f32>().is_err()).map(Path::new)
     }
 
     /// Loads what the arguments name; `None` where they name nothing.

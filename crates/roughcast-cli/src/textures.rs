@@ -9,12 +9,13 @@ use roughcast_io::{Limits, ReadError, dds, exr, ktx2};
 use crate::output::{Container, part_path};
 
 /// Reads a file that we wrote. The error names the path.
-pub fn read(path: &Path, limits: &Limits) -> Result<TextureArray> {
+fn read(path: &Path, limits: &Limits) -> Result<TextureArray> {
     let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
     read_bytes(&bytes, limits).with_context(|| path.display().to_string())
 }
 
-fn read_bytes(bytes: &[u8], limits: &Limits) -> Result<TextureArray, ReadError> {
+/// Reads the bytes of a file that we wrote.
+pub fn read_bytes(bytes: &[u8], limits: &Limits) -> Result<TextureArray, ReadError> {
     match bytes {
         [0xab, b'K', b'T', b'X', ..] => ktx2::read_textures(bytes, limits),
         [b'D', b'D', b'S', b' ', ..] => dds::read_textures(bytes, limits),
@@ -29,7 +30,11 @@ fn read_bytes(bytes: &[u8], limits: &Limits) -> Result<TextureArray, ReadError> 
 
 /// Reads a file that we wrote and, for a layout of several, the others beside it.
 pub fn read_with_parts(path: &Path, limits: &Limits) -> Result<Vec<TextureArray>> {
-    let first = read(path, limits)?;
+    with_other_parts(path, read(path, limits)?, limits)
+}
+
+/// The files of the layout whose `first` was read from `path`.
+pub fn with_other_parts(path: &Path, first: TextureArray, limits: &Limits) -> Result<Vec<TextureArray>> {
     let (layout, part) = (first.info.layout, first.info.part);
     let mut arrays = vec![first];
     if matches!(part, Part::Whole | Part::Split) {

@@ -9,9 +9,8 @@ use roughcast::texture::{Layout, Part, Texture, TextureArray, TextureInfo, decod
 use roughcast::{Image, Samples, Wrap};
 use roughcast_io::{Limits, Supercompression};
 
-use crate::UsageError;
 use crate::output::{self, Container, OutputOptions, Stored};
-use crate::textures;
+use crate::{textures, usage};
 
 /// Decode a file that `bake` wrote back to float moments, every level.
 ///
@@ -27,20 +26,20 @@ pub struct Args {
     #[arg(short, long, value_name = "MOMENTS.exr", value_hint = ValueHint::FilePath)]
     output: PathBuf,
 
-    /// Largest number of pixels that a file may have
-    #[arg(long, default_value_t = Limits::default().max_pixels)]
+    /// Most pixels that a file may have
+    #[arg(long, value_name = "N", default_value_t = Limits::default().max_pixels)]
     max_pixels: u64,
 }
 
 pub fn run(args: &Args) -> Result<ExitCode> {
     if Container::of(&args.output)? != Container::Exr {
-        return Err(
-            UsageError(format!("{}: moments are floats; name an .exr file", args.output.display())).into()
-        );
+        return Err(usage(&args.output, "moments are floats, five to a texel: name an .exr file"));
     }
+    output::check_destination(&args.output, Container::Exr, Part::Whole)?;
     let arrays = textures::read_with_parts(&args.file, &Limits { max_pixels: args.max_pixels })?;
     let array = moments_of(&arrays).with_context(|| args.file.display().to_string())?;
-    let options = OutputOptions { supercompression: Supercompression::None, wrap: Wrap::Repeat };
+    let options =
+        OutputOptions { supercompression: Supercompression::None, wrap: Wrap::Repeat, inputs: &[&args.file] };
     output::write(&args.output, &[Stored::Texels(array)], options)?;
     Ok(ExitCode::SUCCESS)
 }
