@@ -6,8 +6,8 @@
 //! cargo run --release --example before_after [-- OUTPUT.png]
 //! ```
 //!
-//! Everything is in the plane's own frame: x to the right, y away from the eye, z up. The eye is one unit above the
-//! origin. Radiance is the density of facets that mirror the sun into the eye, `D(h)` with h half-way between the two;
+//! Everything is in the map's own frame: x to the right of the map, y up the map, z out of the plane. The eye is one unit
+//! above the origin. Radiance is the density of facets that mirror the sun into the eye, `D(h)` with h half-way between the two;
 //! Fresnel and shadowing are the same for all three pictures and are left out.
 
 use rayon::prelude::*;
@@ -19,15 +19,17 @@ const WIDTH: usize = 320;
 const HEIGHT: usize = 320;
 /// Slope of the view ray at the top and at the bottom row: the horizon lies just above the picture.
 const TOP: f32 = 0.008;
-const BOTTOM: f32 = 0.5;
+const BOTTOM: f32 = 0.4;
 /// Texels of the map to a unit of the plane; at the bottom row a pixel is about a texel.
-const TEXELS_PER_UNIT: f32 = 180.0;
+const TEXELS_PER_UNIT: f32 = 400.0;
+/// The way the eye looks, as an angle from the map's y: turned, so that the repeats of the map do not line up.
+const HEADING: f32 = 0.55;
 /// Tangent of the sun's elevation. It stands straight ahead.
-const SUN: f32 = 0.16;
+const SUN: f32 = 0.25;
 /// Blinn-Phong exponent of the rock itself.
-const SHININESS: f32 = 300.0;
-/// Radiance that is shown as white.
-const WHITE: f32 = 4.0;
+const SHININESS: f32 = 100.0;
+/// Exposure of the picture.
+const EXPOSURE: f32 = 0.15;
 /// Rays through a pixel, each way, for the truth: enough for the pixels below the horizon, which see thousands of texels.
 const RAYS: usize = 48;
 /// Most taps of a texture along a slanted footprint, as graphics hardware limits its anisotropic filter.
@@ -58,10 +60,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     });
     let truth = render(|pixel| mean_of_rays(&normals[0], pixel));
 
-    println!("radiance, mean: before {:.3}, after {:.3}, truth {:.3}", mean(&before), mean(&after), mean(&truth));
-    for (name, picture) in [("before", &before), ("after ", &after)] {
-        println!("{name}: RMSE against truth {:.3} (radiance), {:.1} of 255 (as shown)",
-            rmse(picture, &truth, |v| v), 255.0 * rmse(picture, &truth, shown));
+    println!("{:<8}{:>16}{:>20}{:>26}", "", "mean radiance", "RMSE (radiance)", "RMSE (as shown, of 255)");
+    for (name, picture) in [("before", &before), ("after", &after), ("truth", &truth)] {
+        let (radiance, seen) = (rmse(picture, &truth, |v| v), 255.0 * rmse(picture, &truth, shown));
+        println!("{name:<8}{:>16.3}{radiance:>20.3}{seen:>26.1}", mean(picture));
     }
     save(&output, &[before, after, truth])?;
     Ok(())
@@ -111,16 +113,24 @@ fn ray(pixel: Vec2) -> Vec2 {
     [(pixel[0] - WIDTH as f32 / 2.0) * across, TOP + pixel[1] * across]
 }
 
-/// Where a pixel's ray meets the plane, in texels of the map. Rows of the map grow downwards, towards the eye.
+/// Where a pixel's ray meets the plane, in texels of the map. Rows of the map grow downwards, against y.
 fn texel_of(pixel: Vec2) -> Vec2 {
     let [right, down] = ray(pixel);
-    [TEXELS_PER_UNIT * right / down, -TEXELS_PER_UNIT / down]
+    let [x, y] = turned([right / down, 1.0 / down]);
+    [TEXELS_PER_UNIT * x, -TEXELS_PER_UNIT * y]
 }
 
 fn half_vector(pixel: Vec2) -> Vec3 {
     let [right, down] = ray(pixel);
     let (eye, sun) = (normalize([-right, -1.0, down]), normalize([0.0, 1.0, SUN]));
-    normalize([eye[0] + sun[0], eye[1] + sun[1], eye[2] + sun[2]])
+    let [x, y] = turned([eye[0] + sun[0], eye[1] + sun[1]]);
+    normalize([x, y, eye[2] + sun[2]])
+}
+
+/// From right and ahead to x and y.
+fn turned([right, ahead]: Vec2) -> Vec2 {
+    let (sin, cos) = HEADING.sin_cos();
+    [cos * right + sin * ahead, cos * ahead - sin * right]
 }
 
 fn render(radiance: impl Fn(Vec2) -> f32 + Sync) -> Vec<f32> {
@@ -225,20 +235,20 @@ fn filtered<const N: usize>(levels: &[Level<N>], footprint: &Footprint) -> [f32;
 
 // ---- pictures and small things -------------------------------------------------------------------------------------
 
-/// Radiance as a display shows it, 0 to 1: cut at white, sRGB.
+/// Radiance as a display shows it, 0 to 1: exposed as by film, so that highlights are not cut off, then sRGB.
 fn shown(radiance: f32) -> f32 {
-    let v = (radiance / WHITE).clamp(0.0, 1.0);
+    let v = 1.0 - (-EXPOSURE * radiance).exp();
     if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 }
 }
 
 fn save(path: &str, pictures: &[Vec<f32>]) -> image::ImageResult<()> {
     const GAP: usize = 8;
-    let mut all = image::GrayImage::from_pixel(
-        (pictures.len() * (WIDTH + GAP) - GAP) as u32, HEIGHT as u32, image::Luma([255]));
+    let width = pictures.len() * (WIDTH + GAP) - GAP;
+    let mut all = image::GrayImage::from_pixel(width as u32, HEIGHT as u32, image::Luma([255]));
     for (number, picture) in pictures.iter().enumerate() {
         for (i, radiance) in picture.iter().enumerate() {
-            let x = number * (WIDTH + GAP) + i % WIDTH;
-            all.put_pixel(x as u32, (i / WIDTH) as u32, image::Luma([(255.0 * shown(*radiance)).round() as u8]));
+            let (x, y) = (number * (WIDTH + GAP) + i % WIDTH, i / WIDTH);
+            all[(x as u32, y as u32)].0 = [(255.0 * shown(*radiance)).round() as u8];
         }
     }
     all.save(path)
