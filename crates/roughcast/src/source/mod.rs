@@ -204,19 +204,37 @@ vectorised! {
 
 /// One channel of a stretch of a row as floats: unsigned types as 0 ..= 1, floats as they are.
 fn load_channel(image: &Image, channel: usize, x: usize, y: usize, out: &mut [f32]) {
-    fn load<T: Copy>(texels: &[T], channels: usize, channel: usize, out: &mut [f32], to: impl Fn(T) -> f32) {
-        for (texel, value) in texels.chunks_exact(channels).zip(out) {
-            *value = to(texel[channel]);
-        }
-    }
     let channels = image.channels();
     let start = (y * image.width() + x) * channels;
     let range = start..start + out.len() * channels;
     match image.samples() {
-        Samples::U8(v) => load(&v[range], channels, channel, out, unorm8),
-        Samples::U16(v) => load(&v[range], channels, channel, out, unorm16),
+        Samples::U8(v) => load_u8(&v[range], channels, channel, out),
+        Samples::U16(v) => load_u16(&v[range], channels, channel, out),
         Samples::F16(v) => load(&v[range], channels, channel, out, half::f16::to_f32),
         Samples::F32(v) => load(&v[range], channels, channel, out, |v| v),
+    }
+}
+
+vectorised! {
+    fn load_u8(texels: &[u8], channels: usize, channel: usize, out: &mut [f32]) {
+        load(texels, channels, channel, out, unorm8);
+    }
+}
+
+vectorised! {
+    fn load_u16(texels: &[u16], channels: usize, channel: usize, out: &mut [f32]) {
+        load(texels, channels, channel, out, unorm16);
+    }
+}
+
+// Inlined into the functions above, so that it is compiled for each of their instruction sets.
+#[inline(always)]
+fn load<T: Copy>(texels: &[T], channels: usize, channel: usize, out: &mut [f32], to: impl Fn(T) -> f32) {
+    if channels == 1 {
+        texels.iter().zip(out).for_each(|(texel, value)| *value = to(*texel));
+    } else {
+        let texels = texels.chunks_exact(channels);
+        texels.zip(out).for_each(|(texel, value)| *value = to(texel[channel]));
     }
 }
 
