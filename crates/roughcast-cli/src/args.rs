@@ -10,7 +10,11 @@ use roughcast_io::Limits;
 /// A parser that takes the names of an enum's variants.
 pub fn one_of<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T> {
     PossibleValuesParser::new(T::all().iter().map(|variant| variant.name())).map(|name| {
-        T::all().iter().copied().find(|variant| variant.name() == name).expect("the parser lets only names through")
+        T::all()
+            .iter()
+            .copied()
+            .find(|variant| variant.name() == name)
+            .expect("the parser lets only names through")
     })
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, anyhow};
 use roughcast::detect::{
-    GreenVerdict, KindGuess, guess_components, guess_kind, guess_range, test_green_of_map,
+    GreenVerdict, KindGuess, guess_channels, guess_kind, guess_range, test_green_of_map,
 };
 use roughcast::{Green, Image, Kind, NormalChannels, NormalRange, SourceOptions};
 use roughcast_io::{Decoded, FileInfo, Limits, ValueRange};
@@ -33,7 +33,7 @@ pub fn read_map(path: &Path, args: &SourceArgs) -> Result<Map> {
     let range = args.range.unwrap_or_else(|| range_of(&image, &info));
     let kind = kind_of(&image, &info, range, args.kind).with_context(|| path.display().to_string())?;
     let channels = args.normal_channels.unwrap_or_else(|| match kind {
-        Kind::Normal => guess_components(&image, &info.channels, range),
+        Kind::Normal => guess_channels(&image, &info.channels, range),
         Kind::Height => NormalChannels::Xyz,
     });
     let options = args.options(kind, range, channels);

@@ -26,7 +26,7 @@ const REFUSED: [(&str, &str); 9] = [
     ("formats/exr/magnum_openexr_rg32ui.exr", "the integer channel R is not supported"),
     ("formats/tiff/imgrs_cmyk_u8_edge_case.tif", "the colour type CMYK(8) is not supported"),
     ("formats/tiff/imgrs_ycbcr_lzw_broken.tif", "the colour type YCbCr(8) is not supported"),
-    ("formats/tiff/pillow_16bit.s.tif", "the sample type signed 16-bit integer is not supported"),
+    ("formats/tiff/pillow_16bit.s.tif", "the sample type signed integer of 16 bits is not supported"),
     ("formats/tiff/pillow_tiff_tiled_planar_16bit_RGB.tiff", "a planar image in tiles is not supported"),
     ("formats/tiff/pillow_tiff_tiled_planar_16bit_RGBa.tiff", "a planar image in tiles is not supported"),
 ];

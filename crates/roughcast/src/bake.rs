@@ -111,7 +111,6 @@ pub fn bake_reusing(
     limit_slopes(&mut source_options, roughness, options)?;
     let source = source_of(image, source_options, roughness, options)?;
     let pyramid_options = PyramidOptions { filter: options.filter, wrap: source_options.wrap };
-    let looked_at = survey(&source);
     let mut info = TextureInfo {
         base: base_of(options, roughness.is_some()),
         base_variance: base_variance(roughness),
@@ -119,28 +118,37 @@ pub fn bake_reusing(
         roughness_stored: options.roughness_stored,
         ..TextureInfo::new(options.layout, first_part(options))
     };
-    let peaks = set_scales(&mut info, &looked_at, &source, pyramid_options, options);
+    let sample_type = options.bits.sample_type();
+    // A scale that is to be found needs a look at every slope first; otherwise one pass does it all.
+    let looked_at = (!sample_type.is_float() && options.scale == ScaleChoice::Auto).then(|| survey(&source));
+    let largest_variance =
+        stores_variance(options.layout).then(|| largest_variance(&source, pyramid_options));
+    set_scales(&mut info, looked_at.as_ref(), largest_variance, options);
     let mut arrays = allocate(textures, &info, options, (image.width(), image.height()));
     let shape = EncoderShape {
         lobe: options.lobe,
         roughness_texture: options.roughness_texture,
         normal_channels: if options.blocks == Blocks::Bc { 2 } else { 4 },
     };
-    let sample_type = options.bits.sample_type();
     let encoder = texture::encoder(&info, sample_type, shape);
     let outs = level_outs(&mut arrays, encoder.as_ref());
     let built = pyramid::build(&source, pyramid_options, outs);
-    let bounds = texture::bounds_of_shape(&info, sample_type, shape, &peaks);
+    let finest = &built.levels[0];
+    let peaks = Peaks {
+        component: finest.largest_component,
+        slope: finest.steepest,
+        variance: largest_variance.unwrap_or(finest.max_variance),
+    };
     let report = BakeReport {
         counts: built.counts,
-        texels: looked_at.texels,
+        texels: image.width() as u64 * image.height() as u64,
         scale: info.scale,
         variance_scale: info.variance_scale,
-        steepest: looked_at.steepest,
+        steepest: finest.steepest,
         rms_slope: f64::from(built.whole.xx + built.whole.yy).sqrt(),
         whole: built.whole,
-        bounds,
-        advice: advice(&info, shape, &looked_at, &peaks, options),
+        bounds: texture::bounds_of_shape(&info, sample_type, shape, &peaks),
+        advice: looked_at.and_then(|looked_at| advice(&info, sample_type, shape, &looked_at, &peaks)),
         levels: level_sizes(image.width(), image.height()).into_iter().zip(built.levels).collect(),
     };
     Ok(Baked { arrays, report })
@@ -281,61 +289,59 @@ fn first_part(options: &BakeOptions) -> Part {
     }
 }
 
-/// Chooses the scales of unsigned texels and says how large what they hold can become.
+/// Whether a layout holds variances or deviations themselves, which need a scale of their own.
+fn stores_variance(layout: Layout) -> bool {
+    matches!(layout, Layout::Schilling | Layout::SchillingIsotropic | Layout::Variance)
+}
+
+/// The largest variance of any level, which is only known when all have been made.
+fn largest_variance(source: &MapSource<'_>, options: PyramidOptions) -> f32 {
+    let sizes = level_sizes(source.width(), source.height());
+    let built = pyramid::build(source, options, sizes.into_iter().map(LevelOut::measured).collect());
+    built.levels.iter().map(|level| level.max_variance).fold(0.0, f32::max)
+}
+
+/// Chooses the scales of unsigned texels.
 fn set_scales(
     info: &mut TextureInfo,
-    looked_at: &Survey,
-    source: &MapSource<'_>,
-    pyramid_options: PyramidOptions,
+    looked_at: Option<&Survey>,
+    largest_variance: Option<f32>,
     options: &BakeOptions,
-) -> Peaks {
-    let mut peaks = Peaks {
-        component: looked_at.largest_component,
-        slope: looked_at.steepest,
-        variance: looked_at.largest_base_variance,
-    };
-    let stores_variance =
-        matches!(options.layout, Layout::Schilling | Layout::SchillingIsotropic | Layout::Variance);
-    if stores_variance {
-        // The largest variance of any level is only known when all have been made.
-        let sizes = level_sizes(source.width(), source.height());
-        let outs = sizes.into_iter().map(LevelOut::measured).collect();
-        let built = pyramid::build(source, pyramid_options, outs);
-        peaks.variance = built.levels.iter().map(|level| level.max_variance).fold(0.0, f32::max);
-    }
+) {
     if options.bits.sample_type().is_float() {
-        return peaks;
+        return;
     }
-    info.scale = match options.scale {
-        ScaleChoice::Fixed(scale) => scale,
-        ScaleChoice::Auto if stores_variance => peaks.component.max(SMALLEST_SCALE),
-        ScaleChoice::Auto => peaks.second().sqrt().max(SMALLEST_SCALE),
+    info.scale = match (options.scale, looked_at) {
+        (ScaleChoice::Fixed(scale), _) => scale,
+        (ScaleChoice::Auto, Some(looked_at)) => smallest_scale(options.layout, &looked_at.peaks),
+        (ScaleChoice::Auto, None) => unreachable!("a scale to be found is looked for"),
     };
-    let smallest_variance = SMALLEST_SCALE * SMALLEST_SCALE;
+    let variance = largest_variance.unwrap_or(0.0);
     info.variance_scale = match options.layout {
-        Layout::Variance => peaks.variance.max(smallest_variance),
-        Layout::Schilling => peaks.variance.sqrt().max(SMALLEST_SCALE),
+        Layout::Variance => variance.max(SMALLEST_SCALE * SMALLEST_SCALE),
+        Layout::Schilling => variance.sqrt().max(SMALLEST_SCALE),
         // The larger eigenvalue can reach the sum of both variances.
-        Layout::SchillingIsotropic => (2.0 * peaks.variance).sqrt().max(SMALLEST_SCALE),
+        Layout::SchillingIsotropic => (2.0 * variance).sqrt().max(SMALLEST_SCALE),
         _ => 1.0,
     };
-    peaks
+}
+
+/// The smallest scale that holds every slope and, where a layout stores them, every second moment.
+fn smallest_scale(layout: Layout, peaks: &Peaks) -> f32 {
+    let needed = if stores_variance(layout) { peaks.component } else { peaks.second().sqrt() };
+    needed.max(SMALLEST_SCALE)
 }
 
 fn advice(
     info: &TextureInfo,
+    sample_type: SampleType,
     shape: EncoderShape,
     looked_at: &Survey,
     peaks: &Peaks,
-    options: &BakeOptions,
 ) -> Option<ScaleAdvice> {
-    let sample_type = options.bits.sample_type();
-    if sample_type.is_float() || options.scale != ScaleChoice::Auto {
-        return None;
-    }
     let max_slope = looked_at.slope_exceeded_by(STEEP_PART);
     let limited = Peaks { component: max_slope.min(peaks.component), slope: max_slope, ..*peaks };
-    let limited_info = TextureInfo { scale: limited.second().sqrt().max(SMALLEST_SCALE), ..*info };
+    let limited_info = TextureInfo { scale: smallest_scale(info.layout, &limited), ..*info };
     let power = |info: &TextureInfo, peaks: &Peaks| {
         texture::bounds_of_shape(info, sample_type, shape, peaks).usable_specular_power()
     };

@@ -1,14 +1,14 @@
-//! Decides from pixels what a map is: normals or heights, which components and range, green up or down.
+//! Decides from pixels what a map is: normals or heights, in which channels and range, green up or down.
 //!
 //! The statements are made for the caller to act on or to overrule: where the pixels do not tell, the answer
 //! says so. All of it is deterministic; large images are judged by a regular sample of their texels.
 
-mod components;
+mod channels;
 mod green;
 mod kind;
 mod sample;
 mod vectors;
 
-pub use components::{guess_components, guess_range};
+pub use channels::{guess_channels, guess_range};
 pub use green::{GreenTest, GreenVerdict, test_green, test_green_of_map};
 pub use kind::{KindGuess, guess_kind};

@@ -15,6 +15,7 @@ mod slope;
 mod source;
 mod survey;
 pub mod texture;
+mod vectorised;
 
 pub use bake::{BakeError, BakeReport, Baked, ScaleAdvice, bake, bake_reusing, refuse_filter};
 pub use image::{Image, ImageError, SampleType, Samples};
@@ -27,4 +28,3 @@ pub use options::{
 pub use pyramid::{LevelStats, level_sizes};
 pub use slope::{Normal, Slope, SourceCounts, mended_slope, normal_from_slope, slope_from_normal};
 pub use source::{BaseRoughness, RoughnessMap, SourceError, stored_from_variance, variance_from_stored};
-pub use survey::Survey;

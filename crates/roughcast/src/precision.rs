@@ -160,7 +160,10 @@ mod tests {
             (Bits::Sixteen, 1.0, 26_214.0),
         ] {
             let got = unorm_specular_power(bits, slope);
-            assert!((got / power - 1.0).abs() < NOT_COUNTED_IN_THE_TEXT, "{bits} bits, {slope}: {got}, not {power}");
+            assert!(
+                (got / power - 1.0).abs() < NOT_COUNTED_IN_THE_TEXT,
+                "{bits} bits, {slope}: {got}, not {power}"
+            );
         }
     }
 

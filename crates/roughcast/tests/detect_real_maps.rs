@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use image::{ColorType, DynamicImage};
 use roughcast::detect::{
-    GreenTest, GreenVerdict, KindGuess, guess_components, guess_kind, guess_range, test_green,
+    GreenTest, GreenVerdict, KindGuess, guess_channels, guess_kind, guess_range, test_green,
 };
 use roughcast::{Image, Kind, NormalChannels, NormalRange, Samples};
 
@@ -153,7 +153,7 @@ fn blue_that_holds_no_z_is_found() {
             }
             _ => NormalChannels::Xyz,
         };
-        assert_eq!(guess_components(&image, &channels, guess_range(&image)), expected, "{path}");
+        assert_eq!(guess_channels(&image, &channels, guess_range(&image)), expected, "{path}");
     }
 }
 

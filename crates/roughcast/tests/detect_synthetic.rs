@@ -1,6 +1,6 @@
 //! The detection of `roughcast::detect` on maps that are made here, each with one property of interest.
 
-use roughcast::detect::{GreenVerdict, KindGuess, guess_components, guess_kind, guess_range, test_green};
+use roughcast::detect::{GreenVerdict, KindGuess, guess_channels, guess_kind, guess_range, test_green};
 use roughcast::{Image, Kind, NormalChannels, NormalRange, Samples};
 
 const SIZE: usize = 96;
@@ -70,7 +70,7 @@ fn the_number_of_channels_decides_where_it_can() {
 
     let two = bytes(SIZE, SIZE, |x, y| [0, 1].map(|c| stored(wave_normal(x, y)[c])));
     assert_eq!(guess(&two, &["R", "G"]), NORMAL);
-    assert_eq!(guess_components(&two, &["R", "G"], NormalRange::Unorm), NormalChannels::Xy);
+    assert_eq!(guess_channels(&two, &["R", "G"], NormalRange::Unorm), NormalChannels::Xy);
     let bright = bytes(SIZE, SIZE, |x, y| [1.0, stored(noise(x, y, 3))]);
     assert!(doubt(&bright, &["R", "G"]).contains("x^2 + y^2"));
 
@@ -101,7 +101,7 @@ fn one_colour_all_over_is_judged_by_the_colour() {
     let constant = |r: u8, g: u8, b: u8| bytes(16, 16, |_, _| [r, g, b].map(|v| f32::from(v) / 255.0));
     for (r, g, b) in [(128, 128, 255), (127, 127, 255), (127, 128, 254), (128, 128, 253)] {
         assert_eq!(guess(&constant(r, g, b), &RGB), NORMAL, "{r}, {g}, {b}");
-        assert_eq!(guess_components(&constant(r, g, b), &RGB, NormalRange::Unorm), NormalChannels::Xyz);
+        assert_eq!(guess_channels(&constant(r, g, b), &RGB, NormalRange::Unorm), NormalChannels::Xyz);
     }
     for grey in [0, 1, 127, 128, 255] {
         assert_eq!(guess(&constant(grey, grey, grey), &RGB), HEIGHT, "{grey}");
@@ -116,7 +116,7 @@ fn one_colour_all_over_is_judged_by_the_colour() {
 fn three_components_are_found_in_each_range() {
     let unorm = bytes(SIZE, SIZE, |x, y| wave_normal(x, y).map(stored));
     assert_eq!(guess(&unorm, &RGB), NORMAL);
-    assert_eq!(guess_components(&unorm, &RGB, NormalRange::Unorm), NormalChannels::Xyz);
+    assert_eq!(guess_channels(&unorm, &RGB, NormalRange::Unorm), NormalChannels::Xyz);
     let packed = bytes(SIZE, SIZE, |x, y| {
         let [r, g, b] = wave_normal(x, y).map(stored);
         [r, g, b, stored(noise(x, y, 6))]
@@ -162,7 +162,7 @@ fn x_and_y_are_found_beside_a_constant_blue() {
             [stored(nx), stored(ny), blue]
         });
         assert_eq!(guess(&image, &RGB), NORMAL, "blue {blue}");
-        assert_eq!(guess_components(&image, &RGB, NormalRange::Unorm), NormalChannels::Xy, "blue {blue}");
+        assert_eq!(guess_channels(&image, &RGB, NormalRange::Unorm), NormalChannels::Xy, "blue {blue}");
         // The same values, but no slopes of any surface.
         let shuffled =
             bytes(SIZE, SIZE, |x, y| [0.5 + 0.3 * noise(x, y, 8), 0.5 + 0.3 * noise(x, y, 9), blue]);
@@ -181,16 +181,19 @@ fn blue_that_is_z_itself_is_found() {
         [stored(nx), stored(ny), nz]
     });
     assert_eq!(guess(&image, &RGB), NORMAL);
-    assert_eq!(guess_components(&image, &RGB, NormalRange::Unorm), NormalChannels::Xy);
+    assert_eq!(guess_channels(&image, &RGB, NormalRange::Unorm), NormalChannels::Xy);
 }
 
 #[test]
-fn x_in_alpha_is_pointed_out() {
+fn x_in_alpha_is_found() {
     let image = bytes(SIZE, SIZE, |x, y| {
         let [nx, ny, _] = wave_normal(x, y);
         [1.0, stored(ny), 0.0, stored(nx)]
     });
-    assert!(doubt(&image, &RGBA).contains("x in alpha"));
+    assert_eq!(guess(&image, &RGBA), NORMAL);
+    assert_eq!(guess_channels(&image, &RGBA, NormalRange::Unorm), NormalChannels::Ag);
+    let shuffled = bytes(SIZE, SIZE, |x, y| [1.0, stored(noise(x, y, 16)), 0.0, stored(noise(x, y, 17))]);
+    assert!(doubt(&shuffled, &RGBA).contains("slopes of a surface"));
 }
 
 #[test]

@@ -3,10 +3,11 @@
 //! Film tools read such a file as a texture like those of OpenImageIO's `maketx`: `oiiotool`, renderers with
 //! OpenImageIO's texture system, and whatever else opens tiled OpenEXR.
 
+mod bits;
+mod code;
 mod deflate;
 mod header;
 mod huffman;
-mod layers;
 mod plan;
 mod read;
 mod write;

@@ -12,10 +12,9 @@ use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
 use half::f16;
 use rayon::prelude::*;
-use roughcast::texture::{Texture, TextureArray, TextureInfo};
+use roughcast::texture::{LayerSpec, Texture, TextureArray, TextureInfo, layers_of};
 use roughcast::{Image, SampleType, Samples};
 
-use super::layers::{LayerSpec, layers_of};
 use super::plan::{TilePlace, level_sizes, tile_places};
 use super::{TILE, zip};
 use crate::{Limits, ReadError};
@@ -32,13 +31,13 @@ const CHUNK_HEAD: usize = 5 * size_of::<i32>();
 /// OpenEXR files that are built otherwise; [`ReadError::Info`] where roughcast's metadata is missing;
 /// [`ReadError::TooLarge`] where level 0 of all layers together has more pixels than `limits` allow.
 pub fn read_textures(bytes: &[u8], limits: &Limits) -> Result<TextureArray, ReadError> {
-    read_layers(bytes, limits, layers_of)
+    read_layers(bytes, limits, |info| layers_of(info).to_vec())
 }
 
 pub(super) fn read_layers(
     bytes: &[u8],
     limits: &Limits,
-    layers_of: impl Fn(&TextureInfo) -> Result<Vec<LayerSpec>, ReadError>,
+    layers_of: impl Fn(&TextureInfo) -> Vec<LayerSpec>,
 ) -> Result<TextureArray, ReadError> {
     let mut cursor = Cursor::new(bytes);
     let meta =
@@ -49,7 +48,7 @@ pub(super) fn read_layers(
     let (width, height) = (header.layer_size.width(), header.layer_size.height());
     check_structure(header)?;
     let info = TextureInfo::from_pairs(&text_attributes(header))?;
-    let specs = layers_of(&info)?;
+    let specs = layers_of(&info);
     let pixels = (width as u64).saturating_mul(height as u64).saturating_mul(specs.len() as u64);
     if pixels > limits.max_pixels {
         let (width, height) = (width as u64, height as u64);
@@ -239,7 +238,7 @@ impl File<'_> {
 
     fn textures(&self, levels: Vec<Vec<Samples>>, specs: Vec<LayerSpec>) -> Vec<Texture> {
         let mut textures: Vec<Texture> = (specs.into_iter())
-            .map(|spec| Texture { name: spec.name, channels: spec.channels, levels: Vec::new() })
+            .map(|spec| Texture { name: spec.name, channels: spec.channels.to_vec(), levels: Vec::new() })
             .collect();
         for ((width, height), layers) in self.sizes.iter().zip(levels) {
             for (texture, samples) in textures.iter_mut().zip(layers) {

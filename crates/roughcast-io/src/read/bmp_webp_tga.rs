@@ -27,7 +27,30 @@ pub(super) fn read_webp(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadEr
     if decoder.has_animation() {
         return Err(unsupported("WebP", "an animation", "save the frame that is meant as a PNG"));
     }
+    check_webp_chunks(bytes, limits)?;
     decode("WebP", decoder, limits)
+}
+
+/// Refuses what the decoder lets pass: a file that was cut within its last rows, which it fills with the row above, and
+/// a lossy frame larger than the image, for which it allocates before it compares the two.
+fn check_webp_chunks(bytes: &[u8], limits: &Limits) -> Result<(), ReadError> {
+    /// Tag, start code, width and height of 14 bits each: RFC 6386, 9.1.
+    const FRAME_HEADER: usize = 10;
+    const MAX_SIDE: u16 = 0x3fff;
+    let too_short = || malformed("WebP", "the file ends too early");
+    let mut rest = bytes.get(12..).ok_or_else(too_short)?;
+    while let Some((header, tail)) = rest.split_at_checked(8) {
+        let len = u32::from_le_bytes([header[4], header[5], header[6], header[7]]) as usize;
+        let payload = tail.get(..len).ok_or_else(too_short)?;
+        if header.starts_with(b"VP8 ") {
+            let frame = payload.get(..FRAME_HEADER).ok_or_else(too_short)?;
+            let side = |at: usize| u16::from_le_bytes([frame[at], frame[at + 1]]) & MAX_SIDE;
+            check_size("WebP", side(6).into(), side(8).into(), limits)?;
+        }
+        // Chunks are padded to an even length; the padding of the last one may be missing.
+        rest = tail.get(len + len % 2..).unwrap_or_default();
+    }
+    Ok(())
 }
 
 /// Reads a TGA: grey, grey and alpha, RGB or RGBA. Palettes become RGB or RGBA, five bits become eight.

@@ -3,22 +3,20 @@
 use std::io::Cursor;
 
 use roughcast::{Image, Samples};
-use tiff::decoder::{ChunkType, Decoder, DecodingResult};
-use tiff::tags::{CompressionMethod, PhotometricInterpretation, Tag};
+use tiff::decoder::{ChunkType, Decoder};
+use tiff::tags::{CompressionMethod, PhotometricInterpretation, SampleFormat, Tag};
 use tiff::{ColorType, TiffError, TiffUnsupportedError};
 
-use super::memory::{check_size, malformed, unsupported};
+use super::memory::{check_size, malformed, unsupported, zeros};
 use crate::{Decoded, FileInfo, Limits, ReadError, ValueRange};
 
 const FORMAT: &str = "TIFF";
 const SAVE_PLAIN: &str = "save it as grey or RGB of 8 or 16 bits or of floats";
-/// Bytes of the widest sample that is read, a double.
-const MAX_SAMPLE_BYTES: u64 = 8;
 
 /// Reads the first image of a TIFF.
 ///
-/// Unsigned integers of up to 8 and of 9 to 16 bits, half floats, floats and doubles are read. Signed and 32-bit
-/// integers are refused: TIFF does not say whether they stand for -1 ..= 1, for metres or for names of objects.
+/// Unsigned integers of 1, 2, 4, 8 and 16 bits, half floats, floats and doubles are read. Signed and 32-bit integers are
+/// refused: TIFF does not say whether they stand for -1 ..= 1, for metres or for names of objects.
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
     let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(fault)?;
     let (width, height) = decoder.dimensions().map_err(fault)?;
@@ -27,15 +25,11 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> 
     check_chunks(&mut decoder, (width, height), &layout, limits)?;
 
     let mut decoder_limits = tiff::decoder::Limits::default();
-    decoder_limits.decoding_buffer_size = width * height * layout.channels.len() * MAX_SAMPLE_BYTES as usize;
     decoder_limits.intermediate_buffer_size = bytes.len();
     let mut decoder = decoder.with_limits(decoder_limits);
-    let mut decoded = DecodingResult::U8(Vec::new());
-    let stored = decoder.read_image_to_buffer(&mut decoded).map_err(fault)?;
-
     let channels = layout.channels.len();
-    let planes = stored.planes.max(1);
-    let samples = convert(decoded, &layout, width * channels / planes)?;
+    let planes = decoder.image_buffer_layout().map_err(fault)?.planes.max(1);
+    let samples = read_samples(&mut decoder, &layout, width * channels / planes)?;
     let samples = if planes > 1 { interleave(samples, planes)? } else { samples };
     let range = if samples.sample_type().is_float() { ValueRange::Float } else { ValueRange::Unorm };
     let image = Image::new(width, height, channels, samples).map_err(|e| malformed(FORMAT, e))?;
@@ -119,32 +113,44 @@ fn check_chunks(
     check_size(FORMAT, padded(width, chunk_width).saturating_mul(samples), tiles_height, limits).map(|_| ())
 }
 
-/// The samples in the image's types. `samples_per_row` counts those of one plane.
-fn convert(decoded: DecodingResult, layout: &Layout, samples_per_row: usize) -> Result<Samples, ReadError> {
-    let integers = |signedness: &str| {
-        let what = format!("the sample type {signedness} {}-bit integer", layout.bits);
-        Err(unsupported(FORMAT, what, "save it as unsigned 8 or 16 bits, or as floats"))
-    };
-    match (decoded, layout.bits) {
-        (DecodingResult::U8(samples), 8) => Ok(Samples::U8(samples)),
-        (DecodingResult::U8(packed), bits @ (1 | 2 | 4)) => {
-            Ok(Samples::U8(unpack(&packed, bits, samples_per_row)))
+/// The samples in the image's types, plane by plane as they are stored. `samples_per_row` counts those of one plane.
+fn read_samples(
+    decoder: &mut Decoder<Cursor<&[u8]>>,
+    layout: &Layout,
+    samples_per_row: usize,
+) -> Result<Samples, ReadError> {
+    let stored = decoder.image_buffer_layout().map_err(fault)?;
+    let bytes = stored.complete_len;
+    match (stored.sample_format, layout.bits) {
+        (SampleFormat::Uint, 8) => Ok(Samples::U8(fill(decoder, bytes)?)),
+        (SampleFormat::Uint, bits @ (1 | 2 | 4)) => {
+            Ok(Samples::U8(unpack(&fill::<u8>(decoder, bytes)?, bits, samples_per_row)))
         }
-        (DecodingResult::U16(samples), 16) => Ok(Samples::U16(samples)),
-        (DecodingResult::F16(samples), _) => Ok(Samples::F16(samples)),
-        (DecodingResult::F32(samples), _) => Ok(Samples::F32(samples)),
-        (DecodingResult::F64(samples), _) => {
-            Ok(Samples::F32(samples.into_iter().map(|v| v as f32).collect()))
+        (SampleFormat::Uint, 16) => Ok(Samples::U16(fill(decoder, bytes)?)),
+        (SampleFormat::IEEEFP, 16) => Ok(Samples::F16(fill(decoder, bytes)?)),
+        (SampleFormat::IEEEFP, 32) => Ok(Samples::F32(fill(decoder, bytes)?)),
+        (SampleFormat::IEEEFP, 64) => {
+            let doubles: Vec<f64> = fill(decoder, bytes)?;
+            Ok(Samples::F32(doubles.into_iter().map(|v| v as f32).collect()))
         }
-        (
-            DecodingResult::U8(_) | DecodingResult::U16(_) | DecodingResult::U32(_) | DecodingResult::U64(_),
-            _,
-        ) => integers("unsigned"),
-        (
-            DecodingResult::I8(_) | DecodingResult::I16(_) | DecodingResult::I32(_) | DecodingResult::I64(_),
-            _,
-        ) => integers("signed"),
+        (format, bits) => {
+            let kind = match format {
+                SampleFormat::Uint => "unsigned integer",
+                SampleFormat::Int => "signed integer",
+                SampleFormat::IEEEFP => "float",
+                _ => "unknown",
+            };
+            let what = format!("the sample type {kind} of {bits} bits");
+            Err(unsupported(FORMAT, what, "save it as unsigned 8 or 16 bits, or as floats"))
+        }
     }
+}
+
+/// Decodes into a buffer of our own, whose lack of memory is an error.
+fn fill<T: bytemuck::Pod>(decoder: &mut Decoder<Cursor<&[u8]>>, bytes: usize) -> Result<Vec<T>, ReadError> {
+    let mut samples = zeros::<T>(bytes / size_of::<T>())?;
+    decoder.read_image_bytes(bytemuck::cast_slice_mut(&mut samples)).map_err(fault)?;
+    Ok(samples)
 }
 
 /// Samples of 1, 2 or 4 bits, whose rows begin at whole bytes, as bytes of full range.
@@ -166,7 +172,7 @@ fn unpack(packed: &[u8], bits: u8, samples_per_row: usize) -> Vec<u8> {
 /// Planes one after another, as pixels.
 fn interleave(samples: Samples, planes: usize) -> Result<Samples, ReadError> {
     fn weave<T: Copy + bytemuck::Zeroable>(planar: &[T], planes: usize) -> Result<Vec<T>, ReadError> {
-        let mut pixels = super::memory::zeros::<T>(planar.len())?;
+        let mut pixels = zeros::<T>(planar.len())?;
         let plane_len = planar.len() / planes;
         for (channel, plane) in planar.chunks_exact(plane_len.max(1)).enumerate() {
             pixels[channel..]

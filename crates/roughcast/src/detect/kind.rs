@@ -1,13 +1,9 @@
 //! Guesses from channels and texels whether a map holds normals or heights.
 
-use super::components::{Blue, colour_channels, guess_blue, looks_like_slopes};
-use super::sample::{quantile, share, spread, texels};
+use super::channels::{Blue, colour_channels, guess_blue, looks_like_slopes, x_is_in_alpha};
+use super::sample::{SAME, quantile, share, spread, texels};
 use super::vectors::{MAX_MEAN_TILT, MAX_XY_LENGTH, UNIT, decoded, length, mean_xy};
-use crate::{Image, Kind, NormalRange};
-
-/// Stored values closer than this, of a full scale of 1, are equal but for rounding and lossy compression:
-/// two 8-bit steps, and a little room for the rounding of the comparison.
-const SAME: f32 = 2.1 / 255.0;
+use crate::{Image, Kind, NormalChannels, NormalRange};
 
 /// In a grey picture fewer than 1 texel in 1000 has channels further apart than this, of a full scale of 1.
 /// Of the real grey maps 1 in 1000 reaches 5/255 at most; of the greyest coloured albedo 19 in 1000 exceed
@@ -61,29 +57,19 @@ impl KindGuess {
 /// file does not say.
 ///
 /// One channel is a height, two are a normal's x and y. Three are judged by what is in them: grey is a
-/// height, vectors of about unit length that point out of the surface are normals. Maps of roughness or
+/// height, vectors of about unit length that point out of the surface are normals, and so are x and y that
+/// come with constants instead of z. Maps of roughness or
 /// occlusion are grey, too, and are taken for heights: no pixel tells the difference.
 pub fn guess_kind(image: &Image, channels: &[impl AsRef<str>], range: NormalRange) -> KindGuess {
     match *colour_channels(image, channels) {
         [_] => KindGuess::Certain(Kind::Height),
         [x, y] => guess_two(&decoded(texels(image, [x, y]), range)),
-        [r, g, b] if x_is_in_alpha(image, [r, g, b]) => {
-            KindGuess::doubtful("only green and alpha vary, like those of a normal map with x in alpha")
+        [_, _, _] if x_is_in_alpha(image) => {
+            if_slopes(image, NormalChannels::Ag, range, "its red and blue are constant")
         }
         [r, g, b] => guess_three(image, [r, g, b], range),
         ref others => KindGuess::doubtful(format!("it has {} channels beside alpha", others.len())),
     }
-}
-
-/// Whether red and blue are constant while green and the channel beside the three vary: x in alpha, y in
-/// green, which block compression (BC3) stores best.
-fn x_is_in_alpha(image: &Image, [r, g, b]: [usize; 3]) -> bool {
-    let Some(alpha) = (0..image.channels()).find(|channel| ![r, g, b].contains(channel)) else {
-        return false;
-    };
-    let stored = texels(image, [r, g, b, alpha]);
-    let varies = |index: usize| spread(stored.iter().map(|texel| texel[index])) > SAME;
-    !varies(0) && varies(1) && !varies(2) && varies(3)
 }
 
 fn guess_two(vectors: &[[f32; 2]]) -> KindGuess {
@@ -112,14 +98,18 @@ fn guess_three(image: &Image, channels: [usize; 3], range: NormalRange) -> KindG
     let vectors = decoded(stored.clone(), range);
     match guess_blue(&vectors, range) {
         Blue::PlainZ => KindGuess::Certain(Kind::Normal),
-        Blue::Void if looks_like_slopes(image, [channels[0], channels[1]], range) => {
-            KindGuess::Certain(Kind::Normal)
-        }
-        Blue::Void => {
-            KindGuess::doubtful("its blue is constant, and red and green are not the slopes of a surface")
-        }
+        Blue::Void => if_slopes(image, NormalChannels::Xy, range, "its blue is constant"),
         Blue::Other if is_grey(&stored, scale) => KindGuess::Certain(Kind::Height),
         Blue::Other => guess_vectors(&vectors),
+    }
+}
+
+/// Channels that could be x and y, beside others that say nothing, are a normal's if they are slopes.
+fn if_slopes(image: &Image, channels: NormalChannels, range: NormalRange, seen: &str) -> KindGuess {
+    if looks_like_slopes(image, channels, range) {
+        KindGuess::Certain(Kind::Normal)
+    } else {
+        KindGuess::doubtful(format!("{seen}, and the other two channels are not the slopes of a surface"))
     }
 }
 

@@ -5,6 +5,10 @@ use crate::Image;
 /// Most texels that are looked at: enough for any statistic here.
 const MAX_TEXELS: usize = 1 << 20;
 
+/// Stored values closer than this, of a full scale of 1, are equal but for rounding and lossy compression:
+/// two 8-bit steps, and a little room for the rounding of the comparison.
+pub(super) const SAME: f32 = 2.1 / 255.0;
+
 /// The smallest odd step for which at most `max_points` grid points lie in `width` x `height`. Odd, because
 /// patterns of power-of-two period are common in textures: an even step would see one phase of them only.
 pub(super) fn odd_stride(width: usize, height: usize, max_points: usize) -> usize {

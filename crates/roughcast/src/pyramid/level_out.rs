@@ -7,6 +7,7 @@ use crate::Samples;
 use crate::row::RowView;
 use crate::texture::codec::RowEncoder;
 use crate::texture::pack;
+use crate::vectorised::vectorised;
 
 /// Samples of one texture's level, or some rows of them.
 pub(crate) enum SamplesMut<'a> {
@@ -134,6 +135,8 @@ pub(crate) struct StatsSum {
     xx: f64,
     yy: f64,
     max: f32,
+    component: f32,
+    squared_length: f32,
 }
 
 impl StatsSum {
@@ -142,6 +145,9 @@ impl StatsSum {
         self.xx += sum(row.xx);
         self.yy += sum(row.yy);
         self.max = self.max.max(largest(row.xx)).max(largest(row.yy));
+        let (component, squared_length) = largest_component_and_square(row.bx, row.by);
+        self.component = self.component.max(component);
+        self.squared_length = self.squared_length.max(squared_length);
     }
 
     pub fn add(&mut self, other: Self) {
@@ -149,6 +155,8 @@ impl StatsSum {
         self.xx += other.xx;
         self.yy += other.yy;
         self.max = self.max.max(other.max);
+        self.component = self.component.max(other.component);
+        self.squared_length = self.squared_length.max(other.squared_length);
     }
 
     pub fn finish(self) -> LevelStats {
@@ -157,32 +165,62 @@ impl StatsSum {
             mean_variance_x: self.xx / texels,
             mean_variance_y: self.yy / texels,
             max_variance: self.max,
+            largest_component: self.component,
+            steepest: self.squared_length.sqrt(),
         }
     }
 }
 
-const LANES: usize = 8;
+const LANES: usize = 16;
 
-/// Sum in independent lanes, which vectorises; the lanes are f64, so the order does not matter in practice.
-fn sum(values: &[f32]) -> f64 {
-    let (chunks, rest) = values.as_chunks::<LANES>();
-    let mut lanes = [0.0_f64; LANES];
-    for chunk in chunks {
-        for (lane, value) in lanes.iter_mut().zip(chunk) {
-            *lane += f64::from(*value);
+vectorised! {
+    /// Sum in independent lanes, which vectorises; the lanes are f64, so the order does not matter in practice.
+    fn sum(values: &[f32]) -> f64 {
+        let (chunks, rest) = values.as_chunks::<LANES>();
+        let mut lanes = [0.0_f64; LANES];
+        for chunk in chunks {
+            for (lane, value) in lanes.iter_mut().zip(chunk) {
+                *lane += f64::from(*value);
+            }
         }
+        lanes.iter().sum::<f64>() + rest.iter().map(|v| f64::from(*v)).sum::<f64>()
     }
-    lanes.iter().sum::<f64>() + rest.iter().map(|v| f64::from(*v)).sum::<f64>()
 }
 
-/// The largest of values that are not negative.
-pub(crate) fn largest(values: &[f32]) -> f32 {
-    let (chunks, rest) = values.as_chunks::<LANES>();
-    let mut lanes = [0.0_f32; LANES];
-    for chunk in chunks {
-        for (lane, value) in lanes.iter_mut().zip(chunk) {
-            *lane = if *value > *lane { *value } else { *lane };
+vectorised! {
+    /// The largest of values that are not negative.
+    pub(crate) fn largest(values: &[f32]) -> f32 {
+        let (chunks, rest) = values.as_chunks::<LANES>();
+        let mut lanes = [0.0_f32; LANES];
+        for chunk in chunks {
+            for (lane, value) in lanes.iter_mut().zip(chunk) {
+                *lane = if *value > *lane { *value } else { *lane };
+            }
         }
+        lanes.iter().chain(rest).fold(0.0, |a, b| a.max(*b))
     }
-    lanes.iter().chain(rest).fold(0.0, |a, b| a.max(*b))
+}
+
+vectorised! {
+    /// The largest magnitude of a component and the largest squared length, in lanes, which vectorise.
+    pub(crate) fn largest_component_and_square(bx: &[f32], by: &[f32]) -> (f32, f32) {
+        let larger = |a: f32, b: f32| if a > b { a } else { b };
+        let mut components = [0.0_f32; LANES];
+        let mut squares = [0.0_f32; LANES];
+        let mut look = |lane: usize, x: f32, y: f32| {
+            components[lane] = larger(larger(x.abs(), y.abs()), components[lane]);
+            squares[lane] = larger(x * x + y * y, squares[lane]);
+        };
+        let ((x_chunks, x_rest), (y_chunks, y_rest)) = (bx.as_chunks::<LANES>(), by.as_chunks::<LANES>());
+        for (x, y) in x_chunks.iter().zip(y_chunks) {
+            for lane in 0..LANES {
+                look(lane, x[lane], y[lane]);
+            }
+        }
+        for (x, y) in x_rest.iter().zip(y_rest) {
+            look(0, *x, *y);
+        }
+        let fold = |lanes: [f32; LANES]| lanes.into_iter().fold(0.0, larger);
+        (fold(components), fold(squares))
+    }
 }

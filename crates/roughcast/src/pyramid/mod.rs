@@ -12,7 +12,7 @@ mod level_out;
 mod resample;
 pub(crate) mod weights;
 
-pub(crate) use level_out::{LevelOut, PartOut, SamplesMut, largest};
+pub(crate) use level_out::{LevelOut, PartOut, SamplesMut, largest, largest_component_and_square};
 
 use crate::moments::Moments;
 use crate::options::{PyramidFilter, Wrap};
@@ -40,6 +40,10 @@ pub struct LevelStats {
     pub mean_variance_y: f64,
     /// Largest variance along either axis of any texel.
     pub max_variance: f32,
+    /// Largest magnitude of a component of a mean slope.
+    pub largest_component: f32,
+    /// Largest length of a mean slope.
+    pub steepest: f32,
 }
 
 /// How levels are made.

@@ -10,6 +10,7 @@ pub(crate) use base::{BaseSource, UseOfBase};
 use crate::options::{Kind, SourceOptions};
 use crate::row::{Extra, Row, RowSource, SourceScratch};
 use crate::slope::{SourceCounts, mended_slope};
+use crate::vectorised::vectorised;
 use crate::{Image, Samples};
 
 /// Why a map cannot be read as slopes.
@@ -149,15 +150,17 @@ impl MapSource<'_> {
     }
 }
 
-/// The unit normals of slopes.
-fn unit_normals(bx: &[f32], by: &[f32], nx: &mut [f32], ny: &mut [f32], nz: &mut [f32]) {
-    let n = bx.len();
-    let (by, nx, ny, nz) = (&by[..n], &mut nx[..n], &mut ny[..n], &mut nz[..n]);
-    for i in 0..n {
-        let inverse = 1.0 / (1.0 + bx[i] * bx[i] + by[i] * by[i]).sqrt();
-        nx[i] = bx[i] * inverse;
-        ny[i] = by[i] * inverse;
-        nz[i] = inverse;
+vectorised! {
+    /// The unit normals of slopes.
+    fn unit_normals(bx: &[f32], by: &[f32], nx: &mut [f32], ny: &mut [f32], nz: &mut [f32]) {
+        let n = bx.len();
+        let (by, nx, ny, nz) = (&by[..n], &mut nx[..n], &mut ny[..n], &mut nz[..n]);
+        for i in 0..n {
+            let inverse = 1.0 / (1.0 + bx[i] * bx[i] + by[i] * by[i]).sqrt();
+            nx[i] = bx[i] * inverse;
+            ny[i] = by[i] * inverse;
+            nz[i] = inverse;
+        }
     }
 }
 
@@ -191,10 +194,12 @@ fn is_usable(x: f32, y: f32, max_squared: f32) -> bool {
     x * x + y * y <= max_squared
 }
 
-/// Number of texels in a row that `mend` would have to look at; vectorises.
-fn count_unusable(bx: &[f32], by: &[f32], max_slope: f32) -> u32 {
-    let max_squared = max_slope * max_slope;
-    bx.iter().zip(by).map(|(x, y)| u32::from(!is_usable(*x, *y, max_squared))).sum()
+vectorised! {
+    /// Number of texels in a row that `mend` would have to look at; vectorises.
+    fn count_unusable(bx: &[f32], by: &[f32], max_slope: f32) -> u32 {
+        let max_squared = max_slope * max_slope;
+        bx.iter().zip(by).map(|(x, y)| u32::from(!is_usable(*x, *y, max_squared))).sum()
+    }
 }
 
 /// One channel of a stretch of a row as floats: unsigned types as 0 ..= 1, floats as they are.

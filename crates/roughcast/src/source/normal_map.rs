@@ -6,6 +6,7 @@ use super::{count_unusable, mend};
 use crate::options::{Green, NormalChannels, SourceOptions};
 use crate::row::SourceScratch;
 use crate::slope::SourceCounts;
+use crate::vectorised::vectorised;
 use crate::{Image, Samples};
 
 /// Two-channel normals may lie a little outside the unit disc, through quantisation and block compression; their z
@@ -59,16 +60,18 @@ pub(super) fn fill(
     })
 }
 
-/// Slopes of normals. A z that is not above zero, or infinite, gives NaN or infinity, which no comparison with the
-/// largest slope accepts, so that one test afterwards finds every unusable texel.
-fn divide_by_z(nx: &[f32], ny: &[f32], nz: &[f32], bx: &mut [f32], by: &mut [f32]) {
-    let n = nx.len();
-    let (ny, nz, bx, by) = (&ny[..n], &nz[..n], &mut bx[..n], &mut by[..n]);
-    for i in 0..n {
-        let inverse = 1.0 / nz[i];
-        let inverse = if inverse > 0.0 { inverse } else { f32::NAN };
-        bx[i] = nx[i] * inverse;
-        by[i] = ny[i] * inverse;
+vectorised! {
+    /// Slopes of normals. A z that is not above zero, or infinite, gives NaN or infinity, which no comparison with the
+    /// largest slope accepts, so that one test afterwards finds every unusable texel.
+    fn divide_by_z(nx: &[f32], ny: &[f32], nz: &[f32], bx: &mut [f32], by: &mut [f32]) {
+        let n = nx.len();
+        let (ny, nz, bx, by) = (&ny[..n], &nz[..n], &mut bx[..n], &mut by[..n]);
+        for i in 0..n {
+            let inverse = 1.0 / nz[i];
+            let inverse = if inverse > 0.0 { inverse } else { f32::NAN };
+            bx[i] = nx[i] * inverse;
+            by[i] = ny[i] * inverse;
+        }
     }
 }
 
@@ -88,8 +91,8 @@ fn load_components(
     let from_float = |v: f32| options.range.component_from_stored(v);
     let split = Split { channels, order: options.normal_channels };
     match image.samples() {
-        Samples::U8(v) => split.write_planes(&v[range], nx, ny, nz, signed8),
-        Samples::U16(v) => split.write_planes(&v[range], nx, ny, nz, signed16),
+        Samples::U8(v) => split_u8(split, &v[range], nx, ny, nz),
+        Samples::U16(v) => split_u16(split, &v[range], nx, ny, nz),
         Samples::F16(v) => split.write_planes(&v[range], nx, ny, nz, |v: f16| from_float(v.to_f32())),
         Samples::F32(v) => split.write_planes(&v[range], nx, ny, nz, from_float),
     }
@@ -108,12 +111,28 @@ fn signed16(sample: u16) -> f32 {
     (2.0 * f32::from(sample) - 65535.0) / 65535.0
 }
 
+/// Where the components of a texel are.
+#[derive(Clone, Copy)]
 struct Split {
     channels: usize,
     order: NormalChannels,
 }
 
+vectorised! {
+    fn split_u8(split: Split, texels: &[u8], nx: &mut [f32], ny: &mut [f32], nz: &mut [f32]) {
+        split.write_planes(texels, nx, ny, nz, signed8);
+    }
+}
+
+vectorised! {
+    fn split_u16(split: Split, texels: &[u16], nx: &mut [f32], ny: &mut [f32], nz: &mut [f32]) {
+        split.write_planes(texels, nx, ny, nz, signed16);
+    }
+}
+
 impl Split {
+    // Inlined into the functions above, so that it is compiled for each of their instruction sets.
+    #[inline(always)]
     fn write_planes<T: Copy>(
         &self,
         texels: &[T],
@@ -143,6 +162,7 @@ impl Split {
     }
 }
 
+#[inline(always)]
 fn split_xyz<T: Copy, const C: usize>(
     texels: &[T],
     nx: &mut [f32],
@@ -151,9 +171,11 @@ fn split_xyz<T: Copy, const C: usize>(
     value: impl Fn(T) -> f32,
 ) {
     let (texels, _) = texels.as_chunks::<C>();
-    for (((texel, x), y), z) in texels.iter().zip(nx).zip(ny).zip(nz) {
-        *x = value(texel[0]);
-        *y = value(texel[1]);
-        *z = value(texel[2]);
+    let n = texels.len();
+    let (nx, ny, nz) = (&mut nx[..n], &mut ny[..n], &mut nz[..n]);
+    for i in 0..n {
+        nx[i] = value(texels[i][0]);
+        ny[i] = value(texels[i][1]);
+        nz[i] = value(texels[i][2]);
     }
 }

@@ -1,9 +1,9 @@
-//! Guesses how normals are stored: which components, and in which range.
+//! Guesses how normals are stored: in which channels, and in which range.
 
-use super::green::{GreenVerdict, test_green};
-use super::sample::{quantile, share, texels};
+use super::green::{GreenVerdict, test_green_of_map};
+use super::sample::{SAME, quantile, share, spread, texels};
 use super::vectors::{MAX_MEAN_TILT, MAX_XY_LENGTH, UNIT, decoded, length, mean_xy};
-use crate::{Image, NormalChannels, NormalRange, Samples};
+use crate::{Image, Kind, NormalChannels, NormalRange, Samples, SourceOptions};
 
 /// A blue whose z varies by less than this, but for 1 % at each end, is constant: 8 of 255 steps, since a
 /// JPEG mixes red and green into a constant blue.
@@ -39,20 +39,19 @@ const NEGATIVE: f32 = -1.0 / 255.0;
 /// resampling filter.
 const NEGATIVE_SHARE: f64 = 0.01;
 
-/// Slopes are taken from normals with z no smaller than this: the test of slopes cuts long ones anyway.
-const MIN_Z: f32 = 0.01;
+/// Index of the alpha of four channels.
+const ALPHA: usize = 3;
 
-/// Side of the square, in texels, that is cut from the middle of a map to see whether it holds slopes.
-const CURL_CROP: usize = 1024;
-
-/// Which components the colour channels of a normal map hold, and by which it should thus be read.
+/// Which channels hold the components of a normal map, and by which it should thus be read.
 ///
-/// One or two channels hold x and y. So do three whose blue is not z with scale and bias, as that of x and y
-/// is: maps exist with a blue that is constant (0, 128 or 255), and with z itself over 0 ..= 1.
+/// One or two channels hold x and y. So do the first two of three whose blue is not z with scale and bias, as
+/// that of x and y is: maps exist with a blue that is constant (0, 128 or 255), and with z itself over 0 ..=
+/// 1. Alpha and green hold them where red and blue are constant.
 ///
 /// `channels` and `range` as for [`crate::detect::guess_kind`].
-pub fn guess_components(image: &Image, channels: &[impl AsRef<str>], range: NormalRange) -> NormalChannels {
+pub fn guess_channels(image: &Image, channels: &[impl AsRef<str>], range: NormalRange) -> NormalChannels {
     match *colour_channels(image, channels) {
+        [_, _, _] if x_is_in_alpha(image) => NormalChannels::Ag,
         [r, g, b, ..] => match guess_blue(&decoded(texels(image, [r, g, b]), range), range) {
             Blue::Other => NormalChannels::Xyz,
             Blue::Void | Blue::PlainZ => NormalChannels::Xy,
@@ -94,6 +93,17 @@ pub(super) fn colour_channels(image: &Image, channels: &[impl AsRef<str>]) -> Ve
     (0..image.channels()).filter(|&i| !channels.get(i).is_some_and(|name| is_alpha(name.as_ref()))).collect()
 }
 
+/// Whether, of four channels, red and blue are constant while green and alpha vary: x is in alpha and y in
+/// green, which block compression (BC3) stores best.
+pub(super) fn x_is_in_alpha(image: &Image) -> bool {
+    if image.channels() != ALPHA + 1 {
+        return false;
+    }
+    let stored = texels(image, [0, 1, 2, ALPHA]);
+    let varies = [0, 1, 2, ALPHA].map(|channel| spread(stored.iter().map(|texel| texel[channel])) > SAME);
+    varies == [false, true, false, true]
+}
+
 /// What the blue of three channels is, beside the usual: z with scale and bias, or a colour of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Blue {
@@ -130,19 +140,9 @@ fn z_from_xy(x: f32, y: f32) -> f32 {
     (1.0 - x * x - y * y).max(0.0).sqrt()
 }
 
-/// Whether two channels, as x and y of normals, are the slopes of a surface, green up or down: what two
-/// channels of an arbitrary picture are not. Looks at the middle of the map only.
-pub(super) fn looks_like_slopes(image: &Image, channels: [usize; 2], range: NormalRange) -> bool {
-    let (width, height) = (image.width().min(CURL_CROP), image.height().min(CURL_CROP));
-    let (left, top) = ((image.width() - width) / 2, (image.height() - height) / 2);
-    let (mut bx, mut by) = (Vec::with_capacity(width * height), Vec::with_capacity(width * height));
-    for y in top..top + height {
-        for x in left..left + width {
-            let normal = channels.map(|channel| range.component_from_stored(image.get(x, y, channel)));
-            let z = z_from_xy(normal[0], normal[1]).max(MIN_Z);
-            bx.push(normal[0] / z);
-            by.push(normal[1] / z);
-        }
-    }
-    test_green(&bx, &by, width, height).is_some_and(|test| test.verdict() != GreenVerdict::Undecided)
+/// Whether two channels, as x and y of normals, are the slopes of a surface, green up or down: what two channels
+/// of an arbitrary picture are not.
+pub(super) fn looks_like_slopes(image: &Image, normal_channels: NormalChannels, range: NormalRange) -> bool {
+    let options = SourceOptions { kind: Kind::Normal, range, normal_channels, ..SourceOptions::default() };
+    test_green_of_map(image, &options).is_some_and(|test| test.verdict() != GreenVerdict::Undecided)
 }

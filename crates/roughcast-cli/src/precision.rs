@@ -1,0 +1,99 @@
+//! `roughcast precision`: which storage a map needs.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Context, Result};
+use clap::ValueHint;
+use roughcast::Bits;
+use roughcast::precision::{Precision, measure, recommend, steepest_slope};
+use serde_json::{Value, json};
+
+use crate::args::{SourceArgs, positive};
+use crate::input::read_map;
+use crate::say;
+
+/// Show how precise a map's variance is in 8 bits, 16 bits, half and float, and which of them will do.
+///
+/// LEAN's variance is a small difference of large numbers; a highlight of specular power S is safe while 1/S is larger
+/// than the error. The table gives the largest possible error, the error measured on this map, the specular powers that
+/// they allow, and the steepest slope that each type can hold for the power that you want.
+#[derive(clap::Args)]
+pub struct Args {
+    /// A normal or height map
+    #[arg(value_hint = ValueHint::FilePath)]
+    input: PathBuf,
+
+    /// The highest specular power (Blinn-Phong exponent) that the material will use
+    #[arg(long, value_name = "S", default_value_t = 256.0, value_parser = positive)]
+    specular_power: f32,
+
+    /// Print the table as JSON
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    source: SourceArgs,
+}
+
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let map = read_map(&args.input, &args.source)?;
+    for warning in &map.warnings {
+        eprintln!("warning: {}: {warning}", args.input.display());
+    }
+    let rows = measure(&map.image, &map.options).with_context(|| args.input.display().to_string())?;
+    let best = recommend(&rows, args.specular_power);
+    if args.json {
+        let report = json!({
+            "input": args.input.display().to_string(),
+            "specular_power": args.specular_power,
+            "recommended": best.map(Bits::name),
+            "storage": rows.iter().map(|row| as_json(row, args.specular_power)).collect::<Vec<_>>(),
+        });
+        say(&serde_json::to_string_pretty(&report).expect("a report is plain data"));
+        return Ok(ExitCode::SUCCESS);
+    }
+    say(&format!(
+        "{:<6} {:>9} {:>12} {:>12} {:>12} {:>12} {:>14}",
+        "bits", "scale", "error <=", "measured", "usable S", "on this map", "steepest slope"
+    ));
+    for row in &rows {
+        say(&format!(
+            "{:<6} {:>9.4} {:>12.3e} {:>12.3e} {:>12.0} {:>12.0} {:>14.3}",
+            row.bits,
+            row.scale,
+            row.bound.variance,
+            row.measured_variance,
+            row.usable_specular_power(),
+            row.measured_specular_power(),
+            steepest_slope(row.bits, args.specular_power),
+        ));
+    }
+    say(&advice(best, args.specular_power));
+    Ok(ExitCode::SUCCESS)
+}
+
+fn advice(best: Option<Bits>, power: f32) -> String {
+    match best {
+        Some(bits) => format!("For a specular power of {power}: --bits {bits}"),
+        None => format!(
+            "No type carries a specular power of {power} with this map: lower --max-slope to the steepest slope above, or \
+             store the variance itself with --as variance"
+        ),
+    }
+}
+
+fn as_json(row: &Precision, power: f32) -> Value {
+    json!({
+        "bits": row.bits.name(),
+        "scale": row.scale,
+        "variance_error_bound": row.bound.variance,
+        "variance_error_measured": row.measured_variance,
+        "eigenvalue_error_bound": row.bound.eigenvalue,
+        "eigenvalue_error_measured": row.measured_eigenvalue,
+        "usable_specular_power": row.usable_specular_power(),
+        "usable_specular_power_any_direction": row.bound.usable_specular_power_any_direction(),
+        "usable_specular_power_measured": row.measured_specular_power(),
+        "steepest_slope_for_specular_power": steepest_slope(row.bits, power),
+    })
+}

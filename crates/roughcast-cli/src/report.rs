@@ -1,0 +1,182 @@
+//! What a bake says of itself: lines for people, JSON for scripts.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use anyhow::Result;
+use roughcast::texture::{TextureArray, decode};
+use roughcast::{BakeOptions, BakeReport, Kind, Moments, SourceOptions};
+use roughcast_io::FileInfo;
+use serde_json::{Value, json};
+
+use crate::say;
+
+/// A map's report.
+pub struct FileReport {
+    pub input: PathBuf,
+    pub files: Vec<PathBuf>,
+    pub info: FileInfo,
+    pub source: SourceOptions,
+    pub options: BakeOptions,
+    pub report: BakeReport,
+    pub compression: Option<CompressionError>,
+    pub green_correlation: Option<f64>,
+    pub warnings: Vec<String>,
+    /// Only filled where they are to be shown.
+    pub times: Vec<(&'static str, Duration)>,
+}
+
+/// What block compression adds to the deviation of slopes, `σ = sqrt(tr Σ / 2)`, over all levels.
+#[derive(Clone, Copy, Debug)]
+pub struct CompressionError {
+    pub sigma_rms: f64,
+    pub sigma_max: f64,
+}
+
+impl CompressionError {
+    pub fn between(before: &[TextureArray], after: &[TextureArray]) -> Result<Self> {
+        let sigma = |moments: &Moments| f64::from(0.5 * moments.covariance().trace()).sqrt();
+        let (mut squares, mut largest, mut texels) = (0.0, 0.0_f64, 0_u64);
+        for (before, after) in decode(before)?.iter().zip(&decode(after)?) {
+            for (before, after) in before.moments.iter().zip(&after.moments) {
+                let error = (sigma(before) - sigma(after)).abs();
+                squares += error * error;
+                largest = largest.max(error);
+                texels += 1;
+            }
+        }
+        Ok(Self { sigma_rms: (squares / texels.max(1) as f64).sqrt(), sigma_max: largest })
+    }
+}
+
+impl FileReport {
+    /// Prints the report to stdout and the warnings to stderr.
+    pub fn print(&self, as_json: bool) {
+        for warning in &self.warnings {
+            eprintln!("warning: {}: {warning}", self.input.display());
+        }
+        if as_json {
+            say(&serde_json::to_string_pretty(&self.json()).expect("a report is plain data"));
+        } else {
+            self.lines().iter().for_each(|line| say(line));
+        }
+        for (stage, time) in self.times.iter().filter(|_| !as_json) {
+            eprintln!("  {stage:<12} {:>8.1} ms", time.as_secs_f64() * 1e3);
+        }
+    }
+
+    fn lines(&self) -> Vec<String> {
+        let report = &self.report;
+        let files: Vec<String> = self.files.iter().map(|file| file.display().to_string()).collect();
+        let shown = if files.len() > 4 {
+            format!("{} … {} ({} files)", files[0], files[files.len() - 1], files.len())
+        } else {
+            files.join(", ")
+        };
+        let mut lines = vec![
+            format!("{} -> {shown}", self.input.display()),
+            format!(
+                "  {} map, {}x{} ({} {}), {} levels of '{}', {} bits",
+                self.source.kind,
+                self.info.width,
+                self.info.height,
+                self.info.container,
+                self.info.format,
+                report.levels.len(),
+                self.options.layout,
+                self.options.bits,
+            ),
+            format!(
+                "  slopes: rms {:.4}, steepest {:.3}; scale {}; specular power up to {:.0} ({:.0} in any direction)",
+                report.rms_slope,
+                report.steepest,
+                report.scale,
+                report.bounds.usable_specular_power(),
+                report.bounds.usable_specular_power_any_direction(),
+            ),
+        ];
+        let counts = report.counts;
+        if counts.total() > 0 {
+            lines.push(format!(
+                "  mended of {} texels: {} too steep, {} pointing into the surface, {} without a direction, {} NaN or \
+                 infinite",
+                report.texels, counts.clamped, counts.behind, counts.invalid, counts.non_finite
+            ));
+        }
+        if let Some(advice) = report.advice {
+            lines.push(format!(
+                "  the steepest 0.1 % of the texels cost a factor of {:.1} in specular power: --max-slope {:.3} wins it \
+                 back",
+                advice.factor, advice.max_slope
+            ));
+        }
+        if let Some(error) = self.compression {
+            lines.push(format!(
+                "  block compression adds to sigma: {:.5} rms, {:.5} at most",
+                error.sigma_rms, error.sigma_max
+            ));
+        }
+        lines
+    }
+
+    /// The report as JSON; its keys are documented in the README.
+    pub fn json(&self) -> Value {
+        let report = &self.report;
+        let levels: Vec<Value> = report
+            .levels
+            .iter()
+            .map(|((width, height), stats)| {
+                json!({
+                    "width": width,
+                    "height": height,
+                    "variance_x": stats.mean_variance_x,
+                    "variance_y": stats.mean_variance_y,
+                    "variance_max": stats.max_variance,
+                })
+            })
+            .collect();
+        let times: serde_json::Map<String, Value> =
+            self.times.iter().map(|(stage, time)| ((*stage).to_owned(), json!(time.as_secs_f64()))).collect();
+        json!({
+            "input": self.input.display().to_string(),
+            "outputs": self.files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>(),
+            "kind": self.source.kind.name(),
+            "green": (self.source.kind == Kind::Normal).then(|| self.source.green.name()),
+            "green_correlation": self.green_correlation,
+            "range": self.source.range.name(),
+            "normal_channels": self.source.normal_channels.name(),
+            "width": self.info.width,
+            "height": self.info.height,
+            "layout": self.options.layout.name(),
+            "bits": self.options.bits.name(),
+            "base": self.options.base.name(),
+            "filter": self.options.filter.name(),
+            "wrap": self.source.wrap.name(),
+            "max_slope": self.source.max_slope,
+            "scale": report.scale,
+            "variance_scale": report.variance_scale,
+            "texels": report.texels,
+            "clamped": report.counts.clamped,
+            "behind": report.counts.behind,
+            "invalid": report.counts.invalid,
+            "non_finite": report.counts.non_finite,
+            "steepest_slope": report.steepest,
+            "rms_slope": report.rms_slope,
+            "slope_error": report.bounds.slope,
+            "variance_error": report.bounds.variance,
+            "usable_specular_power": report.bounds.usable_specular_power(),
+            "usable_specular_power_any_direction": report.bounds.usable_specular_power_any_direction(),
+            "advice": report.advice.map(|advice| json!({
+                "max_slope": advice.max_slope,
+                "specular_power_factor": advice.factor,
+            })),
+            "compression": self.compression.map(|error| json!({
+                "sigma_error_rms": error.sigma_rms,
+                "sigma_error_max": error.sigma_max,
+            })),
+            "levels": levels,
+            "warnings": self.warnings,
+            "seconds": times,
+        })
+    }
+}

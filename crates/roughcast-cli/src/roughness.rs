@@ -1,0 +1,132 @@
+//! The base roughness of the material, as the command line gives it.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, anyhow};
+use clap::Args;
+use roughcast::texture::{Brdf, RoughnessStored};
+use roughcast::{BaseRoughness, Image, RoughnessMap, RoughnessTexture, variance_from_stored};
+use roughcast_io::Limits;
+
+use crate::UsageError;
+use crate::args::{one_of, positive};
+use crate::input::read_image;
+
+/// Base roughness.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Roughness of the material itself")]
+pub struct RoughnessArgs {
+    /// Shininess as a Blinn-Phong exponent
+    #[arg(long, value_name = "S", value_parser = positive, conflicts_with = "roughness")]
+    pub specular_power: Option<f32>,
+
+    /// Roughness: a number, or a picture of the map's size. In a packed picture (occlusion, roughness, metalness) it is
+    /// read from green, and the other two are kept
+    #[arg(long, value_name = "FILE|VALUE")]
+    pub roughness: Option<String>,
+
+    /// Channel of the picture that holds roughness: r, g, b or a [default: g in colour, the only one in grey]
+    #[arg(long, value_name = "CHANNEL", value_parser = ["r", "g", "b", "a"], requires = "roughness")]
+    pub roughness_channel: Option<String>,
+
+    /// How roughness is stored, in the picture and in what `pbr` writes; alpha is the width of the lobe and perceptual
+    /// its root, as glTF has it [default: perceptual; specular-power for --brdf blinn-phong with floats]
+    #[arg(long, value_parser = one_of::<RoughnessStored>())]
+    pub roughness_stored: Option<RoughnessStored>,
+
+    /// The lobe for which the roughness is meant
+    #[arg(long, default_value = "ggx", value_parser = one_of::<Brdf>())]
+    pub brdf: Brdf,
+}
+
+/// A base roughness with the picture that it may come from.
+pub enum Roughness {
+    Variance(f32),
+    Map { image: Image, channel: usize, stored: RoughnessStored },
+}
+
+impl Roughness {
+    /// As the library takes it.
+    pub fn base(&self) -> BaseRoughness<'_> {
+        match self {
+            Roughness::Variance(variance) => BaseRoughness::Variance(*variance),
+            Roughness::Map { image, channel, stored } => {
+                BaseRoughness::Map(RoughnessMap { image, channel: *channel, stored: *stored })
+            }
+        }
+    }
+
+    /// A colour picture whose roughness is in green is glTF's packed texture, of which the rest is worth keeping.
+    pub fn texture(&self) -> RoughnessTexture {
+        match self {
+            Roughness::Map { image, channel: 1, .. } if image.channels() >= 3 && !is_grey(image) => {
+                RoughnessTexture::Packed
+            }
+            _ => RoughnessTexture::Alone,
+        }
+    }
+}
+
+/// Whether red, green and blue are equal throughout, but for what lossy compression does.
+fn is_grey(image: &Image) -> bool {
+    /// JPEG's rounding of chroma.
+    const LOSSY: f32 = 4.5 / 255.0;
+    (0..image.height()).all(|y| {
+        (0..image.width()).all(|x| {
+            let [r, g, b] = [0, 1, 2].map(|channel| image.get(x, y, channel));
+            (r - g).abs() <= LOSSY && (b - g).abs() <= LOSSY
+        })
+    })
+}
+
+impl RoughnessArgs {
+    /// How roughness is stored where nothing was said.
+    pub fn stored(&self) -> RoughnessStored {
+        self.roughness_stored.unwrap_or(RoughnessStored::Perceptual)
+    }
+
+    /// Loads what the arguments name; `None` where they name nothing.
+    pub fn load(&self, limits: &Limits) -> Result<Option<Roughness>> {
+        if let Some(power) = self.specular_power {
+            return Ok(Some(Roughness::Variance(1.0 / power)));
+        }
+        let Some(text) = &self.roughness else { return Ok(None) };
+        match text.parse::<f32>() {
+            Ok(value) => self.value(value).map(Some),
+            Err(_) => self.map(&PathBuf::from(text), limits).map(Some),
+        }
+    }
+
+    fn value(&self, value: f32) -> Result<Roughness> {
+        let stored = self.stored();
+        let in_range = match stored {
+            RoughnessStored::SpecularPower => value.is_finite() && value > 0.0,
+            _ => (0.0..=1.0).contains(&value),
+        };
+        if !in_range {
+            let range = if stored == RoughnessStored::SpecularPower { "above 0" } else { "from 0 to 1" };
+            return Err(UsageError(format!(
+                "--roughness {value}: a roughness stored as '{stored}' is a number {range}"
+            ))
+            .into());
+        }
+        Ok(Roughness::Variance(variance_from_stored(value, stored)))
+    }
+
+    fn map(&self, path: &Path, limits: &Limits) -> Result<Roughness> {
+        let image = read_image(path, limits)?.image;
+        let channel = match self.roughness_channel.as_deref() {
+            Some(name) => "rgba".find(name).expect("the parser lets only these through"),
+            None if image.channels() >= 3 => 1,
+            None => 0,
+        };
+        if channel >= image.channels() {
+            return Err(anyhow!(
+                "it has {} channels, and --roughness-channel asks for another one",
+                image.channels()
+            ))
+            .with_context(|| path.display().to_string());
+        }
+        Ok(Roughness::Map { image, channel, stored: self.stored() })
+    }
+}

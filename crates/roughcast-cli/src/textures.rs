@@ -1,0 +1,61 @@
+//! Reading files that roughcast wrote.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use roughcast::texture::{Layout, Part, TextureArray};
+use roughcast_io::{Limits, ReadError, dds, exr, ktx2};
+
+use crate::output::{Container, part_path};
+
+/// Reads a file that we wrote. The error names the path.
+pub fn read(path: &Path, limits: &Limits) -> Result<TextureArray> {
+    let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
+    read_bytes(&bytes, limits).with_context(|| path.display().to_string())
+}
+
+fn read_bytes(bytes: &[u8], limits: &Limits) -> Result<TextureArray, ReadError> {
+    match bytes {
+        [0xab, b'K', b'T', b'X', ..] => ktx2::read_textures(bytes, limits),
+        [b'D', b'D', b'S', b' ', ..] => dds::read_textures(bytes, limits),
+        [0x76, 0x2f, 0x31, 0x01, ..] => exr::read_textures(bytes, limits),
+        _ => Err(ReadError::Unsupported {
+            format: "file",
+            what: "a texture in another container than KTX2, DDS or EXR".to_owned(),
+            mend: "give a file that `roughcast bake` wrote",
+        }),
+    }
+}
+
+/// Reads a file that we wrote and, for a layout of several, the others beside it.
+pub fn read_with_parts(path: &Path, limits: &Limits) -> Result<Vec<TextureArray>> {
+    let first = read(path, limits)?;
+    let (layout, part) = (first.info.layout, first.info.part);
+    let mut arrays = vec![first];
+    if matches!(part, Part::Whole | Part::Split) {
+        return Ok(arrays);
+    }
+    let others: &[Part] = match layout {
+        Layout::Toksvig => &[Part::Normal, Part::Gloss],
+        _ => &[Part::Normal, Part::Roughness, Part::OcclusionRoughnessMetallic, Part::Anisotropy],
+    };
+    let whole = whole_path(path, part);
+    let container = Container::of(path)?;
+    for other in others.iter().filter(|other| **other != part) {
+        let beside = part_path(&whole, *other, container);
+        if beside.exists() {
+            arrays.push(read(&beside, limits)?);
+        }
+    }
+    Ok(arrays)
+}
+
+/// `NAME.ext` of `NAME.PART.ext`; a file that was renamed stays what it is, and its other parts are not found.
+fn whole_path(path: &Path, part: Part) -> PathBuf {
+    let extension = path.extension().unwrap_or_default();
+    let stem = path.with_extension("");
+    match stem.extension() {
+        Some(name) if name == part.name() => stem.with_extension(extension),
+        _ => path.to_owned(),
+    }
+}
