@@ -14,7 +14,7 @@ const NORMAL_MAPS: usize = 35;
 const HEIGHT_MAPS: usize = 12;
 
 /// Larger maps are cut to this, so that their levels in f64 take neither much memory nor much time.
-const LARGEST_SIDE: usize = 1024;
+const LARGEST_SIDE: usize = 768;
 
 /// A pyramid of eleven levels costs some roundings of a footprint's rms slope.
 const ROUNDINGS: f64 = 24.0;
