@@ -5,7 +5,7 @@ use std::io::Cursor;
 
 use image::codecs::{bmp::BmpDecoder, tga::TgaDecoder, webp::WebPDecoder};
 use image::error::UnsupportedErrorKind;
-use image::{ColorType, ImageDecoder, ImageError};
+use image::{ColorType, ExtendedColorType, ImageDecoder, ImageError};
 use roughcast::{Image, Samples};
 
 use super::memory::{check_size, malformed, unsupported, zeros};
@@ -108,6 +108,9 @@ fn fault(format: &'static str, error: ImageError) -> ReadError {
     const SAVE_AS_PNG: &str = "save it as PNG";
     match error {
         ImageError::Unsupported(error) => match error.kind() {
+            UnsupportedErrorKind::Color(ExtendedColorType::Unknown(bits)) => {
+                unsupported(format, format_args!("a picture of {bits} bits a pixel of this type"), SAVE_AS_PNG)
+            }
             UnsupportedErrorKind::Color(color) => {
                 unsupported(format, format_args!("the colour type {color:?}"), SAVE_AS_PNG)
             }

@@ -132,6 +132,17 @@ fn fault(error: png::DecodingError) -> ReadError {
         png::DecodingError::IoError(e) if e.kind() == std::io::ErrorKind::UnexpectedEof => {
             malformed(FORMAT, "the file ends too early")
         }
+        png::DecodingError::Format(fault) => malformed(FORMAT, without_chunk_types(&fault.to_string())),
         error => malformed(FORMAT, error),
     }
+}
+
+/// The `png` crate prints chunk types with all their flags: `ChunkType { type: IHDR, critical: true, ... }`.
+fn without_chunk_types(message: &str) -> String {
+    let Some((before, rest)) = message.split_once("ChunkType {") else { return message.to_owned() };
+    let Some((chunk, after)) = rest.split_once('}').filter(|_| !rest.contains("\\u{")) else {
+        return format!("{before}a chunk of unknown type");
+    };
+    let name = chunk.trim_start().strip_prefix("type: ").and_then(|name| name.split(',').next()).unwrap_or("?");
+    format!("{before}{name}{after}")
 }

@@ -145,7 +145,12 @@ fn fault(error: exr::error::Error) -> ReadError {
     use exr::error::Error;
     match error {
         Error::NotSupported(what) => unsupported(FORMAT, what, SAVE_AS_ZIP),
-        Error::Invalid(what) => malformed(FORMAT, what),
+        // The crate's words for whatever lies, or would lie, behind the last byte.
+        Error::Invalid(what) if what.contains("reference to missing bytes") => {
+            malformed(FORMAT, "it ends too early, or refers to bytes behind its end")
+        }
+        Error::Invalid(what) if what.starts_with("missing or invalid") => malformed(FORMAT, what),
+        Error::Invalid(what) => malformed(FORMAT, format_args!("invalid {what}")),
         error => malformed(FORMAT, error),
     }
 }

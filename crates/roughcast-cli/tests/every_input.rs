@@ -1,0 +1,134 @@
+//! Every material, height map, panorama and format of the test data is baked, or refused for the reason that the table
+//! `every_input.tsv` states.
+
+mod common;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use common::{Outcome, bake, check_all, data, data_files, moments, names, scratch};
+use roughcast::texture::MomentLevel;
+
+const FOLDERS: [&str; 4] = ["materials", "heights", "formats", "hdri"];
+
+/// Means are compared in f64, but every texel of every level was rounded to f32 on its way: differences of so many
+/// parts of the slopes' mean square, beside the storage's own error, are rounding.
+const ROUNDING: f64 = 1e-5;
+
+/// What the table says of a file.
+#[derive(Debug)]
+enum Expected {
+    /// Baked as this kind of map, decided from the pixels.
+    Kind(&'static str),
+    /// Neither kind for certain: refused, with the flag that decides.
+    Doubtful,
+    /// Refused with a line that has these words.
+    Refused(&'static str),
+}
+
+fn table() -> BTreeMap<&'static str, Expected> {
+    let lines = include_str!("every_input.tsv").lines().filter(|line| !line.starts_with('#'));
+    let row = |line: &'static str| {
+        let expected = match line.split('\t').collect::<Vec<_>>()[..] {
+            [path, kind @ ("normal" | "height")] => (path, Expected::Kind(kind)),
+            [path, "doubtful"] => (path, Expected::Doubtful),
+            [path, "refused", words] => (path, Expected::Refused(words)),
+            _ => panic!("no row of the table: {line}"),
+        };
+        expected
+    };
+    lines.map(row).collect()
+}
+
+#[test]
+fn the_table_names_every_file_and_no_other() {
+    let files: Vec<String> = FOLDERS.iter().flat_map(|folder| data_files(folder)).collect();
+    let table = table();
+    let missing: Vec<_> = files.iter().filter(|file| !table.contains_key(file.as_str())).collect();
+    let gone: Vec<_> = table.keys().filter(|file| !files.iter().any(|other| other == *file)).collect();
+    assert!(missing.is_empty(), "not in the table: {missing:#?}");
+    assert!(gone.is_empty(), "in the table, but not there: {gone:#?}");
+}
+
+#[test]
+fn every_file_is_baked_or_refused_for_the_stated_reason() {
+    let table: Vec<(&str, Expected)> = table().into_iter().collect();
+    check_all(&table, |(file, expected)| {
+        let input = data(file);
+        let folder = scratch();
+        let output = folder.path().join("baked.ktx2");
+        let outcome = bake(&input, &output, &["--as", "clean", "--json"]);
+        let fault = match expected {
+            Expected::Kind(kind) => baked_as(kind, &outcome, &output),
+            Expected::Doubtful => refused("--kind", &outcome, &input, folder.path()).and_then(|()| {
+                let told = bake(&input, &output, &["--as", "clean", "--json", "--kind", "height"]);
+                baked_as("height", &told, &output)
+            }),
+            Expected::Refused(words) => refused(words, &outcome, &input, folder.path()),
+        };
+        fault.map_err(|fault| format!("{file}: expected {expected:?}: {fault}\n    {}", outcome.stderr.trim()))
+    });
+}
+
+fn refused(words: &str, outcome: &Outcome, input: &Path, folder: &Path) -> Result<(), String> {
+    if outcome.code != Some(1) {
+        return Err(format!("exit code {:?}", outcome.code));
+    }
+    let line = outcome.expect_refusal(1, input);
+    if !line.contains(words) {
+        return Err(format!("the line does not say '{words}'"));
+    }
+    let left = names(folder);
+    if left.is_empty() { Ok(()) } else { Err(format!("it left {left:?}")) }
+}
+
+fn baked_as(kind: &str, outcome: &Outcome, output: &Path) -> Result<(), String> {
+    if outcome.code != Some(0) {
+        return Err(format!("exit code {:?}", outcome.code));
+    }
+    let report = outcome.json();
+    if report["kind"] != kind {
+        return Err(format!("baked as {}", report["kind"]));
+    }
+    let levels = moments(output);
+    let size = |side: &str| report[side].as_u64().map(|n| n as usize);
+    if (Some(levels[0].width), Some(levels[0].height)) != (size("width"), size("height")) {
+        return Err("the output has another size than the report".to_owned());
+    }
+    let last = levels.last().expect("there is a level");
+    if (last.width, last.height) != (1, 1) || Some(levels.len()) != report["levels"].as_array().map(Vec::len) {
+        return Err(format!("{} levels, the last {}x{}", levels.len(), last.width, last.height));
+    }
+    conserved(&levels, &report)
+}
+
+/// The means of slopes and of their squares are those of level 0 on every level.
+fn conserved(levels: &[MomentLevel], report: &serde_json::Value) -> Result<(), String> {
+    let number = |key: &str| report[key].as_f64().expect("the report has this number");
+    let (slope_error, variance_error) = (number("slope_error"), number("variance_error"));
+    let (rms, steepest) = (number("rms_slope"), number("steepest_slope"));
+    let whole = means(&levels[0]);
+    // Both levels are off by the storage's error; the trace of M is 2 V + |B|^2.
+    let slope_tolerance = 2.0 * slope_error + ROUNDING * rms.max(1e-3);
+    let square_error = 2.0 * variance_error + 4.0 * steepest * slope_error;
+    let square_tolerance = 2.0 * square_error + ROUNDING * (rms * rms).max(1e-6);
+    for (number, level) in levels.iter().enumerate().skip(1) {
+        let mean = means(level);
+        let [x, y, square] = [0, 1, 2].map(|i| (mean[i] - whole[i]).abs());
+        if x > slope_tolerance || y > slope_tolerance || square > square_tolerance {
+            return Err(format!("level {number} has the means {mean:?}, level 0 {whole:?}"));
+        }
+    }
+    Ok(())
+}
+
+/// Means of the slope's components and of its squared length.
+fn means(level: &MomentLevel) -> [f64; 3] {
+    let mut sums = [0.0; 3];
+    for moments in &level.moments {
+        sums[0] += f64::from(moments.mean.x);
+        sums[1] += f64::from(moments.mean.y);
+        sums[2] += f64::from(moments.xx) + f64::from(moments.yy);
+    }
+    sums.map(|sum| sum / level.moments.len() as f64)
+}
