@@ -86,7 +86,8 @@ fn every_subcommand_refuses_every_broken_file_in_one_line() {
         ];
         for (arguments, succeeds, words) in runs {
             let outcome = run_bounded(arguments);
-            let named = |fault: String| format!("{file}: {}: {fault}\n    {}", arguments[0], outcome.stderr.trim());
+            let named =
+                |fault: String| format!("{file}: {}: {fault}\n    {}", arguments[0], outcome.stderr.trim());
             check(&outcome, succeeds, words, &input).map_err(named)?;
             let left = names(folder.path());
             let wanted = usize::from(succeeds && arguments[0] == "bake");
@@ -104,7 +105,11 @@ fn every_subcommand_refuses_every_broken_file_in_one_line() {
 fn check(outcome: &Outcome, succeeds: bool, words: &str, input: &Path) -> Result<(), String> {
     if succeeds {
         let clean = outcome.stderr.lines().all(|line| line.starts_with("warning: "));
-        return if outcome.code == Some(0) && clean { Ok(()) } else { Err(format!("exit code {:?}", outcome.code)) };
+        return if outcome.code == Some(0) && clean {
+            Ok(())
+        } else {
+            Err(format!("exit code {:?}", outcome.code))
+        };
     }
     if !matches!(outcome.code, Some(1 | 2)) {
         return Err(format!("exit code {:?} instead of a refusal", outcome.code));

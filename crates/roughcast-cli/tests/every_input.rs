@@ -66,7 +66,8 @@ fn every_file_is_baked_or_refused_for_the_stated_reason() {
             }),
             Expected::Refused(words) => refused(words, &outcome, &input, folder.path()),
         };
-        fault.map_err(|fault| format!("{file}: expected {expected:?}: {fault}\n    {}", outcome.stderr.trim()))
+        fault
+            .map_err(|fault| format!("{file}: expected {expected:?}: {fault}\n    {}", outcome.stderr.trim()))
     });
 }
 
@@ -96,7 +97,8 @@ fn baked_as(kind: &str, outcome: &Outcome, output: &Path) -> Result<(), String> 
         return Err("the output has another size than the report".to_owned());
     }
     let last = levels.last().expect("there is a level");
-    if (last.width, last.height) != (1, 1) || Some(levels.len()) != report["levels"].as_array().map(Vec::len) {
+    if (last.width, last.height) != (1, 1) || Some(levels.len()) != report["levels"].as_array().map(Vec::len)
+    {
         return Err(format!("{} levels, the last {}x{}", levels.len(), last.width, last.height));
     }
     conserved(&levels, &report)

@@ -108,9 +108,11 @@ fn fault(format: &'static str, error: ImageError) -> ReadError {
     const SAVE_AS_PNG: &str = "save it as PNG";
     match error {
         ImageError::Unsupported(error) => match error.kind() {
-            UnsupportedErrorKind::Color(ExtendedColorType::Unknown(bits)) => {
-                unsupported(format, format_args!("a picture of {bits} bits a pixel of this type"), SAVE_AS_PNG)
-            }
+            UnsupportedErrorKind::Color(ExtendedColorType::Unknown(bits)) => unsupported(
+                format,
+                format_args!("a picture of {bits} bits a pixel of this type"),
+                SAVE_AS_PNG,
+            ),
             UnsupportedErrorKind::Color(color) => {
                 unsupported(format, format_args!("the colour type {color:?}"), SAVE_AS_PNG)
             }

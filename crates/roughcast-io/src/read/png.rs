@@ -143,6 +143,7 @@ fn without_chunk_types(message: &str) -> String {
     let Some((chunk, after)) = rest.split_once('}').filter(|_| !rest.contains("\\u{")) else {
         return format!("{before}a chunk of unknown type");
     };
-    let name = chunk.trim_start().strip_prefix("type: ").and_then(|name| name.split(',').next()).unwrap_or("?");
+    let name =
+        chunk.trim_start().strip_prefix("type: ").and_then(|name| name.split(',').next()).unwrap_or("?");
     format!("{before}{name}{after}")
 }
