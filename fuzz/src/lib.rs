@@ -10,7 +10,10 @@
 pub mod corpus;
 pub mod mutate;
 
-use roughcast::texture::TextureArray;
+use std::io::Cursor;
+
+use roughcast::Moments;
+use roughcast::texture::{Part, TextureArray, TextureInfo, layers_of};
 use roughcast_io::{Decoded, Limits, Payload, ReadError, Supercompression};
 
 /// Something that takes hostile bytes.
@@ -28,7 +31,15 @@ pub const TARGETS: &[Target] = &[
     Target { name: "ktx2", extensions: &["ktx2", "ktx"], run: ktx2 },
     Target { name: "dds", extensions: &["dds"], run: dds },
     Target { name: "bc", extensions: &[], run: bc },
+    Target { name: "exr_textures", extensions: &["exr"], run: exr_textures },
+    Target { name: "image", extensions: IMAGES, run: image },
+    Target { name: "info", extensions: &[], run: info },
+    Target { name: "decode", extensions: &["ktx2", "dds", "exr"], run: decode },
 ];
+
+/// Files that the reader of images is given, and some that it must know to be none.
+const IMAGES: &[&str] =
+    &["png", "jpg", "jpeg", "tga", "bmp", "webp", "tif", "tiff", "hdr", "exr", "ktx2", "dds", "gltf"];
 
 /// Small, so that a file which may claim a large texture shows up as a slow run at worst.
 const LIMITS: Limits = Limits { max_pixels: 1 << 18 };
@@ -47,6 +58,82 @@ pub fn dds(data: &[u8]) {
     if let Ok(textures) = roughcast_io::dds::read_textures(data, &LIMITS) {
         check_rewritten(&textures);
     }
+}
+
+/// The reader of our own EXR files. What it reads must survive being written again.
+pub fn exr_textures(data: &[u8]) {
+    match roughcast_io::exr::read_textures(data, &LIMITS) {
+        Ok(textures) => {
+            let file = exr_file(&textures);
+            let again = roughcast_io::exr::read_textures(&file, &LIMITS).expect("it was written");
+            assert!(exr_file(&again) == file, "a second writing differs");
+        }
+        Err(error) => check_error(&error),
+    }
+}
+
+fn exr_file(textures: &TextureArray) -> Vec<u8> {
+    let mut file = Cursor::new(Vec::new());
+    roughcast_io::exr::write(textures, &Default::default(), &mut file).expect("it was read");
+    file.into_inner()
+}
+
+/// The reader of all images: PNG, JPEG, BMP, WebP, TIFF, HDR, EXR, KTX2 and DDS by their first bytes, TGA by extension.
+pub fn image(data: &[u8]) {
+    for extension in [None, Some("tga")] {
+        check_image(roughcast_io::read_image(data, extension, &LIMITS));
+    }
+}
+
+/// The meaning of texels, as pairs of text (lines of `key=value`) and as the words of a DDS header. What is valid reads
+/// back the same.
+pub fn info(data: &[u8]) {
+    let text = String::from_utf8_lossy(data);
+    let pair = |(key, value): (&str, &str)| (key.to_owned(), value.to_owned());
+    let pairs = text.lines().filter_map(|line| line.split_once('=')).map(pair).collect();
+    let mut words = [0; 11];
+    for (word, bytes) in words.iter_mut().zip(data.chunks_exact(4)) {
+        *word = u32::from_le_bytes(bytes.try_into().expect("four bytes"));
+    }
+    let both = [TextureInfo::from_pairs(&pairs), TextureInfo::from_words(&words)];
+    for info in both.into_iter().flatten() {
+        // NaN, which marks a varying base, is not equal to itself: the words are compared.
+        let same = |again: Result<TextureInfo, _>| again.map(|again| words_of(&again)) == Ok(words_of(&info));
+        assert!(same(TextureInfo::from_pairs(&info.to_pairs())), "{info:?} in pairs");
+        assert!(same(TextureInfo::from_words(&info.to_words())), "{info:?} in words");
+        assert!(!layers_of(&info).is_empty());
+    }
+}
+
+/// The words of a meaning, with one NaN for all.
+fn words_of(info: &TextureInfo) -> [u32; 11] {
+    let nan = info.base_variance.is_nan();
+    TextureInfo { base_variance: if nan { f32::NAN } else { info.base_variance }, ..*info }.to_words()
+}
+
+/// From any file of ours to moments: whatever the texels are, the covariance is one.
+pub fn decode(data: &[u8]) {
+    let read = [
+        roughcast_io::ktx2::read_textures(data, LIMITS),
+        roughcast_io::dds::read_textures(data, LIMITS),
+        roughcast_io::exr::read_textures(data, &LIMITS),
+    ];
+    for textures in read.into_iter().flatten() {
+        // For a layout of several files the same texels stand in for the others, whatever they say that they are.
+        for part in Part::ALL {
+            let other = TextureArray { info: TextureInfo { part: *part, ..textures.info }, ..textures.clone() };
+            match roughcast::texture::decode(&[textures.clone(), other]) {
+                Ok(levels) => levels.iter().flat_map(|level| &level.moments).for_each(check_moments),
+                Err(error) => assert!(!error.to_string().contains('\n'), "{error}"),
+            }
+        }
+    }
+}
+
+/// No variance is negative. Texels that hold NaN or infinity have none to speak of.
+fn check_moments(moments: &Moments) {
+    let covariance = moments.covariance();
+    assert!(!(covariance.xx < 0.0 || covariance.yy < 0.0), "{moments:?}");
 }
 
 /// The FourCCs of the block codes; BC7 has none of its own.
@@ -100,6 +187,9 @@ fn assert_finite(decoded: &Decoded) {
     );
 }
 
+/// Longer messages would not be one clear line. Some quote a name from the file.
+const LONGEST_ERROR: usize = 1000;
+
 /// What an image says of itself fits its pixels; an error is one line.
 fn check_image(result: Result<Decoded, ReadError>) {
     match result {
@@ -109,8 +199,14 @@ fn check_image(result: Result<Decoded, ReadError>) {
             assert!(info.layers > 0 && info.levels > 0);
             assert!((image.width() * image.height()) as u64 <= LIMITS.max_pixels);
         }
-        Err(error) => assert!(!error.to_string().contains('\n'), "{error}"),
+        Err(error) => check_error(&error),
     }
+}
+
+/// An error is one line, or becomes one: the program takes control characters out.
+fn check_error(error: &ReadError) {
+    let text = error.to_string();
+    assert!(!text.is_empty() && text.len() < LONGEST_ERROR, "{text}");
 }
 
 /// Writes textures, reads them back and writes them again: both files must be the same. (Texels cannot be compared

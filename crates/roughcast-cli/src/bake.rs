@@ -272,8 +272,13 @@ impl Args {
     /// Names that a folder's outputs get: all parts and levels start with it.
     pub fn output_in_folder(&self, mut name: OsString) -> PathBuf {
         name.push(".");
-        name.push(self.format.unwrap_or(Container::Ktx2).name());
+        name.push(self.container_in_folder().name());
         self.output.join(name)
+    }
+
+    /// The format of a folder's outputs.
+    pub fn container_in_folder(&self) -> Container {
+        self.format.unwrap_or(Container::Ktx2)
     }
 
     /// The library's options; where nothing was said, those that suit the container.
@@ -306,7 +311,7 @@ impl Args {
     }
 
     /// Refuses options that do not go together, before any work is done.
-    fn check(&self, container: Container) -> Result<(), UsageError> {
+    pub fn check(&self, container: Container) -> Result<(), UsageError> {
         container.check(&self.options(container, None))?;
         if self.supercompress == Supercompress::Zstd && container != Container::Ktx2 {
             return Err(UsageError(format!(

@@ -24,6 +24,7 @@ const DEFAULT_JOBS: usize = 4;
 
 pub fn run(args: &Args) -> Result<ExitCode> {
     check_output_folder(args)?;
+    args.check(args.container_in_folder())?;
     let inputs = maps_in(&args.input)?;
     std::fs::create_dir_all(&args.output).with_context(|| args.output.display().to_string())?;
     if is_same_file(&args.input, &args.output) {

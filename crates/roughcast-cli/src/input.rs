@@ -10,6 +10,7 @@ use roughcast::texture::Layout;
 use roughcast::{Green, Image, Kind, NormalChannels, NormalRange, SourceOptions};
 use roughcast_io::{Decoded, FileInfo, Limits, ReadError, ValueRange};
 
+use crate::UsageError;
 use crate::args::SourceArgs;
 
 /// A map, ready to be baked.
@@ -41,6 +42,11 @@ pub fn read_map(path: &Path, args: &SourceArgs) -> Result<Map> {
 
 /// Settles what the arguments left open for an image that was read.
 pub fn map_of(Decoded { image, info }: Decoded, args: &SourceArgs) -> Result<Map> {
+    if args.range == Some(NormalRange::Signed) && !image.samples().sample_type().is_float() {
+        let line =
+            format!("--range signed is for signed numbers, and {} holds none: leave it out", info.format);
+        return Err(UsageError(line).into());
+    }
     let range = args.range.unwrap_or_else(|| range_of(&image, &info));
     let kind = kind_of(&image, &info, range, args.kind)?;
     let channels = args.normal_channels.unwrap_or_else(|| match kind {

@@ -26,7 +26,7 @@ use clap::{Parser, Subcommand};
 /// Bumps in, roughness out: filters normal and height maps so that detail too small to see becomes roughness instead
 /// of shimmering.
 #[derive(Parser)]
-#[command(version, max_term_width = 100, arg_required_else_help = true)]
+#[command(name = "roughcast", version, max_term_width = 100, arg_required_else_help = true)]
 struct Cli {
     #[command(subcommand)]
     command: Command,

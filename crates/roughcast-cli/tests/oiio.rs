@@ -1,8 +1,8 @@
 //! Our bump slopes against those that OpenImageIO's `maketx --bumpslopes` wrote.
 //!
 //! Three files: `bump.exr`, a height map; `bumpslope-central.exr`, half floats, made of its top left 64x64 texels by central
-//! differences of clamped texels; `bumpslope.exr`, floats, Sobel slopes in units of a 64th of the height's (maketx multiplies
-//! the sum of the eight taps by 8 instead of dividing it by 8). The height that each was made of is its own channel b0_h,
+//! differences of clamped texels; `bumpslope.exr`, floats, 64 times Sobel's slopes of
+//! clamped texels: heights in units of the map's width. The height that each was made of is its own channel b0_h,
 //! which the program reads as the height.
 
 mod common;

@@ -51,6 +51,15 @@ impl Outcome {
         line.to_owned()
     }
 
+    /// Panics unless the command line was refused with one line that has these words.
+    #[track_caller]
+    pub fn expect_usage_error(&self, words: &str) {
+        assert_eq!(self.code, Some(2), "stderr: {}", self.stderr);
+        assert!(self.stdout.is_empty(), "stdout of a refusal: {}", self.stdout);
+        assert_eq!(self.stderr.lines().count(), 1, "{}", self.stderr);
+        assert!(self.stderr.starts_with("error: ") && self.stderr.contains(words), "{}", self.stderr);
+    }
+
     /// Standard output as the one JSON document that it must be.
     #[track_caller]
     pub fn json(&self) -> serde_json::Value {

@@ -1,0 +1,5 @@
+//! The target `exr_textures` for cargo-fuzz.
+
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| roughcast_fuzz::exr_textures(data));
