@@ -87,6 +87,9 @@ pub(crate) trait RowSource: Sync {
     fn height(&self) -> usize;
     /// The extras that `fill` writes, in order.
     fn extras(&self) -> &[Extra];
+    /// Whether level 0 has a covariance: a base roughness that is folded in. If not, `fill` leaves the planes of the
+    /// covariance alone, which are zeros in a new row.
+    fn has_covariance(&self) -> bool;
     /// Writes the texels of row `y` from column `x` on, as many as `row` holds.
     fn fill(&self, x: usize, y: usize, row: &mut Row, scratch: &mut SourceScratch) -> crate::SourceCounts;
 }

@@ -115,9 +115,10 @@ pub fn bake_reusing(
     };
     let sample_type = options.bits.sample_type();
     // A scale that is to be found needs a look at every slope first; otherwise one pass does it all.
-    let looked_at = (!sample_type.is_float() && options.scale == ScaleChoice::Auto).then(|| survey(&source));
+    let looked_at = (!sample_type.is_float() && options.scale == ScaleChoice::Auto)
+        .then(|| survey(&source.slopes_only()));
     let largest_variance =
-        stores_variance(options.layout).then(|| largest_variance(&source, pyramid_options));
+        stores_variance(options.layout).then(|| largest_variance(&source.slopes_only(), pyramid_options));
     set_scales(&mut info, looked_at.as_ref(), largest_variance, options);
     let mut arrays = allocate(textures, &info, options, (image.width(), image.height()));
     let shape = EncoderShape {

@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use super::LevelStats;
-use super::combine::{average_two_columns, average_two_rows};
+use super::combine::{average_two_columns, average_two_rows, average_two_rows_of_slopes};
 use super::level_out::{LevelOut, OutScratch};
 use super::resample::LevelImage;
 use crate::row::{Row, RowSource, SourceScratch};
@@ -127,7 +127,11 @@ impl<'a> Cascade<'a> {
             let (finer, this) = self.pairs.split_at_mut(level);
             let [above, below] = &finer[level - 1];
             let merged = &mut self.merged[level - 1];
-            average_two_rows(above, below, merged);
+            if level == 1 && !self.source.has_covariance() {
+                average_two_rows_of_slopes(above, below, merged);
+            } else {
+                average_two_rows(above, below, merged);
+            }
             average_two_columns(merged, &mut this[0][slot]);
         }
         let first = band.first_row << (self.depth - level);

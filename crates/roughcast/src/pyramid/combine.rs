@@ -19,6 +19,19 @@ pub(super) fn average_two_rows(a: &Row, b: &Row, out: &mut Row) {
     }
 }
 
+/// The equal average of two rows of level 0 that have no covariance of their own: theirs is all that is made.
+pub(super) fn average_two_rows_of_slopes(a: &Row, b: &Row, out: &mut Row) {
+    let [abx, aby, _, _, _, a_extras @ ..] = &a.planes[..] else { unreachable!("core planes") };
+    let [bbx, bby, _, _, _, b_extras @ ..] = &b.planes[..] else { unreachable!("core planes") };
+    let [bx, by, xx, yy, xy, extras @ ..] = &mut out.planes[..] else { unreachable!("core planes") };
+    covariance_of_two_slopes([abx, bbx], [aby, bby], xx, yy, xy);
+    means_of_two(abx, bbx, bx);
+    means_of_two(aby, bby, by);
+    for ((a, b), out) in a_extras.iter().zip(b_extras).zip(extras) {
+        means_of_two(a, b, out);
+    }
+}
+
 // Slices come in as arguments, which the compiler knows not to overlap, and are cut to one length, which it then need
 // not check: these loops vectorise. The mean lies half a difference from either value, so both add the same square.
 
@@ -37,6 +50,26 @@ vectorised! {
         for i in 0..n {
             let half = 0.5 * (a[i] - b[i]);
             out[i] = 0.5 * (a_variance[i] + b_variance[i]) + half * half;
+        }
+    }
+}
+
+vectorised! {
+    fn covariance_of_two_slopes(
+        x: [&[f32]; 2],
+        y: [&[f32]; 2],
+        xx: &mut [f32],
+        yy: &mut [f32],
+        xy: &mut [f32],
+    ) {
+        let n = xx.len();
+        let (ax, bx, ay, by) = (&x[0][..n], &x[1][..n], &y[0][..n], &y[1][..n]);
+        let (yy, xy) = (&mut yy[..n], &mut xy[..n]);
+        for i in 0..n {
+            let (half_x, half_y) = (0.5 * (ax[i] - bx[i]), 0.5 * (ay[i] - by[i]));
+            xx[i] = half_x * half_x;
+            yy[i] = half_y * half_y;
+            xy[i] = half_x * half_y;
         }
     }
 }

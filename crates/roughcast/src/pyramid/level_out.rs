@@ -54,12 +54,21 @@ pub(crate) struct PartOut<'a> {
     pub samples: SamplesMut<'a>,
 }
 
+/// What is measured of a level.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Measured {
+    /// Level 0 of a map without base roughness: its variances are zeros.
+    Slopes,
+    SlopesAndVariances,
+}
+
 /// One level of all textures of a layout, or some rows of it. Without an encoder it is only measured.
 pub(crate) struct LevelOut<'a> {
     width: usize,
     rows: usize,
     encoder: Option<&'a dyn RowEncoder>,
     parts: Vec<PartOut<'a>>,
+    measured: Measured,
     sum: StatsSum,
 }
 
@@ -72,12 +81,24 @@ pub(crate) struct OutScratch {
 impl<'a> LevelOut<'a> {
     /// A level that is encoded into `parts`.
     pub fn encoded(size: (usize, usize), encoder: &'a dyn RowEncoder, parts: Vec<PartOut<'a>>) -> Self {
-        Self { width: size.0, rows: size.1, encoder: Some(encoder), parts, sum: StatsSum::default() }
+        Self { encoder: Some(encoder), parts, ..Self::measured(size) }
     }
 
     /// A level that is only measured.
     pub fn measured(size: (usize, usize)) -> Self {
-        Self { width: size.0, rows: size.1, encoder: None, parts: Vec::new(), sum: StatsSum::default() }
+        Self {
+            width: size.0,
+            rows: size.1,
+            encoder: None,
+            parts: Vec::new(),
+            measured: Measured::SlopesAndVariances,
+            sum: StatsSum::default(),
+        }
+    }
+
+    /// The same for a level whose variances are known to be zero.
+    pub fn without_variances(self) -> Self {
+        Self { measured: Measured::Slopes, ..self }
     }
 
     /// Rows in it.
@@ -87,10 +108,10 @@ impl<'a> LevelOut<'a> {
 
     /// Bands of `rows` rows each, to be written at the same time.
     pub fn split(self, rows: usize) -> Vec<Self> {
-        let (width, encoder) = (self.width, self.encoder);
+        let (width, encoder, measured) = (self.width, self.encoder, self.measured);
         let mut bands: Vec<Self> = (0..self.rows.div_ceil(rows))
             .map(|band| rows.min(self.rows - band * rows))
-            .map(|rows| Self { width, rows, encoder, parts: Vec::new(), sum: StatsSum::default() })
+            .map(|rows| Self { encoder, measured, ..Self::measured((width, rows)) })
             .collect();
         for part in self.parts {
             let channels = part.channels;
@@ -103,7 +124,7 @@ impl<'a> LevelOut<'a> {
 
     /// Measures and stores a stretch of row `y` (of this band) from column `x` on.
     pub fn write(&mut self, x: usize, y: usize, row: RowView<'_>, scratch: &mut OutScratch) {
-        self.sum.measure(row);
+        self.sum.measure(row, self.measured);
         let Some(encoder) = self.encoder else { return };
         let planes = self.parts.iter().map(|part| part.channels).sum();
         scratch.planes.resize(planes, Vec::new());
@@ -140,11 +161,13 @@ pub(crate) struct StatsSum {
 }
 
 impl StatsSum {
-    fn measure(&mut self, row: RowView<'_>) {
+    fn measure(&mut self, row: RowView<'_>, measured: Measured) {
         self.texels += row.width() as u64;
-        self.xx += sum(row.xx);
-        self.yy += sum(row.yy);
-        self.max = self.max.max(largest(row.xx)).max(largest(row.yy));
+        if measured == Measured::SlopesAndVariances {
+            self.xx += sum(row.xx);
+            self.yy += sum(row.yy);
+            self.max = self.max.max(largest(row.xx)).max(largest(row.yy));
+        }
         let (component, squared_length) = largest_component_and_square(row.bx, row.by);
         self.component = self.component.max(component);
         self.squared_length = self.squared_length.max(squared_length);

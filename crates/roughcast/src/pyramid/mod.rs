@@ -71,7 +71,11 @@ pub(crate) fn build(source: &dyn RowSource, options: PyramidOptions, outs: Vec<L
     };
     let mut outs = outs.into_iter();
     let mut stats = Vec::with_capacity(sizes.len());
-    let fused: Vec<_> = outs.by_ref().take(depth + 1).collect();
+    let mut fused: Vec<_> = outs.by_ref().take(depth + 1).collect();
+    if !source.has_covariance() {
+        let finest = fused.remove(0).without_variances();
+        fused.insert(0, finest);
+    }
     let (counts, fused_stats, mut level) = if depth > 0 {
         cascade::run(source, depth, fused)
     } else {

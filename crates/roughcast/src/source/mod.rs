@@ -77,6 +77,13 @@ impl<'a> MapSource<'a> {
     }
 }
 
+impl MapSource<'_> {
+    /// The same slopes with nothing beside them, for passes that store nothing.
+    pub fn slopes_only(&self) -> Self {
+        Self { image: self.image, options: self.options, base: self.base, extras: Vec::new() }
+    }
+}
+
 fn check_numbers(options: &SourceOptions) -> Result<(), SourceError> {
     if !(options.max_slope.is_finite() && options.max_slope > 0.0) {
         return Err(SourceError::Option(format!(
@@ -106,6 +113,10 @@ impl RowSource for MapSource<'_> {
         &self.extras
     }
 
+    fn has_covariance(&self) -> bool {
+        self.base.as_ref().is_some_and(BaseSource::folds_in)
+    }
+
     fn fill(&self, x: usize, y: usize, row: &mut Row, scratch: &mut SourceScratch) -> SourceCounts {
         let (core, extras) = row.planes.split_at_mut(crate::row::CORE_PLANES);
         let [bx, by, xx, yy, xy] = core else { unreachable!("a row has five core planes") };
@@ -113,12 +124,11 @@ impl RowSource for MapSource<'_> {
             Kind::Normal => normal_map::fill(self.image, &self.options, x, y, bx, by, scratch),
             Kind::Height => height_map::fill(self.image, &self.options, x, y, bx, by, scratch),
         };
-        match &self.base {
-            Some(base) if base.folds_in() => base.fill_variance(x, y, xx),
-            _ => xx.fill(0.0),
+        if let Some(base) = self.base.as_ref().filter(|base| base.folds_in()) {
+            base.fill_variance(x, y, xx);
+            yy.copy_from_slice(xx);
+            xy.fill(0.0);
         }
-        yy.copy_from_slice(xx);
-        xy.fill(0.0);
         if let [Extra::NormalX, Extra::NormalY, Extra::NormalZ, ..] = self.extras[..] {
             let [nx, ny, nz, ..] = extras else { unreachable!("a plane for each extra") };
             unit_normals(bx, by, nx, ny, nz);
