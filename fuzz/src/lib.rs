@@ -121,7 +121,8 @@ pub fn decode(data: &[u8]) {
     for textures in read.into_iter().flatten() {
         // For a layout of several files the same texels stand in for the others, whatever they say that they are.
         for part in Part::ALL {
-            let other = TextureArray { info: TextureInfo { part: *part, ..textures.info }, ..textures.clone() };
+            let other =
+                TextureArray { info: TextureInfo { part: *part, ..textures.info }, ..textures.clone() };
             match roughcast::texture::decode(&[textures.clone(), other]) {
                 Ok(levels) => levels.iter().flat_map(|level| &level.moments).for_each(check_moments),
                 Err(error) => assert!(!error.to_string().contains('\n'), "{error}"),

@@ -11,6 +11,7 @@ mod memory;
 mod metadata;
 mod png;
 mod tiff;
+mod tiff_entries;
 
 use std::path::Path;
 
