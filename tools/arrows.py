@@ -30,7 +30,7 @@ ALLOWED_IN_TESTS = {
 # Crates of others that the library may use (tests are free). It is arithmetic on images in memory, and whoever takes it
 # into an engine takes these along.
 LIBRARY = "roughcast"
-LIBRARY_MAY_USE = {"half", "rayon", "thiserror"}
+LIBRARY_MAY_USE = {"half", "multiversion", "rayon", "thiserror"}
 
 
 def arrow_faults(package, workspace_names):

@@ -46,16 +46,16 @@ const LIMITS: Limits = Limits { max_pixels: 1 << 18 };
 
 /// Both readers of KTX2. What reads as textures must survive being written again.
 pub fn ktx2(data: &[u8]) {
-    check_image(roughcast_io::ktx2::read_image(data, LIMITS));
-    if let Ok(textures) = roughcast_io::ktx2::read_textures(data, LIMITS) {
+    check_image(roughcast_io::ktx2::read_image(data, &LIMITS));
+    if let Ok(textures) = roughcast_io::ktx2::read_textures(data, &LIMITS) {
         check_rewritten(&textures);
     }
 }
 
 /// Both readers of DDS. What reads as textures must survive being written again.
 pub fn dds(data: &[u8]) {
-    check_image(roughcast_io::dds::read_image(data, LIMITS));
-    if let Ok(textures) = roughcast_io::dds::read_textures(data, LIMITS) {
+    check_image(roughcast_io::dds::read_image(data, &LIMITS));
+    if let Ok(textures) = roughcast_io::dds::read_textures(data, &LIMITS) {
         check_rewritten(&textures);
     }
 }
@@ -161,7 +161,7 @@ pub fn bc(data: &[u8]) {
     let mut file = dds_header(four_cc, width as u32, height as u32);
     let length = width.div_ceil(4) * height.div_ceil(4) * block_bytes;
     file.extend(blocks.iter().cycle().take(length));
-    let decoded = roughcast_io::dds::read_image(&file, LIMITS).expect("blocks of any bits are valid");
+    let decoded = roughcast_io::dds::read_image(&file, &LIMITS).expect("blocks of any bits are valid");
     assert_eq!((decoded.image.width(), decoded.image.height()), (width, height));
     assert_finite(&decoded);
 }
@@ -225,8 +225,8 @@ fn check_rewritten(textures: &TextureArray) {
         file
     };
     let (ktx2_file, dds_file) = (ktx2(textures), dds(textures));
-    let of_ktx2 = roughcast_io::ktx2::read_textures(&ktx2_file, LIMITS).expect("it was written");
-    let of_dds = roughcast_io::dds::read_textures(&dds_file, LIMITS).expect("it was written");
+    let of_ktx2 = roughcast_io::ktx2::read_textures(&ktx2_file, &LIMITS).expect("it was written");
+    let of_dds = roughcast_io::dds::read_textures(&dds_file, &LIMITS).expect("it was written");
     assert!(ktx2(&of_ktx2) == ktx2_file && dds(&of_dds) == dds_file, "a second writing differs");
     // The other way round the bits of a NaN among the metadata may differ, which KTX2 spells out as text.
     assert!(ktx2(&of_dds) == ktx2_file, "DDS and KTX2 hold different texels");

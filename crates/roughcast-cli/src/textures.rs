@@ -17,8 +17,8 @@ fn read(path: &Path, limits: &Limits) -> Result<TextureArray> {
 /// Reads the bytes of a file that we wrote.
 pub fn read_bytes(bytes: &[u8], limits: &Limits) -> Result<TextureArray, ReadError> {
     match bytes {
-        [0xab, b'K', b'T', b'X', ..] => ktx2::read_textures(bytes, *limits),
-        [b'D', b'D', b'S', b' ', ..] => dds::read_textures(bytes, *limits),
+        [0xab, b'K', b'T', b'X', ..] => ktx2::read_textures(bytes, limits),
+        [b'D', b'D', b'S', b' ', ..] => dds::read_textures(bytes, limits),
         [0x76, 0x2f, 0x31, 0x01, ..] => exr::read_textures(bytes, limits),
         _ => Err(ReadError::Unsupported {
             format: "file",

@@ -47,12 +47,17 @@ impl BlockFormat {
         }
     }
 
-    fn variant(self) -> CompressionVariant {
+    /// How a block of RGBA texels is compressed. For BC7 the "fast" settings: the next better ones take several times as
+    /// long, minutes for a large texture, and gain little. Opaque blocks, which most packed materials' are, have settings
+    /// that do not spend time on the fourth channel.
+    fn variant(self, rgba: &[u8; 64]) -> CompressionVariant {
         match self {
             BlockFormat::Bc4 => CompressionVariant::BC4,
             BlockFormat::Bc5 => CompressionVariant::BC5,
-            // The settings with alpha: the fourth channel of a layout is data, not coverage.
-            BlockFormat::Bc7 => CompressionVariant::BC7(BC7Settings::alpha_basic()),
+            BlockFormat::Bc7 if rgba.chunks_exact(4).all(|texel| texel[3] == 255) => {
+                CompressionVariant::BC7(BC7Settings::opaque_fast())
+            }
+            BlockFormat::Bc7 => CompressionVariant::BC7(BC7Settings::alpha_fast()),
         }
     }
 }
@@ -85,7 +90,8 @@ pub struct BlockLayer {
 
 /// Compresses 8-bit textures. Sizes that are no multiple of 4 are filled up by repeating the edge.
 ///
-/// Blocks do not depend on each other, so the result is the same for any number of threads.
+/// Blocks do not depend on each other, so the result is the same for any number of threads. BC4 and BC5 take well under a
+/// second for a million texels, BC7 about nine on one core.
 ///
 /// # Errors
 /// [`WriteError::Unsupported`] where the samples are not 8-bit or the number of channels is not that of the format.
@@ -116,7 +122,7 @@ fn compress_level(level: &Image, format: BlockFormat) -> Result<Vec<u8>, WriteEr
     blocks.par_chunks_mut(level.width().div_ceil(4) * block_bytes).enumerate().for_each(|(row, blocks)| {
         for (column, block) in blocks.chunks_exact_mut(block_bytes).enumerate() {
             let rgba = rgba_of_block(level, texels, column, row);
-            compress_rgba8(format.variant(), &rgba, block, 4, 4, 16);
+            compress_rgba8(format.variant(&rgba), &rgba, block, 4, 4, 16);
         }
     });
     Ok(blocks)

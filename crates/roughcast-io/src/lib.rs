@@ -1,4 +1,40 @@
-//! Files in and out: images, and textures with their levels.
+//! Files in and out for `roughcast`: images of ten formats read, textures with all their levels written and read back.
+//!
+//! - [`read_image`] and [`read_image_file`] decode PNG, JPEG, TGA, BMP, WebP, TIFF, Radiance HDR, OpenEXR, KTX2 and DDS to
+//!   an [`roughcast::Image`] in the type in which the file stores its samples;
+//! - [`ktx2`], [`dds`] and [`exr`] write a [`roughcast::texture::TextureArray`] with its levels, and read back what they
+//!   wrote; [`png_levels`] writes one level as a PNG;
+//! - [`compress`] makes BC4, BC5 and BC7 blocks, and [`decompress`] shows what a graphics processor will see of them;
+//! - [`AtomicFile`] and [`AtomicSet`] let files appear whole or not at all.
+//!
+//! Readers take any bytes: none panics, and no memory is taken that [`Limits`] do not allow. Errors are one line with the
+//! fault and the mend; the caller adds the path. Numbers are data: gamma and colour profiles are passed over.
+//!
+//! Out of scope: what the texels of a layout mean (see [`roughcast::texture`]), cube maps, volumes, BC6H, ASTC, ETC and
+//! Basis Universal, and colour.
+//!
+//! # Example
+//!
+//! ```
+//! use roughcast::{BakeOptions, Image, SampleType, SourceOptions, bake};
+//! use roughcast_io::{Limits, Payload, Supercompression, ktx2};
+//!
+//! let map = Image::zeros(16, 16, 3, SampleType::F32);
+//! let baked = bake(&map, &SourceOptions::default(), None, &BakeOptions::default())?;
+//!
+//! let mut file = Vec::new();
+//! ktx2::write(Payload::Texels(&baked.arrays[0]), Supercompression::Zstd, &mut file)?;
+//!
+//! // As textures of ours, with all levels and what they mean …
+//! let textures = ktx2::read_textures(&file, &Limits::default())?;
+//! assert_eq!(textures, baked.arrays[0]);
+//!
+//! // … or as any other picture: level 0 of the first layer.
+//! let picture = roughcast_io::read_image(&file, None, &Limits::default())?;
+//! assert_eq!((picture.info.container, picture.info.levels), ("KTX2", 5));
+//! assert_eq!(picture.info.metadata["roughcast.layout"], "lean");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 #![forbid(unsafe_code)]
 

@@ -1,21 +1,30 @@
-//! Bounds on what is kept of a foreign file's metadata.
+//! The pairs of text that files keep beside the pixels, in bounded number and size.
 
 use std::collections::BTreeMap;
 
-/// More pairs than any tool writes; a file may claim millions.
+/// Pairs that are kept of one file. A texture of ours has about twenty.
 const MAX_PAIRS: usize = 256;
-/// Longer values are named by their length instead.
-const MAX_VALUE_BYTES: usize = 4096;
+/// Longest key kept, in bytes: EXR allows 255, PNG 79.
+const MAX_KEY_BYTES: usize = 255;
+/// Longest value kept, in bytes. Whole XMP packets and thumbnails are not what these pairs are for.
+pub(crate) const MAX_VALUE_BYTES: usize = 16 << 10;
 
-/// Adds a pair, unless there are too many already. Values that are no text, or too long, are named by their length.
-pub(crate) fn keep(pairs: &mut BTreeMap<String, String>, key: &str, value: &[u8]) {
-    if pairs.len() >= MAX_PAIRS && !pairs.contains_key(key) {
-        return;
+/// Adds a pair, unless the bounds are reached. A value that is too long is left out, for half of it would be a lie.
+/// The first of two values under one key stays.
+pub(crate) fn insert(pairs: &mut BTreeMap<String, String>, key: &str, value: &str) {
+    let fits = pairs.len() < MAX_PAIRS && key.len() <= MAX_KEY_BYTES && value.len() <= MAX_VALUE_BYTES;
+    if fits && !key.is_empty() {
+        pairs.entry(key.to_owned()).or_insert_with(|| value.to_owned());
     }
-    let text = std::str::from_utf8(value).ok().filter(|text| text.len() <= MAX_VALUE_BYTES);
-    let readable = text.map(|text| text.trim_end_matches('\0')).filter(|text| !text.contains('\0'));
-    let value = readable.map_or_else(|| format!("({} bytes)", value.len()), str::to_owned);
-    pairs.insert(key.to_owned(), value);
+}
+
+/// Adds a pair whose value is bytes. Text, which may end with NULs, is kept as such; anything else is named by its length.
+pub(crate) fn insert_bytes(pairs: &mut BTreeMap<String, String>, key: &str, value: &[u8]) {
+    let text = std::str::from_utf8(value).ok().map(|text| text.trim_end_matches('\0'));
+    match text.filter(|text| !text.contains('\0')) {
+        Some(text) => insert(pairs, key, text),
+        None => insert(pairs, key, &format!("({} bytes)", value.len())),
+    }
 }
 
 #[cfg(test)]
@@ -23,22 +32,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn text_is_kept_and_the_rest_is_named_by_its_length() {
+    fn number_and_size_are_bounded() {
         let mut pairs = BTreeMap::new();
-        keep(&mut pairs, "text", b"rd\0");
-        keep(&mut pairs, "binary", &[0, 1, 0, 255]);
-        keep(&mut pairs, "long", &[b'x'; MAX_VALUE_BYTES + 1]);
-        assert_eq!(pairs["text"], "rd");
-        assert_eq!(pairs["binary"], "(4 bytes)");
-        assert_eq!(pairs["long"], "(4097 bytes)");
+        insert(&mut pairs, "long", &"x".repeat(MAX_VALUE_BYTES + 1));
+        insert(&mut pairs, "", "no key");
+        assert!(pairs.is_empty());
+        insert(&mut pairs, "key", "first");
+        insert(&mut pairs, "key", "second");
+        assert_eq!(pairs["key"], "first");
+        (0..1000).for_each(|i| insert(&mut pairs, &format!("key {i}"), ""));
+        assert_eq!(pairs.len(), MAX_PAIRS);
     }
 
     #[test]
-    fn there_is_an_end_to_it() {
+    fn bytes_are_text_or_named_by_their_length() {
         let mut pairs = BTreeMap::new();
-        for index in 0..1000 {
-            keep(&mut pairs, &index.to_string(), b"x");
-        }
-        assert_eq!(pairs.len(), MAX_PAIRS);
+        insert_bytes(&mut pairs, "text", b"rd\0");
+        insert_bytes(&mut pairs, "binary", &[0, 1, 0, 255]);
+        insert_bytes(&mut pairs, "two texts", b"a\0b\0");
+        assert_eq!([&pairs["text"], &pairs["binary"], &pairs["two texts"]], ["rd", "(4 bytes)", "(4 bytes)"]);
     }
 }

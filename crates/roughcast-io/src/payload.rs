@@ -58,7 +58,7 @@ impl Shape {
     }
 
     /// Refuses shapes that no file may have, or that hold more pixels than the caller allows.
-    pub fn check(&self, container: &'static str, limits: Limits) -> Result<(), ReadError> {
+    pub fn check(&self, container: &'static str, limits: &Limits) -> Result<(), ReadError> {
         let (width, height) = (self.width as u64, self.height as u64);
         if width == 0 || height == 0 {
             let fault = format!("its size is {width}x{height}");
@@ -192,8 +192,8 @@ pub(crate) fn textures_from<'a>(
     shape: &Shape,
     bytes_of: impl Fn(usize, usize) -> &'a [u8],
 ) -> Result<TextureArray, ReadError> {
-    let specs = layer_specs(container, &info, shape)?;
-    let layers = specs.into_iter().enumerate().map(|(layer, (name, channels))| {
+    let names = layer_names(container, &info, shape)?;
+    let layers = names.into_iter().enumerate().map(|(layer, (name, channels))| {
         let levels = (0..shape.levels).map(|level| {
             let (width, height) = shape.level_size(level);
             shape.format.decode(bytes_of(layer, level), width, height)
@@ -203,26 +203,24 @@ pub(crate) fn textures_from<'a>(
     Ok(TextureArray { info, layers: layers.collect() })
 }
 
-type LayerSpec = (&'static str, Vec<&'static str>);
-
-/// Names of the layers and of their channels: the layout's, where the file has as many layers as the layout and no more
-/// channels (a block-compressed normal has fewer). Otherwise layers are numbered and channels are called R, G, B, A; the
-/// layout's decoder will say what it misses.
-fn layer_specs(
+/// Name of each layer and of its channels: those of the layout. A file with other layers than its layout has is read all
+/// the same, with numbered layers and the channels R, G, B, A; the layout's decoder will say what it misses.
+fn layer_names(
     container: &'static str,
     info: &TextureInfo,
     shape: &Shape,
-) -> Result<Vec<LayerSpec>, ReadError> {
+) -> Result<Vec<(&'static str, Vec<&'static str>)>, ReadError> {
     const NUMBERED: [&str; 8] =
         ["layer0", "layer1", "layer2", "layer3", "layer4", "layer5", "layer6", "layer7"];
+    let channels = shape.format.channel_names();
+    let specs = layers_of(info);
+    // Block-compressed normals lack the channels behind the second.
+    if specs.len() == shape.layers && specs.iter().all(|spec| spec.channels.len() >= channels.len()) {
+        return Ok(specs.iter().map(|spec| (spec.name, spec.channels[..channels.len()].to_vec())).collect());
+    }
     if shape.layers > NUMBERED.len() {
         let fault = format!("{} layers are more than any layout has", shape.layers);
         return Err(ReadError::Malformed { format: container, fault });
-    }
-    let channels = shape.format.channel_names();
-    let specs = layers_of(info);
-    if specs.len() == shape.layers && specs.iter().all(|spec| channels.len() <= spec.channels.len()) {
-        return Ok(specs.iter().map(|spec| (spec.name, spec.channels[..channels.len()].to_vec())).collect());
     }
     Ok(NUMBERED[..shape.layers].iter().map(|&name| (name, channels.to_vec())).collect())
 }

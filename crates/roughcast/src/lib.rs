@@ -1,4 +1,62 @@
-//! roughcast: bumps in, roughness out.
+//! Filtered surface detail: bumps in, roughness out.
+//!
+//! A shiny bumpy surface seen from afar must look duller, because its bumps have become too small to see. Mip-mapped
+//! normals lose them instead. This crate turns normal and height maps into textures of *moments of slopes*, which any
+//! filter may average, and from which a shader gets the lost bumps back as roughness with a direction (Olano & Baker,
+//! "LEAN Mapping", 2010, and its relatives).
+//!
+//! # What is in
+//!
+//! - [`bake`]: a map in memory to a layout's textures, every level of them ([`texture::Layout`] lists the layouts);
+//! - [`texture::decode`]: from any layout back to moments, and [`texture::bounds`]: how far off these can be;
+//! - [`precision`]: which storage type carries which shininess;
+//! - [`detect`]: whether an image holds normals or heights, in which channels, with green up or down.
+//!
+//! # What is out of scope
+//!
+//! Files (see `roughcast-io`), block compression (there, too), the GPU, shading, colour textures, and normal maps in object
+//! space: slopes are those of the tangent plane.
+//!
+//! # Conventions
+//!
+//! - Row 0 of an image is its top. The tangent frame has x to the right (growing column), y **up** (falling row), z out of
+//!   the surface: OpenGL's and glTF's normal maps. Maps with green down are flipped as they are read ([`Green`]).
+//! - A [`Slope`] is `(N.x / N.z, N.y / N.z)`, minus the gradient of a height. A height value v means
+//!   `v * height_scale * width` texels, so slopes have no unit.
+//! - Second moments are in the order xx, yy, xy. Variances are of slopes, per axis: Beckmann's `alpha^2 = 2 sigma^2`,
+//!   Blinn-Phong's `sigma^2 = 1 / s`, and by convention GGX's `alpha^2 = alpha0^2 + 2 sigma^2`. alpha is the width of the
+//!   lobe, neither its square nor perceptual roughness.
+//! - Level k+1 of a texture has `max(1, floor(n / 2))` texels each way. The means of slopes and of second moments are the
+//!   same on every level.
+//! - The same input gives the same bits, for any number of threads and whatever vector instructions the processor has.
+//!
+//! # Example
+//!
+//! Bakes a washboard of 8x8 texels, whose slopes along x are 1/2 and -1/2 in turn, and reads the last level back: no mean
+//! slope is left, and all of the bumps are variance along x.
+//!
+//! ```
+//! use roughcast::texture::decode;
+//! use roughcast::{BakeOptions, Image, Samples, SourceOptions, bake};
+//!
+//! // Normals in 8 bits, not of unit length: (±1/2, 0, 1), and 0 ..= 255 stands for -1 ..= 1.
+//! let texel = |x: usize| if x % 2 == 0 { [191, 128, 255] } else { [64, 128, 255] };
+//! let pixels = (0..64).flat_map(|i| texel(i % 8)).collect();
+//! let map = Image::new(8, 8, 3, Samples::U8(pixels))?;
+//!
+//! // LEAN in 16 bits, of a normal map with green up that repeats: the defaults.
+//! let baked = bake(&map, &SourceOptions::default(), None, &BakeOptions::default())?;
+//! assert_eq!(baked.arrays[0].layers[0].name, "lean1");
+//! assert_eq!(baked.report.levels.len(), 4); // 8, 4, 2, 1
+//!
+//! let levels = decode(&baked.arrays)?;
+//! let whole = levels[3].moments[0];
+//! let roughness = whole.covariance();
+//! // Eight bits have no code for 0 or 1/2; the nearest are up to 1/255 off.
+//! assert!(whole.mean.x.abs() < 0.005 && whole.mean.y.abs() < 0.005);
+//! assert!((roughness.xx - 0.25).abs() < 0.005 && roughness.yy < 0.0001);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 #![forbid(unsafe_code)]
 
@@ -15,6 +73,7 @@ mod slope;
 mod source;
 mod survey;
 pub mod texture;
+mod vectorised;
 
 pub use bake::{BakeError, BakeReport, Baked, ScaleAdvice, bake, bake_reusing, refuse_filter};
 pub use image::{Image, ImageError, SampleType, Samples};

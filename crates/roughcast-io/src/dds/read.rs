@@ -17,7 +17,7 @@ use crate::{Decoded, FileInfo, Limits, ReadError};
 ///
 /// # Errors
 /// [`ReadError`] where the file is broken, too large for `limits`, or of a kind that is not read (see [`super`]).
-pub fn read_image(bytes: &[u8], limits: Limits) -> Result<Decoded, ReadError> {
+pub fn read_image(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
     let header = Header::parse(bytes)?;
     let (mut shape, format_name) = shape_of(&header)?;
     // Level 0 is all that is wanted, so a count of levels that cannot be is no reason to refuse the file.
@@ -47,7 +47,7 @@ pub fn read_image(bytes: &[u8], limits: Limits) -> Result<Decoded, ReadError> {
 ///
 /// # Errors
 /// [`ReadError`] where the file is broken, too large for `limits`, or not one of ours ([`ReadError::Info`]).
-pub fn read_textures(bytes: &[u8], limits: Limits) -> Result<TextureArray, ReadError> {
+pub fn read_textures(bytes: &[u8], limits: &Limits) -> Result<TextureArray, ReadError> {
     let header = Header::parse(bytes)?;
     let info = TextureInfo::from_words(&header.reserved)?;
     let (shape, format_name) = shape_of(&header)?;

@@ -206,7 +206,7 @@ fn key_value_data(bytes: &[u8], offset: u32, length: u32) -> Result<BTreeMap<Str
         let pair = after.get(..size).ok_or_else(broken)?;
         let end_of_key = pair.iter().position(|&byte| byte == 0).ok_or_else(broken)?;
         let key = std::str::from_utf8(&pair[..end_of_key]).map_err(|_| broken())?;
-        metadata::keep(&mut pairs, key, &pair[end_of_key + 1..]);
+        metadata::insert_bytes(&mut pairs, key, &pair[end_of_key + 1..]);
         // Pairs are padded to 4 bytes; some writers leave the padding of the last one out.
         rest = after.get(size.next_multiple_of(4)..).unwrap_or_default();
     }

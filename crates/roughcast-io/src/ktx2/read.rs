@@ -16,7 +16,7 @@ use crate::{Decoded, FileInfo, Limits, ReadError};
 ///
 /// # Errors
 /// [`ReadError`] where the file is broken, too large for `limits`, or of a kind that is not read (see [`super`]).
-pub fn read_image(bytes: &[u8], limits: Limits) -> Result<Decoded, ReadError> {
+pub fn read_image(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
     let file = Container::parse(bytes)?;
     let (shape, format_name) = shape_of(&file, limits)?;
     let (layer_bytes, level_bytes) = sizes(&shape, 0)?;
@@ -49,7 +49,7 @@ pub fn read_image(bytes: &[u8], limits: Limits) -> Result<Decoded, ReadError> {
 ///
 /// # Errors
 /// [`ReadError`] where the file is broken, too large for `limits`, or not one of ours ([`ReadError::Info`]).
-pub fn read_textures(bytes: &[u8], limits: Limits) -> Result<TextureArray, ReadError> {
+pub fn read_textures(bytes: &[u8], limits: &Limits) -> Result<TextureArray, ReadError> {
     let file = Container::parse(bytes)?;
     let info = TextureInfo::from_pairs(&file.pairs)?;
     let (shape, format_name) = shape_of(&file, limits)?;
@@ -70,7 +70,7 @@ pub fn read_textures(bytes: &[u8], limits: Limits) -> Result<TextureArray, ReadE
     })
 }
 
-fn shape_of(file: &Container<'_>, limits: Limits) -> Result<(Shape, &'static str), ReadError> {
+fn shape_of(file: &Container<'_>, limits: &Limits) -> Result<(Shape, &'static str), ReadError> {
     let (format, name) = format::texel_format(file.vk_format)?;
     let shape =
         Shape { width: file.width, height: file.height, layers: file.layers, levels: file.levels(), format };

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use roughcast::{Image, Samples};
 
 use super::memory::{check_size, malformed, unsupported, zeros};
-use super::metadata::insert;
+use crate::metadata::insert;
 use crate::{Decoded, FileInfo, Limits, ReadError, ValueRange};
 
 const FORMAT: &str = "HDR";

@@ -8,7 +8,6 @@ mod exr;
 mod hdr;
 mod jpeg;
 mod memory;
-mod metadata;
 mod png;
 mod tiff;
 mod tiff_entries;
@@ -54,8 +53,8 @@ pub fn read_image(bytes: &[u8], extension: Option<&str>, limits: &Limits) -> Res
         Format::Tiff => tiff::read(bytes, limits),
         Format::Hdr => hdr::read(bytes, limits),
         Format::Exr => exr::read(bytes, limits),
-        Format::Ktx2 => crate::ktx2::read_image(bytes, *limits),
-        Format::Dds => crate::dds::read_image(bytes, *limits),
+        Format::Ktx2 => crate::ktx2::read_image(bytes, limits),
+        Format::Dds => crate::dds::read_image(bytes, limits),
     }
 }
 
@@ -83,7 +82,8 @@ fn format_of(bytes: &[u8], extension: Option<&str>) -> Result<Format, ReadError>
         (b"#?RADIANCE", Format::Hdr),
         (b"#?RGBE", Format::Hdr),
         (b"\x76\x2f\x31\x01", Format::Exr),
-        (b"\xabKTX 20\xbb\r\n\x1a\n", Format::Ktx2),
+        // Version 1, too: the reader of KTX2 refuses it with a mend.
+        (b"\xabKTX ", Format::Ktx2),
         (b"DDS ", Format::Dds),
         // A file that a broken upload cut: named here so that it is called a broken PNG, not an unknown format.
         (b"\x89PNG", Format::Png),

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use roughcast::{Image, Samples};
 
 use super::memory::{DEFLATE_MAX_RATIO, check_size, malformed, zeros};
-use super::metadata::{MAX_VALUE_BYTES, insert};
+use crate::metadata::{MAX_VALUE_BYTES, insert};
 use crate::{Decoded, FileInfo, Limits, ReadError, ValueRange};
 
 const FORMAT: &str = "PNG";

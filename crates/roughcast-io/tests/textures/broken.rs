@@ -75,31 +75,31 @@ fn a_small_file_cannot_claim_a_large_texture() {
             let mut file = small_ktx2(supercompression);
             put(&mut file, KTX2_WIDTH, side);
             put(&mut file, KTX2_HEIGHT, side);
-            let error = ktx2::read_image(&file, Limits::default()).unwrap_err();
+            let error = ktx2::read_image(&file, &Limits::default()).unwrap_err();
             assert!(matches!(error, ReadError::TooLarge { .. }), "{error}");
             // Without a limit the level's own length, then the ratio of the compressor, stop it.
-            let error = ktx2::read_image(&file, unlimited).unwrap_err().to_string();
+            let error = ktx2::read_image(&file, &unlimited).unwrap_err().to_string();
             assert!(
                 error.contains("level 0 states 64 bytes") || error.contains("fit into memory"),
                 "{error}"
             );
             let claimed = u64::from(side).saturating_mul(u64::from(side)).saturating_mul(4);
             file[KTX2_LEVEL_0_UNCOMPRESSED..][..8].copy_from_slice(&claimed.to_le_bytes());
-            let error = ktx2::read_image(&file, unlimited).unwrap_err().to_string();
+            let error = ktx2::read_image(&file, &unlimited).unwrap_err().to_string();
             let stopped = match supercompression {
                 Supercompression::None => error.contains("level 0 has 64 bytes"),
                 Supercompression::Zstd => error.contains("too short for its size"),
             };
             assert!(stopped || error.contains("fit into memory"), "{error}");
-            assert!(ktx2::read_textures(&file, unlimited).is_err());
+            assert!(ktx2::read_textures(&file, &unlimited).is_err());
         }
         let mut file = small_dds();
         put(&mut file, DDS_WIDTH, side);
         put(&mut file, DDS_HEIGHT, side);
-        let error = dds::read_image(&file, Limits::default()).unwrap_err();
+        let error = dds::read_image(&file, &Limits::default()).unwrap_err();
         assert!(matches!(error, ReadError::TooLarge { .. }), "{error}");
-        assert!(matches!(dds::read_image(&file, unlimited), Err(ReadError::Malformed { .. })));
-        assert!(matches!(dds::read_textures(&file, unlimited), Err(ReadError::Malformed { .. })));
+        assert!(matches!(dds::read_image(&file, &unlimited), Err(ReadError::Malformed { .. })));
+        assert!(matches!(dds::read_textures(&file, &unlimited), Err(ReadError::Malformed { .. })));
     }
 }
 
@@ -109,10 +109,12 @@ fn the_limit_counts_all_layers() {
     let (ktx2_file, dds_file) =
         (ktx2_bytes(Payload::Texels(&array), Supercompression::Zstd), dds_bytes(Payload::Texels(&array)));
     let (enough, too_few) = (Limits { max_pixels: 768 }, Limits { max_pixels: 767 });
-    assert!(ktx2::read_textures(&ktx2_file, enough).is_ok() && dds::read_textures(&dds_file, enough).is_ok());
+    assert!(
+        ktx2::read_textures(&ktx2_file, &enough).is_ok() && dds::read_textures(&dds_file, &enough).is_ok()
+    );
     for error in [
-        ktx2::read_textures(&ktx2_file, too_few).unwrap_err(),
-        dds::read_textures(&dds_file, too_few).unwrap_err(),
+        ktx2::read_textures(&ktx2_file, &too_few).unwrap_err(),
+        dds::read_textures(&dds_file, &too_few).unwrap_err(),
     ] {
         assert!(error.to_string().starts_with("16x48 pixels are more than the limit of 767"), "{error}");
     }
@@ -136,8 +138,8 @@ fn numbers_that_contradict_each_other_are_malformed() {
         let mut file = small_ktx2(Supercompression::None);
         changes.iter().for_each(|&(at, value)| put(&mut file, at, value));
         for error in [
-            ktx2::read_image(&file, Limits::default()).map(|_| ()).unwrap_err(),
-            ktx2::read_textures(&file, Limits::default()).map(|_| ()).unwrap_err(),
+            ktx2::read_image(&file, &Limits::default()).map(|_| ()).unwrap_err(),
+            ktx2::read_textures(&file, &Limits::default()).map(|_| ()).unwrap_err(),
         ] {
             assert!(matches!(error, ReadError::Malformed { .. }), "{changes:?}: {error}");
         }
@@ -153,8 +155,8 @@ fn numbers_that_contradict_each_other_are_malformed() {
     for ((at, value), readable_as_image) in dds_changes {
         let mut file = small_dds();
         put(&mut file, at, value);
-        assert_eq!(dds::read_image(&file, Limits::default()).is_ok(), readable_as_image, "{at}: {value}");
-        let error = dds::read_textures(&file, Limits::default()).unwrap_err();
+        assert_eq!(dds::read_image(&file, &Limits::default()).is_ok(), readable_as_image, "{at}: {value}");
+        let error = dds::read_textures(&file, &Limits::default()).unwrap_err();
         assert!(matches!(error, ReadError::Malformed { .. }), "{at}: {value}: {error}");
     }
 }
@@ -164,8 +166,8 @@ fn files_of_others_are_no_baked_textures() {
     let ktx2_file = bytes_of("formats/ktx2/khr_s_normal_rgba8_mips.ktx2");
     let dds_file = bytes_of("formats/dds/dxtk_normalMap.dds");
     for error in [
-        ktx2::read_textures(&ktx2_file, Limits::default()).unwrap_err(),
-        dds::read_textures(&dds_file, Limits::default()).unwrap_err(),
+        ktx2::read_textures(&ktx2_file, &Limits::default()).unwrap_err(),
+        dds::read_textures(&dds_file, &Limits::default()).unwrap_err(),
     ] {
         assert!(matches!(error, ReadError::Info(_)), "{error}");
         assert!(error.to_string().contains("was not written by roughcast"), "{error}");
@@ -181,15 +183,15 @@ fn truncated_files_are_errors() {
         for supercompression in [Supercompression::None, Supercompression::Zstd] {
             let file = ktx2_bytes(payload, supercompression);
             for length in 0..file.len() {
-                assert!(ktx2::read_textures(&file[..length], Limits::default()).is_err(), "{length}");
-                assert!(ktx2::read_image(&file[..length], Limits::default()).is_err(), "{length}");
+                assert!(ktx2::read_textures(&file[..length], &Limits::default()).is_err(), "{length}");
+                assert!(ktx2::read_image(&file[..length], &Limits::default()).is_err(), "{length}");
             }
         }
         let file = dds_bytes(payload);
-        let whole = dds::read_image(&file, Limits::default()).unwrap();
+        let whole = dds::read_image(&file, &Limits::default()).unwrap();
         for length in 0..file.len() {
-            assert!(dds::read_textures(&file[..length], Limits::default()).is_err(), "{length}");
-            if let Ok(image) = dds::read_image(&file[..length], Limits::default()) {
+            assert!(dds::read_textures(&file[..length], &Limits::default()).is_err(), "{length}");
+            if let Ok(image) = dds::read_image(&file[..length], &Limits::default()) {
                 assert_eq!(image, whole);
             }
         }
@@ -218,9 +220,9 @@ fn changed_bytes_never_panic() {
             file[at] = random.next() as u8;
         }
         read +=
-            usize::from(ktx2::read_image(&file, limits).is_ok() || dds::read_image(&file, limits).is_ok());
-        let _ = ktx2::read_textures(&file, limits);
-        let _ = dds::read_textures(&file, limits);
+            usize::from(ktx2::read_image(&file, &limits).is_ok() || dds::read_image(&file, &limits).is_ok());
+        let _ = ktx2::read_textures(&file, &limits);
+        let _ = dds::read_textures(&file, &limits);
     }
     assert!(
         read > 1000 && read < 9999,
@@ -240,7 +242,7 @@ fn several_zstd_frames_in_a_level_are_read() {
     let mut split = file[..u64_at(&file, 80) as usize].to_vec();
     split.extend(&frames);
     split[88..96].copy_from_slice(&(frames.len() as u64).to_le_bytes());
-    assert_same_texels(&ktx2::read_textures(&split, Limits::default()).unwrap(), &single, "two frames");
+    assert_same_texels(&ktx2::read_textures(&split, &Limits::default()).unwrap(), &single, "two frames");
 }
 
 fn u64_at(bytes: &[u8], at: usize) -> u64 {

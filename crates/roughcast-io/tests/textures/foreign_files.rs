@@ -183,6 +183,12 @@ fn ktx2_files() {
 #[test]
 fn ktx1_files() {
     check_folder("formats/ktx1", KTX1_FILES);
+    for name in names_in("formats/ktx1") {
+        let found =
+            roughcast_io::read_image(&bytes_of(&format!("formats/ktx1/{name}")), None, &Limits::default());
+        let error = found.unwrap_err().to_string();
+        assert!(error.contains("convert it to KTX2"), "found by its first bytes: {error}");
+    }
 }
 
 #[test]
@@ -218,7 +224,7 @@ fn with_swizzle(letters: &[u8; 4]) -> Result<roughcast_io::Decoded, ReadError> {
     let mut bytes = bytes_of("formats/ktx2/magnum_ktx_swizzle-identity.ktx2");
     let at = bytes.windows(5).position(|window| window == b"rgb1\0").unwrap();
     bytes[at..at + 4].copy_from_slice(letters);
-    ktx2::read_image(&bytes, Limits::default())
+    ktx2::read_image(&bytes, &Limits::default())
 }
 
 #[test]
@@ -261,6 +267,9 @@ fn masks_and_numbers_give_the_stored_values() {
     let Samples::F32(floats) = read("dxt10-rg32f") else { panic!("floats") };
     assert_eq!(floats.len(), 12);
     assert_eq!(floats[0], f32::from_le_bytes([0xe0, 0xde, 0x5e, 0x3f]));
+    // End points 94 and 74 of 127; the indices of the first two rows are 0 1 0 and 1 0 1.
+    let snorm = [94, 74, 94, 74, 94, 74].map(|v| v as f32 / 127.0);
+    assert_eq!(read("bc4snorm"), Samples::F32(snorm.to_vec()));
     let la = decoded("formats/dds/pillow_uncompressed_la.dds");
     assert_eq!(la.info.channels, ["Y", "A"]);
 }

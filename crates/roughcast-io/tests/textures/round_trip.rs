@@ -1,7 +1,7 @@
 //! What is written is read back bit for bit.
 
 use roughcast::SampleType;
-use roughcast::texture::TextureArray;
+use roughcast::texture::{TextureArray, layers_of};
 use roughcast_io::{
     BlockFormat, Limits, Payload, Supercompression, WriteError, compress, dds, decompress, ktx2,
 };
@@ -17,9 +17,9 @@ fn check_all_containers(payload: Payload<'_>, wanted: &TextureArray, what: &str)
     for supercompression in SUPERCOMPRESSIONS {
         let bytes = ktx2_bytes(payload, supercompression);
         assert!(bytes == ktx2_bytes(payload, supercompression), "{what}: written twice, two files");
-        let back = ktx2::read_textures(&bytes, Limits::default()).unwrap();
+        let back = ktx2::read_textures(&bytes, &Limits::default()).unwrap();
         assert_same_texels(&back, wanted, &format!("KTX2 {supercompression:?} {what}"));
-        let image = ktx2::read_image(&bytes, Limits::default()).unwrap();
+        let image = ktx2::read_image(&bytes, &Limits::default()).unwrap();
         assert_eq!(
             (image.info.layers, image.info.levels),
             (wanted.layers.len(), wanted.level_count()),
@@ -28,9 +28,9 @@ fn check_all_containers(payload: Payload<'_>, wanted: &TextureArray, what: &str)
         assert_eq!(image.info.metadata["roughcast.scale"], wanted.info.scale.to_string());
     }
     let bytes = dds_bytes(payload);
-    let back = dds::read_textures(&bytes, Limits::default()).unwrap();
+    let back = dds::read_textures(&bytes, &Limits::default()).unwrap();
     assert_same_texels(&back, wanted, &format!("DDS {what}"));
-    let image = dds::read_image(&bytes, Limits::default()).unwrap();
+    let image = dds::read_image(&bytes, &Limits::default()).unwrap();
     assert_eq!((image.info.layers, image.info.levels), (wanted.layers.len(), wanted.level_count()), "{what}");
     assert_eq!(image.info.metadata, wanted.info.to_pairs(), "{what}");
 }
@@ -122,4 +122,20 @@ fn what_does_not_fit_is_refused_with_a_mend() {
     assert!(refusal(Payload::Blocks(&blocks)).contains("the same sizes"));
     blocks.width = usize::MAX;
     assert!(refusal(Payload::Blocks(&blocks)).contains("scale it down"));
+}
+
+#[test]
+fn names_come_from_the_layout_where_they_fit_it() {
+    let lean = noise_array(SampleType::U16, 4, (4, 4), 2);
+    let back =
+        ktx2::read_textures(&ktx2_bytes(Payload::Texels(&lean), Supercompression::None), &Limits::default());
+    let specs = layers_of(&lean.info);
+    assert_eq!(specs.len(), 2, "this test wants a layout of two layers");
+    for (layer, spec) in back.unwrap().layers.iter().zip(specs) {
+        assert_eq!((layer.name, &layer.channels[..]), (spec.name, spec.channels));
+    }
+    let other = noise_array(SampleType::U16, 4, (4, 4), 3);
+    let back = dds::read_textures(&dds_bytes(Payload::Texels(&other)), &Limits::default()).unwrap();
+    assert_eq!(back.layers[2].name, "layer2");
+    assert_eq!(back.layers[2].channels, ["R", "G", "B", "A"]);
 }

@@ -38,9 +38,9 @@ pub fn names_in(folder: &str) -> Vec<String> {
 pub fn read_image(path: &str) -> Result<Decoded, ReadError> {
     let bytes = bytes_of(path);
     if path.to_lowercase().ends_with(".dds") {
-        roughcast_io::dds::read_image(&bytes, Limits::default())
+        roughcast_io::dds::read_image(&bytes, &Limits::default())
     } else {
-        roughcast_io::ktx2::read_image(&bytes, Limits::default())
+        roughcast_io::ktx2::read_image(&bytes, &Limits::default())
     }
 }
 

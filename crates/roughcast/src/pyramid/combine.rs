@@ -2,6 +2,7 @@
 //! covariances plus the covariance of the means.
 
 use crate::row::{CORE_PLANES, Row};
+use crate::vectorised::vectorised;
 
 /// The equal average of two rows.
 pub(super) fn average_two_rows(a: &Row, b: &Row, out: &mut Row) {
@@ -21,28 +22,34 @@ pub(super) fn average_two_rows(a: &Row, b: &Row, out: &mut Row) {
 // Slices come in as arguments, which the compiler knows not to overlap, and are cut to one length, which it then need
 // not check: these loops vectorise. The mean lies half a difference from either value, so both add the same square.
 
-fn means_of_two(a: &[f32], b: &[f32], out: &mut [f32]) {
-    for ((a, b), out) in a.iter().zip(b).zip(out) {
-        *out = 0.5 * (a + b);
+vectorised! {
+    fn means_of_two(a: &[f32], b: &[f32], out: &mut [f32]) {
+        for ((a, b), out) in a.iter().zip(b).zip(out) {
+            *out = 0.5 * (a + b);
+        }
     }
 }
 
-fn variances_of_two(a: &[f32], b: &[f32], a_variance: &[f32], b_variance: &[f32], out: &mut [f32]) {
-    let n = out.len();
-    let (a, b, a_variance, b_variance) = (&a[..n], &b[..n], &a_variance[..n], &b_variance[..n]);
-    for i in 0..n {
-        let half = 0.5 * (a[i] - b[i]);
-        out[i] = 0.5 * (a_variance[i] + b_variance[i]) + half * half;
+vectorised! {
+    fn variances_of_two(a: &[f32], b: &[f32], a_variance: &[f32], b_variance: &[f32], out: &mut [f32]) {
+        let n = out.len();
+        let (a, b, a_variance, b_variance) = (&a[..n], &b[..n], &a_variance[..n], &b_variance[..n]);
+        for i in 0..n {
+            let half = 0.5 * (a[i] - b[i]);
+            out[i] = 0.5 * (a_variance[i] + b_variance[i]) + half * half;
+        }
     }
 }
 
-fn mixed_of_two(x: [&[f32]; 2], y: [&[f32]; 2], a_mixed: &[f32], b_mixed: &[f32], out: &mut [f32]) {
-    let n = out.len();
-    let (ax, bx, ay, by) = (&x[0][..n], &x[1][..n], &y[0][..n], &y[1][..n]);
-    let (a_mixed, b_mixed) = (&a_mixed[..n], &b_mixed[..n]);
-    for i in 0..n {
-        let (half_x, half_y) = (0.5 * (ax[i] - bx[i]), 0.5 * (ay[i] - by[i]));
-        out[i] = 0.5 * (a_mixed[i] + b_mixed[i]) + half_x * half_y;
+vectorised! {
+    fn mixed_of_two(x: [&[f32]; 2], y: [&[f32]; 2], a_mixed: &[f32], b_mixed: &[f32], out: &mut [f32]) {
+        let n = out.len();
+        let (ax, bx, ay, by) = (&x[0][..n], &x[1][..n], &y[0][..n], &y[1][..n]);
+        let (a_mixed, b_mixed) = (&a_mixed[..n], &b_mixed[..n]);
+        for i in 0..n {
+            let (half_x, half_y) = (0.5 * (ax[i] - bx[i]), 0.5 * (ay[i] - by[i]));
+            out[i] = 0.5 * (a_mixed[i] + b_mixed[i]) + half_x * half_y;
+        }
     }
 }
 
@@ -64,22 +71,28 @@ fn pairs(plane: &[f32]) -> &[[f32; 2]] {
     plane.as_chunks::<2>().0
 }
 
-fn means_of_pairs(pairs: &[[f32; 2]], out: &mut [f32]) {
-    for (pair, out) in pairs.iter().zip(out) {
-        *out = 0.5 * (pair[0] + pair[1]);
+vectorised! {
+    fn means_of_pairs(pairs: &[[f32; 2]], out: &mut [f32]) {
+        for (pair, out) in pairs.iter().zip(out) {
+            *out = 0.5 * (pair[0] + pair[1]);
+        }
     }
 }
 
-fn variances_of_pairs(pairs: &[[f32; 2]], variances: &[[f32; 2]], out: &mut [f32]) {
-    for ((pair, variance), out) in pairs.iter().zip(variances).zip(out) {
-        let half = 0.5 * (pair[0] - pair[1]);
-        *out = 0.5 * (variance[0] + variance[1]) + half * half;
+vectorised! {
+    fn variances_of_pairs(pairs: &[[f32; 2]], variances: &[[f32; 2]], out: &mut [f32]) {
+        for ((pair, variance), out) in pairs.iter().zip(variances).zip(out) {
+            let half = 0.5 * (pair[0] - pair[1]);
+            *out = 0.5 * (variance[0] + variance[1]) + half * half;
+        }
     }
 }
 
-fn mixed_of_pairs(x: &[[f32; 2]], y: &[[f32; 2]], mixed: &[[f32; 2]], out: &mut [f32]) {
-    for (((x, y), mixed), out) in x.iter().zip(y).zip(mixed).zip(out) {
-        *out = 0.5 * (mixed[0] + mixed[1]) + 0.5 * (x[0] - x[1]) * (0.5 * (y[0] - y[1]));
+vectorised! {
+    fn mixed_of_pairs(x: &[[f32; 2]], y: &[[f32; 2]], mixed: &[[f32; 2]], out: &mut [f32]) {
+        for (((x, y), mixed), out) in x.iter().zip(y).zip(mixed).zip(out) {
+            *out = 0.5 * (mixed[0] + mixed[1]) + 0.5 * (x[0] - x[1]) * (0.5 * (y[0] - y[1]));
+        }
     }
 }
 

@@ -7,6 +7,7 @@ use crate::Samples;
 use crate::row::RowView;
 use crate::texture::codec::RowEncoder;
 use crate::texture::pack;
+use crate::vectorised::vectorised;
 
 /// Samples of one texture's level, or some rows of them.
 pub(crate) enum SamplesMut<'a> {
@@ -170,43 +171,56 @@ impl StatsSum {
     }
 }
 
-const LANES: usize = 8;
+const LANES: usize = 16;
 
-/// Sum in independent lanes, which vectorises; the lanes are f64, so the order does not matter in practice.
-fn sum(values: &[f32]) -> f64 {
-    let (chunks, rest) = values.as_chunks::<LANES>();
-    let mut lanes = [0.0_f64; LANES];
-    for chunk in chunks {
-        for (lane, value) in lanes.iter_mut().zip(chunk) {
-            *lane += f64::from(*value);
+vectorised! {
+    /// Sum in independent lanes, which vectorises; the lanes are f64, so the order does not matter in practice.
+    fn sum(values: &[f32]) -> f64 {
+        let (chunks, rest) = values.as_chunks::<LANES>();
+        let mut lanes = [0.0_f64; LANES];
+        for chunk in chunks {
+            for (lane, value) in lanes.iter_mut().zip(chunk) {
+                *lane += f64::from(*value);
+            }
         }
+        lanes.iter().sum::<f64>() + rest.iter().map(|v| f64::from(*v)).sum::<f64>()
     }
-    lanes.iter().sum::<f64>() + rest.iter().map(|v| f64::from(*v)).sum::<f64>()
 }
 
-/// The largest of values that are not negative.
-pub(crate) fn largest(values: &[f32]) -> f32 {
-    let (chunks, rest) = values.as_chunks::<LANES>();
-    let mut lanes = [0.0_f32; LANES];
-    for chunk in chunks {
-        for (lane, value) in lanes.iter_mut().zip(chunk) {
-            *lane = if *value > *lane { *value } else { *lane };
+vectorised! {
+    /// The largest of values that are not negative.
+    pub(crate) fn largest(values: &[f32]) -> f32 {
+        let (chunks, rest) = values.as_chunks::<LANES>();
+        let mut lanes = [0.0_f32; LANES];
+        for chunk in chunks {
+            for (lane, value) in lanes.iter_mut().zip(chunk) {
+                *lane = if *value > *lane { *value } else { *lane };
+            }
         }
+        lanes.iter().chain(rest).fold(0.0, |a, b| a.max(*b))
     }
-    lanes.iter().chain(rest).fold(0.0, |a, b| a.max(*b))
 }
 
-/// The largest magnitude of a component and the largest squared length, in lanes, which vectorise.
-pub(crate) fn largest_component_and_square(bx: &[f32], by: &[f32]) -> (f32, f32) {
-    let mut components = [0.0_f32; LANES];
-    let mut squares = [0.0_f32; LANES];
-    let larger = |a: f32, b: f32| if a > b { a } else { b };
-    for (x, y) in bx.chunks(LANES).zip(by.chunks(LANES)) {
-        for (lane, (x, y)) in x.iter().zip(y).enumerate() {
+vectorised! {
+    /// The largest magnitude of a component and the largest squared length, in lanes, which vectorise.
+    pub(crate) fn largest_component_and_square(bx: &[f32], by: &[f32]) -> (f32, f32) {
+        let larger = |a: f32, b: f32| if a > b { a } else { b };
+        let mut components = [0.0_f32; LANES];
+        let mut squares = [0.0_f32; LANES];
+        let mut look = |lane: usize, x: f32, y: f32| {
             components[lane] = larger(larger(x.abs(), y.abs()), components[lane]);
             squares[lane] = larger(x * x + y * y, squares[lane]);
+        };
+        let ((x_chunks, x_rest), (y_chunks, y_rest)) = (bx.as_chunks::<LANES>(), by.as_chunks::<LANES>());
+        for (x, y) in x_chunks.iter().zip(y_chunks) {
+            for lane in 0..LANES {
+                look(lane, x[lane], y[lane]);
+            }
         }
+        for (x, y) in x_rest.iter().zip(y_rest) {
+            look(0, *x, *y);
+        }
+        let fold = |lanes: [f32; LANES]| lanes.into_iter().fold(0.0, larger);
+        (fold(components), fold(squares))
     }
-    let fold = |lanes: [f32; LANES]| lanes.into_iter().fold(0.0, larger);
-    (fold(components), fold(squares))
 }

@@ -25,6 +25,38 @@ pub enum BaseRoughness<'a> {
     Map(RoughnessMap<'a>),
 }
 
+impl BaseRoughness<'_> {
+    /// The largest variance of any texel.
+    pub(crate) fn largest_variance(&self) -> f32 {
+        match self {
+            BaseRoughness::Variance(variance) => *variance,
+            BaseRoughness::Map(map) if map.channel < map.image.channels() => {
+                let mut row = vec![0.0; map.image.width()];
+                (0..map.image.height())
+                    .map(|y| {
+                        map.fill_variance(0, y, &mut row);
+                        row.iter().copied().fold(0.0, f32::max)
+                    })
+                    .fold(0.0, f32::max)
+            }
+            // Refused when it is read.
+            BaseRoughness::Map(_) => 0.0,
+        }
+    }
+}
+
+impl RoughnessMap<'_> {
+    /// Slope variances of a stretch of row `y` that starts at column `x`.
+    fn fill_variance(&self, x: usize, y: usize, plane: &mut [f32]) {
+        load_channel(self.image, self.channel, x, y, plane);
+        for value in plane {
+            let variance = variance_from_stored(*value, self.stored);
+            // A NaN or negative roughness says nothing: none.
+            *value = if variance.is_finite() && variance > 0.0 { variance } else { 0.0 };
+        }
+    }
+}
+
 /// A base roughness and what becomes of it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BaseSource<'a> {
@@ -100,14 +132,7 @@ impl<'a> BaseSource<'a> {
     pub(super) fn fill_variance(&self, x: usize, y: usize, plane: &mut [f32]) {
         match self.roughness {
             BaseRoughness::Variance(variance) => plane.fill(variance),
-            BaseRoughness::Map(map) => {
-                load_channel(map.image, map.channel, x, y, plane);
-                for value in plane {
-                    let variance = variance_from_stored(*value, map.stored);
-                    // A NaN or negative roughness says nothing: none.
-                    *value = if variance.is_finite() && variance > 0.0 { variance } else { 0.0 };
-                }
-            }
+            BaseRoughness::Map(map) => map.fill_variance(x, y, plane),
         }
     }
 
@@ -119,12 +144,21 @@ impl<'a> BaseSource<'a> {
             _ => unreachable!("the other extras come from the map itself"),
         };
         match self.roughness {
-            BaseRoughness::Map(map) if channel < map.image.channels() => {
+            // Roughness in green is what tells glTF's packed texture from a picture of roughness alone.
+            BaseRoughness::Map(map) if map.channel == PACKED_CHANNEL && channel < map.image.channels() => {
                 load_channel(map.image, channel, x, y, plane);
             }
-            _ => plane.fill(0.0),
+            _ => plane.fill(where_nothing_says(extra)),
         }
     }
+}
+
+/// The channel that holds roughness in glTF's packed texture.
+const PACKED_CHANNEL: usize = 1;
+
+/// An extra of a material without a texture that says it: nothing is occluded, nothing is metal.
+pub(super) fn where_nothing_says(extra: Extra) -> f32 {
+    if extra == Extra::Occlusion { 1.0 } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use crate::Image;
 use crate::options::{Gradient, HeightSense, SourceOptions, Wrap};
 use crate::row::SourceScratch;
 use crate::slope::SourceCounts;
+use crate::vectorised::vectorised;
 
 /// Index of a neighbour that may lie outside `0 .. size`; `offset` is -1, 0 or 1.
 fn neighbour(index: usize, offset: isize, size: usize, wrap: Wrap) -> usize {
@@ -64,28 +65,39 @@ fn load_row(image: &Image, x: usize, y: usize, wrap: Wrap, plane: &mut [f32]) {
 
 // In all three, `slope = -gradient`, rows grow downwards and y points up, hence the signs.
 
-fn sobel(above: &[f32], here: &[f32], below: &[f32], scale: f32, bx: &mut [f32], by: &mut [f32]) {
-    let scale = scale / 8.0;
-    let rows = above.windows(3).zip(here.windows(3)).zip(below.windows(3));
-    for (((a, h), b), (bx, by)) in rows.zip(bx.iter_mut().zip(by)) {
-        *bx = scale * ((a[0] - a[2]) + 2.0 * (h[0] - h[2]) + (b[0] - b[2]));
-        *by = scale * ((b[0] - a[0]) + 2.0 * (b[1] - a[1]) + (b[2] - a[2]));
+vectorised! {
+    fn sobel(above: &[f32], here: &[f32], below: &[f32], scale: f32, bx: &mut [f32], by: &mut [f32]) {
+        let scale = scale / 8.0;
+        let n = bx.len();
+        let (above, here, below, by) = (&above[..n + 2], &here[..n + 2], &below[..n + 2], &mut by[..n]);
+        for i in 0..n {
+            let sides = (above[i] - above[i + 2]) + (below[i] - below[i + 2]);
+            bx[i] = scale * (sides + 2.0 * (here[i] - here[i + 2]));
+            let sides = (below[i] - above[i]) + (below[i + 2] - above[i + 2]);
+            by[i] = scale * (sides + 2.0 * (below[i + 1] - above[i + 1]));
+        }
     }
 }
 
-fn central(above: &[f32], here: &[f32], below: &[f32], scale: f32, bx: &mut [f32], by: &mut [f32]) {
-    let scale = scale / 2.0;
-    let rows = above.windows(3).zip(here.windows(3)).zip(below.windows(3));
-    for (((a, h), b), (bx, by)) in rows.zip(bx.iter_mut().zip(by)) {
-        *bx = scale * (h[0] - h[2]);
-        *by = scale * (b[1] - a[1]);
+vectorised! {
+    fn central(above: &[f32], here: &[f32], below: &[f32], scale: f32, bx: &mut [f32], by: &mut [f32]) {
+        let scale = scale / 2.0;
+        let n = bx.len();
+        let (above, here, below, by) = (&above[..n + 2], &here[..n + 2], &below[..n + 2], &mut by[..n]);
+        for i in 0..n {
+            bx[i] = scale * (here[i] - here[i + 2]);
+            by[i] = scale * (below[i + 1] - above[i + 1]);
+        }
     }
 }
 
-fn forward(above: &[f32], here: &[f32], scale: f32, bx: &mut [f32], by: &mut [f32]) {
-    let rows = above.windows(3).zip(here.windows(3));
-    for ((a, h), (bx, by)) in rows.zip(bx.iter_mut().zip(by)) {
-        *bx = scale * (h[1] - h[2]);
-        *by = scale * (h[1] - a[1]);
+vectorised! {
+    fn forward(above: &[f32], here: &[f32], scale: f32, bx: &mut [f32], by: &mut [f32]) {
+        let n = bx.len();
+        let (above, here, by) = (&above[..n + 2], &here[..n + 2], &mut by[..n]);
+        for i in 0..n {
+            bx[i] = scale * (here[i + 1] - here[i + 2]);
+            by[i] = scale * (here[i + 1] - above[i + 1]);
+        }
     }
 }

@@ -10,6 +10,7 @@ pub(crate) use base::{BaseSource, UseOfBase};
 use crate::options::{Kind, SourceOptions};
 use crate::row::{Extra, Row, RowSource, SourceScratch};
 use crate::slope::{SourceCounts, mended_slope};
+use crate::vectorised::vectorised;
 use crate::{Image, Samples};
 
 /// Why a map cannot be read as slopes.
@@ -143,21 +144,23 @@ impl MapSource<'_> {
             },
             Extra::BaseVariance | Extra::Occlusion | Extra::Metalness => match &self.base {
                 Some(base) => base.fill_extra(extra, x, y, plane),
-                None => plane.fill(0.0),
+                None => plane.fill(base::where_nothing_says(extra)),
             },
         }
     }
 }
 
-/// The unit normals of slopes.
-fn unit_normals(bx: &[f32], by: &[f32], nx: &mut [f32], ny: &mut [f32], nz: &mut [f32]) {
-    let n = bx.len();
-    let (by, nx, ny, nz) = (&by[..n], &mut nx[..n], &mut ny[..n], &mut nz[..n]);
-    for i in 0..n {
-        let inverse = 1.0 / (1.0 + bx[i] * bx[i] + by[i] * by[i]).sqrt();
-        nx[i] = bx[i] * inverse;
-        ny[i] = by[i] * inverse;
-        nz[i] = inverse;
+vectorised! {
+    /// The unit normals of slopes.
+    fn unit_normals(bx: &[f32], by: &[f32], nx: &mut [f32], ny: &mut [f32], nz: &mut [f32]) {
+        let n = bx.len();
+        let (by, nx, ny, nz) = (&by[..n], &mut nx[..n], &mut ny[..n], &mut nz[..n]);
+        for i in 0..n {
+            let inverse = 1.0 / (1.0 + bx[i] * bx[i] + by[i] * by[i]).sqrt();
+            nx[i] = bx[i] * inverse;
+            ny[i] = by[i] * inverse;
+            nz[i] = inverse;
+        }
     }
 }
 
@@ -191,27 +194,47 @@ fn is_usable(x: f32, y: f32, max_squared: f32) -> bool {
     x * x + y * y <= max_squared
 }
 
-/// Number of texels in a row that `mend` would have to look at; vectorises.
-fn count_unusable(bx: &[f32], by: &[f32], max_slope: f32) -> u32 {
-    let max_squared = max_slope * max_slope;
-    bx.iter().zip(by).map(|(x, y)| u32::from(!is_usable(*x, *y, max_squared))).sum()
+vectorised! {
+    /// Number of texels in a row that `mend` would have to look at; vectorises.
+    fn count_unusable(bx: &[f32], by: &[f32], max_slope: f32) -> u32 {
+        let max_squared = max_slope * max_slope;
+        bx.iter().zip(by).map(|(x, y)| u32::from(!is_usable(*x, *y, max_squared))).sum()
+    }
 }
 
 /// One channel of a stretch of a row as floats: unsigned types as 0 ..= 1, floats as they are.
 fn load_channel(image: &Image, channel: usize, x: usize, y: usize, out: &mut [f32]) {
-    fn load<T: Copy>(texels: &[T], channels: usize, channel: usize, out: &mut [f32], to: impl Fn(T) -> f32) {
-        for (texel, value) in texels.chunks_exact(channels).zip(out) {
-            *value = to(texel[channel]);
-        }
-    }
     let channels = image.channels();
     let start = (y * image.width() + x) * channels;
     let range = start..start + out.len() * channels;
     match image.samples() {
-        Samples::U8(v) => load(&v[range], channels, channel, out, unorm8),
-        Samples::U16(v) => load(&v[range], channels, channel, out, unorm16),
+        Samples::U8(v) => load_u8(&v[range], channels, channel, out),
+        Samples::U16(v) => load_u16(&v[range], channels, channel, out),
         Samples::F16(v) => load(&v[range], channels, channel, out, half::f16::to_f32),
         Samples::F32(v) => load(&v[range], channels, channel, out, |v| v),
+    }
+}
+
+vectorised! {
+    fn load_u8(texels: &[u8], channels: usize, channel: usize, out: &mut [f32]) {
+        load(texels, channels, channel, out, unorm8);
+    }
+}
+
+vectorised! {
+    fn load_u16(texels: &[u16], channels: usize, channel: usize, out: &mut [f32]) {
+        load(texels, channels, channel, out, unorm16);
+    }
+}
+
+// Inlined into the functions above, so that it is compiled for each of their instruction sets.
+#[inline(always)]
+fn load<T: Copy>(texels: &[T], channels: usize, channel: usize, out: &mut [f32], to: impl Fn(T) -> f32) {
+    if channels == 1 {
+        texels.iter().zip(out).for_each(|(texel, value)| *value = to(*texel));
+    } else {
+        let texels = texels.chunks_exact(channels);
+        texels.zip(out).for_each(|(texel, value)| *value = to(texel[channel]));
     }
 }
 

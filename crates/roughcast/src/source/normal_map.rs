@@ -2,10 +2,11 @@
 
 use half::f16;
 
-use super::{count_unusable, mend, unorm8, unorm16};
+use super::{count_unusable, mend};
 use crate::options::{Green, NormalChannels, SourceOptions};
 use crate::row::SourceScratch;
 use crate::slope::SourceCounts;
+use crate::vectorised::vectorised;
 use crate::{Image, Samples};
 
 /// Two-channel normals may lie a little outside the unit disc, through quantisation and block compression; their z
@@ -52,20 +53,25 @@ pub(super) fn fill(
         return SourceCounts::default();
     }
     mend(bx, by, options.max_slope, |i| {
-        let outside = z_from_xy && nx[i] * nx[i] + ny[i] * ny[i] > INVALID_XY_SQUARED;
+        // An infinite component is no empty background: `mended_slope` counts it as what it is.
+        let finite = nx[i].is_finite() && ny[i].is_finite();
+        let outside = z_from_xy && finite && nx[i] * nx[i] + ny[i] * ny[i] > INVALID_XY_SQUARED;
         (!outside).then_some([nx[i], ny[i], nz[i]])
     })
 }
 
-/// Slopes of normals. A z that is not above zero gives NaN, which no comparison accepts, so that one test afterwards
-/// finds every unusable texel.
-fn divide_by_z(nx: &[f32], ny: &[f32], nz: &[f32], bx: &mut [f32], by: &mut [f32]) {
-    let n = nx.len();
-    let (ny, nz, bx, by) = (&ny[..n], &nz[..n], &mut bx[..n], &mut by[..n]);
-    for i in 0..n {
-        let inverse = if nz[i] > 0.0 { 1.0 / nz[i] } else { f32::NAN };
-        bx[i] = nx[i] * inverse;
-        by[i] = ny[i] * inverse;
+vectorised! {
+    /// Slopes of normals. A z that is not above zero, or infinite, gives NaN or infinity, which no comparison with the
+    /// largest slope accepts, so that one test afterwards finds every unusable texel.
+    fn divide_by_z(nx: &[f32], ny: &[f32], nz: &[f32], bx: &mut [f32], by: &mut [f32]) {
+        let n = nx.len();
+        let (ny, nz, bx, by) = (&ny[..n], &nz[..n], &mut bx[..n], &mut by[..n]);
+        for i in 0..n {
+            let inverse = 1.0 / nz[i];
+            let inverse = if inverse > 0.0 { inverse } else { f32::NAN };
+            bx[i] = nx[i] * inverse;
+            by[i] = ny[i] * inverse;
+        }
     }
 }
 
@@ -85,19 +91,48 @@ fn load_components(
     let from_float = |v: f32| options.range.component_from_stored(v);
     let split = Split { channels, order: options.normal_channels };
     match image.samples() {
-        Samples::U8(v) => split.write_planes(&v[range], nx, ny, nz, |v| 2.0 * unorm8(v) - 1.0),
-        Samples::U16(v) => split.write_planes(&v[range], nx, ny, nz, |v| 2.0 * unorm16(v) - 1.0),
+        Samples::U8(v) => split_u8(split, &v[range], nx, ny, nz),
+        Samples::U16(v) => split_u16(split, &v[range], nx, ny, nz),
         Samples::F16(v) => split.write_planes(&v[range], nx, ny, nz, |v: f16| from_float(v.to_f32())),
         Samples::F32(v) => split.write_planes(&v[range], nx, ny, nz, from_float),
     }
 }
 
+// Twice the code less the full code is a whole number, so the quotient is rounded once, and opposite codes give
+// opposite numbers to the last bit: a map with green up and its twin with green down are one map.
+
+#[inline(always)]
+fn signed8(sample: u8) -> f32 {
+    (2.0 * f32::from(sample) - 255.0) / 255.0
+}
+
+#[inline(always)]
+fn signed16(sample: u16) -> f32 {
+    (2.0 * f32::from(sample) - 65535.0) / 65535.0
+}
+
+/// Where the components of a texel are.
+#[derive(Clone, Copy)]
 struct Split {
     channels: usize,
     order: NormalChannels,
 }
 
+vectorised! {
+    fn split_u8(split: Split, texels: &[u8], nx: &mut [f32], ny: &mut [f32], nz: &mut [f32]) {
+        split.write_planes(texels, nx, ny, nz, signed8);
+    }
+}
+
+vectorised! {
+    fn split_u16(split: Split, texels: &[u16], nx: &mut [f32], ny: &mut [f32], nz: &mut [f32]) {
+        split.write_planes(texels, nx, ny, nz, signed16);
+    }
+}
+
 impl Split {
+    // Inlined into the functions above, so that it is compiled for each of their instruction sets.
+    #[inline(always)]
     fn write_planes<T: Copy>(
         &self,
         texels: &[T],
@@ -127,6 +162,7 @@ impl Split {
     }
 }
 
+#[inline(always)]
 fn split_xyz<T: Copy, const C: usize>(
     texels: &[T],
     nx: &mut [f32],
@@ -135,9 +171,11 @@ fn split_xyz<T: Copy, const C: usize>(
     value: impl Fn(T) -> f32,
 ) {
     let (texels, _) = texels.as_chunks::<C>();
-    for (((texel, x), y), z) in texels.iter().zip(nx).zip(ny).zip(nz) {
-        *x = value(texel[0]);
-        *y = value(texel[1]);
-        *z = value(texel[2]);
+    let n = texels.len();
+    let (nx, ny, nz) = (&mut nx[..n], &mut ny[..n], &mut nz[..n]);
+    for i in 0..n {
+        nx[i] = value(texels[i][0]);
+        ny[i] = value(texels[i][1]);
+        nz[i] = value(texels[i][2]);
     }
 }

@@ -12,6 +12,7 @@ use super::lean::raw_moment_bounds;
 use crate::moments::Moments;
 use crate::row::RowView;
 use crate::slope::Slope;
+use crate::vectorised::vectorised;
 
 pub(super) const LAYERS: &[LayerSpec] = &[LayerSpec {
     name: "bump-slopes",
@@ -22,6 +23,12 @@ pub(super) struct Encoder;
 
 impl RowEncoder for Encoder {
     fn encode(&self, row: RowView<'_>, planes: &mut [Vec<f32>]) {
+        encode(row, planes);
+    }
+}
+
+vectorised! {
+    fn encode(row: RowView<'_>, planes: &mut [Vec<f32>]) {
         let [h, dhds, dhdt, ss, tt, st] = planes else { unreachable!("bump slopes have six channels") };
         h.copy_from_slice(row.extras[0]);
         map1(dhds, row.bx, |x| -x);

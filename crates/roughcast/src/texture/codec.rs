@@ -101,6 +101,15 @@ impl Units {
         self.signed(1.0)
     }
 
+    /// Largest number that a texel can hold as it is.
+    pub fn largest(self) -> f32 {
+        match self.sample_type {
+            SampleType::U8 | SampleType::U16 => 1.0,
+            SampleType::F16 => half::f16::MAX.to_f32(),
+            SampleType::F32 => f32::MAX,
+        }
+    }
+
     /// Largest rounding error of a quantity with this way of storing, up to the given magnitude.
     pub fn error(self, affine: Affine, magnitude: f32) -> f32 {
         /// Four f32 roundings on the way into a code: the square, the sum, the scale and the bias.

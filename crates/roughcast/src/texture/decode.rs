@@ -1,5 +1,7 @@
 //! From stored textures back to moments.
 
+use rayon::prelude::*;
+
 use super::codec::Units;
 use super::{
     Layout, Part, TextureArray, bump_slopes, clean, lean, moments as moments_layout, pbr, schilling, toksvig,
@@ -48,22 +50,19 @@ pub enum DecodeError {
 pub fn decode(arrays: &[TextureArray]) -> Result<Vec<MomentLevel>, DecodeError> {
     let first = arrays.first().expect("there is at least one file to decode");
     let parts = Parts::find(arrays, first.info.layout)?;
-    let mut texel = Vec::new();
-    let mut levels = Vec::new();
-    for level in 0..first.level_count() {
+    let levels = (0..first.level_count()).map(|level| {
         let image = &first.layers[0].levels[level];
         let (width, height) = (image.width(), image.height());
-        let mut moments = Vec::with_capacity(width * height);
-        for y in 0..height {
-            for x in 0..width {
-                let decoded = parts.decode_texel(level, x, y, &mut texel);
-                let covariance = decoded.covariance();
-                moments.push(Moments::from_mean_and_covariance(decoded.mean, covariance));
+        let mut moments = vec![Moments::default(); width * height];
+        moments.par_chunks_mut(width).enumerate().for_each_init(Vec::new, |texel, (y, row)| {
+            for (x, moments) in row.iter_mut().enumerate() {
+                let decoded = parts.decode_texel(level, x, y, texel);
+                *moments = Moments::from_mean_and_covariance(decoded.mean, decoded.covariance());
             }
-        }
-        levels.push(MomentLevel { width, height, moments });
-    }
-    Ok(levels)
+        });
+        MomentLevel { width, height, moments }
+    });
+    Ok(levels.collect())
 }
 
 /// The files of a layout, found by their part.

@@ -154,6 +154,11 @@ const BASE: &str = "roughcast.base";
 const BASE_VARIANCE: &str = "roughcast.base-variance";
 const BRDF: &str = "roughcast.brdf";
 const ROUGHNESS_STORED: &str = "roughcast.roughness-stored";
+const CONVENTIONS: &str = "roughcast.conventions";
+
+/// For whoever opens a file without this documentation at hand; it is the same in every file and not read back.
+const CONVENTIONS_OF_ALL_FILES: &str = "row 0 is the top; tangent frame x right, y up, z out; slope = N.xy / N.z; second moments raw, order xx yy xy; \
+     unsigned texels: slopes over -scale..scale, moments over scale^2";
 
 /// First of the eleven reserved words of a DDS header: "RGHC" in the file.
 pub const DDS_MAGIC: u32 = u32::from_le_bytes(*b"RGHC");
@@ -185,6 +190,7 @@ impl TextureInfo {
             (BASE_VARIANCE, self.base_variance.to_string()),
             (BRDF, self.brdf.name().to_owned()),
             (ROUGHNESS_STORED, self.roughness_stored.name().to_owned()),
+            (CONVENTIONS, CONVENTIONS_OF_ALL_FILES.to_owned()),
         ];
         pairs.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
     }

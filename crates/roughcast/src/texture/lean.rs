@@ -20,6 +20,7 @@ use super::codec::{
 use crate::moments::Moments;
 use crate::row::RowView;
 use crate::slope::Slope;
+use crate::vectorised::vectorised;
 
 pub(super) const LAYERS: &[LayerSpec] = &[
     LayerSpec { name: "lean1", channels: &["N.x", "N.y", "N.z", "M.xy"] },
@@ -30,8 +31,14 @@ pub(super) struct Encoder(pub Units);
 
 impl RowEncoder for Encoder {
     fn encode(&self, row: RowView<'_>, planes: &mut [Vec<f32>]) {
+        encode(self.0, row, planes);
+    }
+}
+
+vectorised! {
+    fn encode(units: Units, row: RowView<'_>, planes: &mut [Vec<f32>]) {
         let [nx, ny, nz, mxy, bx, by, mxx, myy] = planes else { unreachable!("LEAN has eight channels") };
-        let (unit, slope, second, mixed) = (self.0.unit(), self.0.slope(), self.0.second(), self.0.mixed());
+        let (unit, slope, second, mixed) = (units.unit(), units.slope(), units.second(), units.mixed());
         map1(nx, row.extras[0], |n| unit.store(n));
         map1(ny, row.extras[1], |n| unit.store(n));
         nz.copy_from_slice(row.extras[2]);

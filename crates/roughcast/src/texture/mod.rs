@@ -11,6 +11,7 @@ mod lean;
 mod moments;
 pub(crate) mod pack;
 pub(crate) mod pbr;
+mod pbr_bounds;
 mod schilling;
 mod toksvig;
 mod variance;
@@ -147,7 +148,25 @@ pub(crate) fn decode_lean_raw(info: &TextureInfo, sample_type: SampleType, texel
 
 /// What a file with this meaning and sample type can be relied upon to give back, where nothing stored exceeds
 /// `peaks`. Block compression adds errors of its own.
+///
+/// For [`Layout::Pbr`] this is its plain form, one roughness and a normal with its z; what a bake with other options
+/// gives is in its report.
 pub fn bounds(info: &TextureInfo, sample_type: SampleType, peaks: &Peaks) -> Bounds {
+    let plain = EncoderShape {
+        lobe: Lobe::Isotropic,
+        roughness_texture: RoughnessTexture::Alone,
+        normal_channels: 4,
+    };
+    bounds_of_shape(info, sample_type, plain, peaks)
+}
+
+/// [`bounds`] of a layout whose textures have this shape.
+pub(crate) fn bounds_of_shape(
+    info: &TextureInfo,
+    sample_type: SampleType,
+    shape: EncoderShape,
+    peaks: &Peaks,
+) -> Bounds {
     let units = Units::new(info, sample_type);
     match info.layout {
         Layout::Lean => lean::bounds(units, peaks),
@@ -155,9 +174,9 @@ pub fn bounds(info: &TextureInfo, sample_type: SampleType, peaks: &Peaks) -> Bou
         Layout::Schilling => schilling::bounds(units, peaks),
         Layout::SchillingIsotropic => schilling::isotropic_bounds(units, peaks),
         Layout::Variance => variance::bounds(units, peaks),
-        Layout::Toksvig => toksvig::bounds(units, peaks),
+        Layout::Toksvig => toksvig::bounds(units, info, peaks),
         Layout::BumpSlopes => bump_slopes::bounds(units, peaks),
         Layout::Moments => moments::bounds(units, peaks),
-        Layout::Pbr => pbr::bounds(units, info, peaks),
+        Layout::Pbr => pbr_bounds::bounds(units, info, shape, peaks),
     }
 }

@@ -3,6 +3,8 @@
 use half::f16;
 use half::slice::HalfFloatSliceExt;
 
+use crate::vectorised::vectorised;
+
 /// 2^23: adding it to a number in 0 ..= 65535 leaves the number, rounded to nearest (ties to even), in the low bits
 /// of the float. One addition instead of a conversion with saturation, and it vectorises.
 const ROUND: f32 = 8_388_608.0;
@@ -15,59 +17,81 @@ fn code(value: f32, steps: f32) -> u32 {
     (clamped * steps + ROUND).to_bits() & 0xffff
 }
 
-/// 8-bit unsigned normalised.
-pub(crate) fn unorm8(planes: &[Vec<f32>], out: &mut [u8]) {
-    interleave(planes, out, |v| code(v, 255.0) as u8);
-}
-
-/// 16-bit unsigned normalised.
-pub(crate) fn unorm16(planes: &[Vec<f32>], out: &mut [u16]) {
-    interleave(planes, out, |v| code(v, 65535.0) as u16);
-}
-
-/// Single floats.
-pub(crate) fn single(planes: &[Vec<f32>], out: &mut [f32]) {
-    interleave(planes, out, |v| v);
-}
-
-/// Half floats. The conversion of slices uses the processor's own where it has one; it wants singles in order, so
-/// these are interleaved through a small buffer.
-pub(crate) fn half(planes: &[Vec<f32>], out: &mut [f16]) {
-    const BLOCK: usize = 64;
-    const MOST_CHANNELS: usize = 8;
-    let channels = planes.len();
-    assert!(channels <= MOST_CHANNELS, "no layout has more channels in one texture");
-    let mut buffer = [0.0_f32; BLOCK * MOST_CHANNELS];
-    for (block, texels) in out.chunks_mut(BLOCK * channels).enumerate() {
-        let singles = &mut buffer[..texels.len()];
-        for (channel, plane) in planes.iter().enumerate() {
-            let values = &plane[block * BLOCK..][..texels.len() / channels];
-            for (texel, value) in singles.chunks_exact_mut(channels).zip(values) {
-                texel[channel] = *value;
-            }
-        }
-        texels.convert_from_f32_slice(singles);
+vectorised! {
+    /// 8-bit unsigned normalised.
+    pub(crate) fn unorm8(planes: &[Vec<f32>], out: &mut [u8]) {
+        interleave(planes, out, |v| code(v, 255.0) as u8);
     }
 }
 
-fn interleave<T: Copy + Default>(planes: &[Vec<f32>], out: &mut [T], to: impl Fn(f32) -> T + Copy) {
-    match planes {
-        [a] => a.iter().zip(out).for_each(|(v, o)| *o = to(*v)),
-        [a, b, c, d] => {
-            let (texels, _) = out.as_chunks_mut::<4>();
-            let n = texels.len();
-            let (a, b, c, d) = (&a[..n], &b[..n], &c[..n], &d[..n]);
-            for i in 0..n {
-                texels[i] = [to(a[i]), to(b[i]), to(c[i]), to(d[i])];
-            }
+vectorised! {
+    /// 16-bit unsigned normalised.
+    pub(crate) fn unorm16(planes: &[Vec<f32>], out: &mut [u16]) {
+        interleave(planes, out, |v| code(v, 65535.0) as u16);
+    }
+}
+
+vectorised! {
+    /// Single floats.
+    pub(crate) fn single(planes: &[Vec<f32>], out: &mut [f32]) {
+        interleave(planes, out, |v| v);
+    }
+}
+
+/// The most channels of one texture of any layout.
+const MOST_CHANNELS: usize = 8;
+
+/// Half floats. The conversion of slices uses the processor's own where it has one, so a block of each plane is
+/// converted in order and only then interleaved.
+pub(crate) fn half(planes: &[Vec<f32>], out: &mut [f16]) {
+    const BLOCK: usize = 256;
+    let channels = planes.len();
+    assert!(channels <= MOST_CHANNELS, "no layout has more channels in one texture");
+    let mut buffer = [[f16::ZERO; BLOCK]; MOST_CHANNELS];
+    for (block, texels) in out.chunks_mut(BLOCK * channels).enumerate() {
+        let width = texels.len() / channels;
+        for (plane, halves) in planes.iter().zip(&mut buffer) {
+            halves[..width].convert_from_f32_slice(&plane[block * BLOCK..][..width]);
         }
-        _ => {
-            for (channel, plane) in planes.iter().enumerate() {
-                for (texel, value) in out.chunks_exact_mut(planes.len()).zip(plane) {
-                    texel[channel] = to(*value);
-                }
-            }
-        }
+        let halves: [&[f16]; MOST_CHANNELS] = std::array::from_fn(|channel| &buffer[channel][..width]);
+        interleave_halves(&halves[..channels], texels);
+    }
+}
+
+vectorised! {
+    fn interleave_halves(planes: &[&[f16]], out: &mut [f16]) {
+        interleave(planes, out, |v| v);
+    }
+}
+
+// Inlined into the functions above, so that it is compiled for each of their instruction sets.
+#[inline(always)]
+fn interleave<P: AsRef<[V]>, V: Copy, T: Copy>(planes: &[P], out: &mut [T], to: impl Fn(V) -> T + Copy) {
+    match planes.len() {
+        1 => interleave_n::<1, P, V, T>(planes, out, to),
+        2 => interleave_n::<2, P, V, T>(planes, out, to),
+        3 => interleave_n::<3, P, V, T>(planes, out, to),
+        4 => interleave_n::<4, P, V, T>(planes, out, to),
+        5 => interleave_n::<5, P, V, T>(planes, out, to),
+        6 => interleave_n::<6, P, V, T>(planes, out, to),
+        7 => interleave_n::<7, P, V, T>(planes, out, to),
+        8 => interleave_n::<8, P, V, T>(planes, out, to),
+        _ => unreachable!("no layout has so many channels in one texture"),
+    }
+}
+
+/// With the number of channels known to the compiler, the loop has no inner one and no bounds to check.
+#[inline(always)]
+fn interleave_n<const C: usize, P: AsRef<[V]>, V: Copy, T: Copy>(
+    planes: &[P],
+    out: &mut [T],
+    to: impl Fn(V) -> T + Copy,
+) {
+    let (texels, _) = out.as_chunks_mut::<C>();
+    let n = texels.len();
+    let planes: [&[V]; C] = std::array::from_fn(|channel| &planes[channel].as_ref()[..n]);
+    for i in 0..n {
+        texels[i] = std::array::from_fn(|channel| to(planes[channel][i]));
     }
 }
 
@@ -96,7 +120,7 @@ mod tests {
     #[test]
     fn every_number_of_channels_interleaves() {
         for channels in 1..=8_usize {
-            let width = 70; // more than one block of the half conversion
+            let width = 300; // more than one block of the half conversion
             let planes: Vec<Vec<f32>> =
                 (0..channels).map(|c| (0..width).map(|x| (c * width + x) as f32).collect()).collect();
             let mut singles = vec![0.0; channels * width];

@@ -15,7 +15,7 @@
 //! A block-compressed normal has two channels; z follows from them. In EXR files the channels are called R, G, B, A, or Y
 //! where there is one, so that any viewer shows them.
 
-use super::codec::{Bounds, LayerSpec, OPAQUE, Peaks, RowEncoder, Units};
+use super::codec::{LayerSpec, OPAQUE, RowEncoder, Units};
 use super::{RoughnessStored, TextureInfo};
 use crate::moments::{Covariance, Moments};
 use crate::options::{Lobe, RoughnessTexture};
@@ -121,10 +121,11 @@ pub(super) fn normal_from_stored(units: Units, texel: &[f32]) -> Normal {
         Some(z) => unit.load(*z),
         None => (1.0 - x * x - y * y).max(0.0).sqrt(),
     };
-    /// Steeper than any slope that an eight-bit normal can tell from horizontal.
-    const FLATTEST: f32 = 1.0 / 512.0;
     Normal { x, y, z: z.max(FLATTEST) }
 }
+
+/// Steeper than any slope that an eight-bit normal can tell from horizontal.
+pub(super) const FLATTEST: f32 = 1.0 / 512.0;
 
 /// Moments of base and bumps together, from the parts' texels.
 pub(super) fn decode(
@@ -148,21 +149,4 @@ pub(super) fn decode(
     let covariance =
         Covariance { xx: variance + added * x * x, yy: variance + added * y * y, xy: added * x * y };
     Moments::from_mean_and_covariance(mean, covariance)
-}
-
-/// Bounds up to a width of 1, the roughest that the stored forms can say.
-pub(super) fn bounds(units: Units, info: &TextureInfo, peaks: &Peaks) -> Bounds {
-    let component = units.error(units.unit(), 1.0);
-    let shortest = 1.0 / (1.0 + peaks.slope * peaks.slope).sqrt();
-    let rest = (shortest - component).max(f32::MIN_POSITIVE);
-    let stored = units.error(super::codec::Affine::IDENTITY, 1.0);
-    // d(variance)/d(stored) at the roughest, with the second-order terms of (1 + e)^4 bounded by twice e squared's.
-    let variance = match info.roughness_stored {
-        RoughnessStored::Perceptual | RoughnessStored::Gloss => 2.0 * stored * (1.0 + 2.0 * stored),
-        RoughnessStored::Alpha => stored * (1.0 + stored),
-        RoughnessStored::AlphaSquared => 0.5 * stored,
-        // 1/s is off by its relative error.
-        RoughnessStored::SpecularPower => peaks.variance * stored * (1.0 + stored),
-    };
-    Bounds { slope: component * (1.0 + peaks.component) / rest, variance, eigenvalue: variance }
 }

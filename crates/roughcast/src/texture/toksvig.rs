@@ -12,8 +12,9 @@
 //! Unsigned types hold `N / 2 + 1/2`. The length does not survive two-channel block compression, so there the normal
 //! is stored at unit length and the factor in a texture of its own. An s that varies over the map is averaged as 1/s.
 
-use super::codec::{Bounds, LayerSpec, Peaks, RowEncoder, Units, map1};
+use super::codec::{Affine, Bounds, LayerSpec, Peaks, RowEncoder, Units, map1};
 use super::pbr::normal_from_stored;
+use super::pbr_bounds::slope_error;
 use super::{Part, TextureInfo};
 use crate::moments::{Covariance, Moments};
 use crate::row::RowView;
@@ -88,15 +89,25 @@ pub(super) fn decode_parts(units: Units, info: &TextureInfo, texel: &[f32]) -> M
     Moments::from_mean_and_covariance(mean, Covariance::isotropic(variance))
 }
 
-pub(super) fn bounds(units: Units, peaks: &Peaks) -> Bounds {
-    let component = units.error(units.unit(), 1.0);
+pub(super) fn bounds(units: Units, info: &TextureInfo, peaks: &Peaks) -> Bounds {
     // No texel is steeper than the peak, so neither N.z nor the length is below this.
     let shortest = 1.0 / (1.0 + peaks.slope * peaks.slope).sqrt();
-    let length_error = (3.0_f32).sqrt() * component;
-    let rest = (shortest - length_error).max(f32::MIN_POSITIVE);
-    let variance = length_error / (rest * rest);
-    let rest_z = (shortest - component).max(f32::MIN_POSITIVE);
-    Bounds { slope: component * (1.0 + peaks.component) / rest_z, variance, eigenvalue: variance }
+    let (normal_channels, variance) = if info.part == Part::Normal {
+        (2, gloss_error(units, info, 1.0 / shortest - 1.0))
+    } else {
+        let length_error = (3.0_f32).sqrt() * units.error(units.unit(), 1.0);
+        let rest = (shortest - length_error).max(f32::MIN_POSITIVE);
+        (4, length_error / (rest * rest))
+    };
+    Bounds { slope: slope_error(units, normal_channels, peaks), variance, eigenvalue: variance }
+}
+
+/// Error of a variance `V <= largest` read back from the gloss factor `g = 1 / (1 + s V)`: `dV = dg / (s g²)`.
+fn gloss_error(units: Units, info: &TextureInfo, largest: f32) -> f32 {
+    let inverse = 1.0 + largest / info.base_variance;
+    let relative = units.error(Affine::IDENTITY, 1.0) * inverse;
+    // A factor that may be rounded to nothing, or that goes with no single s, says nothing of the variance.
+    if relative < 1.0 { info.base_variance * inverse * relative / (1.0 - relative) } else { f32::INFINITY }
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ use roughcast::{Image, SampleType, Samples};
 
 use self::channels::Selection;
 use super::memory::{check_size, malformed, unsupported, zeros};
-use super::metadata::insert;
+use crate::metadata::insert;
 use crate::{Decoded, FileInfo, Limits, ReadError, ValueRange};
 
 const FORMAT: &str = "EXR";

@@ -1,0 +1,78 @@
+//! Baking in memory, layout by layout and filter by filter, and decoding: `cargo bench -p roughcast --bench layouts`.
+
+use divan::counter::ItemsCount;
+use divan::{Bencher, black_box};
+use roughcast::texture::{Layout, decode};
+use roughcast::{
+    BakeOptions, BaseRoughness, Bits, Image, Kind, PyramidFilter, Samples, SourceOptions, bake, bake_reusing,
+};
+
+/// Texels each way; small enough that a whole run takes seconds.
+const SIDE: usize = 1024;
+
+fn main() {
+    divan::main();
+}
+
+/// Rolling hills, 16-bit grey.
+fn hills(width: usize, height: usize) -> Image {
+    let value = |index: usize| {
+        let (x, y) = ((index % width) as f32, (index / width) as f32);
+        let hill = (x * 0.11).sin() * (y * 0.07).cos() + 0.3 * (x * 0.9 + y * 0.4).sin();
+        ((0.5 + 0.3 * hill) * 65535.0) as u16
+    };
+    let samples = (0..width * height).map(value).collect();
+    Image::new(width, height, 1, Samples::U16(samples)).expect("one sample a pixel")
+}
+
+fn heights() -> SourceOptions {
+    SourceOptions { kind: Kind::Height, ..SourceOptions::default() }
+}
+
+fn options(layout: Layout) -> BakeOptions {
+    let bits = match layout {
+        Layout::Moments | Layout::BumpSlopes => Bits::Half,
+        Layout::Pbr | Layout::Toksvig => Bits::Eight,
+        _ => Bits::Sixteen,
+    };
+    BakeOptions { layout, bits, ..BakeOptions::default() }
+}
+
+#[divan::bench(args = Layout::ALL)]
+fn layout(bencher: Bencher, layout: &Layout) {
+    let map = hills(SIDE, SIDE);
+    let base = Some(BaseRoughness::Variance(0.01));
+    let mut textures = Vec::new();
+    bencher.counter(ItemsCount::new(SIDE * SIDE)).bench_local(|| {
+        let reused = std::mem::take(&mut textures);
+        textures =
+            bake_reusing(reused, &map, &heights(), base, &options(*layout)).expect("a plain bake").arrays;
+    });
+}
+
+#[divan::bench(args = PyramidFilter::ALL)]
+fn filter(bencher: Bencher, filter: &PyramidFilter) {
+    let map = hills(SIDE, SIDE);
+    let options = BakeOptions { filter: *filter, ..BakeOptions::default() };
+    bencher
+        .counter(ItemsCount::new(SIDE * SIDE))
+        .bench_local(|| bake(black_box(&map), &heights(), None, &options).expect("a plain bake"));
+}
+
+/// Sizes that do not halve evenly take the general way.
+#[divan::bench]
+fn odd_size(bencher: Bencher) {
+    let map = hills(SIDE + 1, SIDE + 1);
+    bencher.counter(ItemsCount::new((SIDE + 1) * (SIDE + 1))).bench_local(|| {
+        bake(black_box(&map), &heights(), None, &BakeOptions::default()).expect("a plain bake")
+    });
+}
+
+#[divan::bench]
+fn decode_lean(bencher: Bencher) {
+    let map = hills(SIDE, SIDE);
+    let baked = bake(&map, &heights(), None, &BakeOptions::default()).expect("a plain bake");
+    bencher
+        .counter(ItemsCount::new(SIDE * SIDE))
+        .bench_local(|| decode(black_box(&baked.arrays)).expect("a whole layout"));
+}

@@ -1,0 +1,190 @@
+//! The main job: a map in, a layout's textures with all their levels out.
+
+mod allocate;
+mod check;
+mod scales;
+
+pub use check::refuse_filter;
+
+use crate::moments::Moments;
+use crate::options::{BakeOptions, Blocks, ScaleChoice, SourceOptions};
+use crate::pyramid::{self, LevelStats, PyramidOptions, level_sizes};
+use crate::source::{BaseRoughness, BaseSource, MapSource, SourceError, UseOfBase};
+use crate::survey::survey;
+use crate::texture::{self, Base, Bounds, EncoderShape, Layout, Part, Peaks, TextureArray, TextureInfo};
+use crate::{Image, SourceCounts};
+use allocate::{allocate, level_outs};
+use check::{check_options, limit_slopes};
+use scales::{advice, largest_variance, set_scales, stores_variance};
+
+/// Why a map could not be baked. One line, with the mend.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BakeError {
+    /// The map cannot be read as slopes.
+    #[error(transparent)]
+    Source(#[from] SourceError),
+    /// The options do not go together.
+    #[error("{0}")]
+    Options(String),
+}
+
+/// Advice on a scale that a few steep texels have made much larger than the rest needs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScaleAdvice {
+    /// The largest slope that all but the steepest 0.1 % of the texels stay below.
+    pub max_slope: f32,
+    /// By how much the usable specular power would grow.
+    pub factor: f32,
+}
+
+/// What was done, in numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BakeReport {
+    /// Texels that had to be mended.
+    pub counts: SourceCounts,
+    /// Texels of level 0.
+    pub texels: u64,
+    /// Range of the stored slopes; 1 for float types.
+    pub scale: f32,
+    /// Range of the stored variances or deviations; 1 where there are none.
+    pub variance_scale: f32,
+    /// Length of the steepest slope.
+    pub steepest: f32,
+    /// Root mean square length of the slopes, base roughness included where it is folded in.
+    pub rms_slope: f64,
+    /// The moments of the whole map: the last level's.
+    pub whole: Moments,
+    /// Largest errors of what the textures give back.
+    pub bounds: Bounds,
+    /// Set where the steepest 0.1 % of the texels cost more than a factor of four.
+    pub advice: Option<ScaleAdvice>,
+    /// Each level's size and what it holds.
+    pub levels: Vec<((usize, usize), LevelStats)>,
+}
+
+/// Textures and report.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Baked {
+    /// One for each file; the first is the layout's main one.
+    pub arrays: Vec<TextureArray>,
+    /// What was done.
+    pub report: BakeReport,
+}
+
+/// Bakes a map.
+///
+/// `roughness` is the base roughness of the material, where there is one: folded into the moments if
+/// [`BakeOptions::base`] says so, and always part of `pbr`'s roughness and of Toksvig's gloss factor.
+///
+/// The same input gives the same textures for any number of threads.
+///
+/// # Errors
+/// [`BakeError`] where the map has too few channels, or options do not go together.
+pub fn bake(
+    image: &Image,
+    source_options: &SourceOptions,
+    roughness: Option<BaseRoughness<'_>>,
+    options: &BakeOptions,
+) -> Result<Baked, BakeError> {
+    bake_reusing(Vec::new(), image, source_options, roughness, options)
+}
+
+/// As [`bake`], writing into the textures of an earlier bake where they have the same shape: a map that changes every
+/// frame needs no new memory. Textures of another shape are dropped.
+///
+/// # Errors
+/// As [`bake`].
+pub fn bake_reusing(
+    textures: Vec<TextureArray>,
+    image: &Image,
+    source_options: &SourceOptions,
+    roughness: Option<BaseRoughness<'_>>,
+    options: &BakeOptions,
+) -> Result<Baked, BakeError> {
+    check_options(options, roughness.is_some())?;
+    let mut source_options = *source_options;
+    limit_slopes(&mut source_options, roughness, options)?;
+    let source = source_of(image, source_options, roughness, options)?;
+    let pyramid_options = PyramidOptions { filter: options.filter, wrap: source_options.wrap };
+    let mut info = TextureInfo {
+        base: base_of(options, roughness.is_some()),
+        base_variance: base_variance(roughness),
+        brdf: options.brdf,
+        roughness_stored: options.roughness_stored,
+        ..TextureInfo::new(options.layout, first_part(options))
+    };
+    let sample_type = options.bits.sample_type();
+    // A scale that is to be found needs a look at every slope first; otherwise one pass does it all.
+    let looked_at = (!sample_type.is_float() && options.scale == ScaleChoice::Auto).then(|| survey(&source));
+    let largest_variance =
+        stores_variance(options.layout).then(|| largest_variance(&source, pyramid_options));
+    set_scales(&mut info, looked_at.as_ref(), largest_variance, options);
+    let mut arrays = allocate(textures, &info, options, (image.width(), image.height()));
+    let shape = EncoderShape {
+        lobe: options.lobe,
+        roughness_texture: options.roughness_texture,
+        normal_channels: if options.blocks == Blocks::Bc { 2 } else { 4 },
+    };
+    let encoder = texture::encoder(&info, sample_type, shape);
+    let outs = level_outs(&mut arrays, encoder.as_ref());
+    let built = pyramid::build(&source, pyramid_options, outs);
+    let finest = &built.levels[0];
+    let peaks = Peaks {
+        component: finest.largest_component,
+        slope: finest.steepest,
+        variance: largest_variance.unwrap_or(finest.max_variance),
+    };
+    let report = BakeReport {
+        counts: built.counts,
+        texels: image.width() as u64 * image.height() as u64,
+        scale: info.scale,
+        variance_scale: info.variance_scale,
+        steepest: finest.steepest,
+        rms_slope: f64::from(built.whole.xx + built.whole.yy).sqrt(),
+        whole: built.whole,
+        bounds: texture::bounds_of_shape(&info, sample_type, shape, &peaks),
+        advice: looked_at.and_then(|looked_at| advice(&info, sample_type, shape, &looked_at, &peaks)),
+        levels: level_sizes(image.width(), image.height()).into_iter().zip(built.levels).collect(),
+    };
+    Ok(Baked { arrays, report })
+}
+
+fn source_of<'a>(
+    image: &'a Image,
+    source_options: SourceOptions,
+    roughness: Option<BaseRoughness<'a>>,
+    options: &BakeOptions,
+) -> Result<MapSource<'a>, BakeError> {
+    let use_of_base = match (options.layout, options.base) {
+        (Layout::Toksvig, _) => UseOfBase::Apart,
+        (Layout::Pbr, _) | (_, Base::Baked) => UseOfBase::FoldedIn,
+        (_, Base::None) => UseOfBase::Apart,
+    };
+    let base = roughness.map(|roughness| BaseSource::new(roughness, use_of_base)).transpose()?;
+    let extras = texture::extras_of(options.layout, options.roughness_texture);
+    Ok(MapSource::new(image, source_options, base, extras)?)
+}
+
+/// `pbr`'s roughness and Toksvig's factor hold the base whatever was asked for: that is what they are.
+fn base_of(options: &BakeOptions, has_roughness: bool) -> Base {
+    match options.layout {
+        Layout::Pbr if has_roughness => Base::Baked,
+        _ => options.base,
+    }
+}
+
+fn base_variance(roughness: Option<BaseRoughness<'_>>) -> f32 {
+    match roughness {
+        None => 0.0,
+        Some(BaseRoughness::Variance(variance)) => variance,
+        Some(BaseRoughness::Map(_)) => f32::NAN,
+    }
+}
+
+fn first_part(options: &BakeOptions) -> Part {
+    match (options.layout, options.blocks) {
+        (Layout::Pbr, _) | (Layout::Toksvig, Blocks::Bc) => Part::Normal,
+        (_, Blocks::Bc) => Part::Split,
+        (_, Blocks::None) => Part::Whole,
+    }
+}

@@ -1,0 +1,79 @@
+//! The range that unsigned texels cover, and when a few steep texels have made it too large.
+
+use super::ScaleAdvice;
+use crate::SampleType;
+use crate::options::{BakeOptions, ScaleChoice};
+use crate::pyramid::{self, LevelOut, PyramidOptions, level_sizes};
+use crate::row::RowSource;
+use crate::source::MapSource;
+use crate::survey::Survey;
+use crate::texture::{self, EncoderShape, Layout, Peaks, TextureInfo};
+
+/// Part of the texels that [`ScaleAdvice`] speaks of, and the loss from which on it speaks.
+const STEEP_PART: f64 = 0.001;
+const STEEP_COST: f32 = 4.0;
+
+/// A flat map has no slopes to scale by; slopes below this cannot be told from it.
+const SMALLEST_SCALE: f32 = 1.0 / 1024.0;
+
+/// Whether a layout holds variances or deviations themselves, which need a scale of their own.
+pub(super) fn stores_variance(layout: Layout) -> bool {
+    matches!(layout, Layout::Schilling | Layout::SchillingIsotropic | Layout::Variance)
+}
+
+/// The largest variance of any level, which is only known when all have been made.
+pub(super) fn largest_variance(source: &MapSource<'_>, options: PyramidOptions) -> f32 {
+    let sizes = level_sizes(source.width(), source.height());
+    let built = pyramid::build(source, options, sizes.into_iter().map(LevelOut::measured).collect());
+    built.levels.iter().map(|level| level.max_variance).fold(0.0, f32::max)
+}
+
+/// Chooses the scales of unsigned texels.
+pub(super) fn set_scales(
+    info: &mut TextureInfo,
+    looked_at: Option<&Survey>,
+    largest_variance: Option<f32>,
+    options: &BakeOptions,
+) {
+    if options.bits.sample_type().is_float() {
+        return;
+    }
+    info.scale = match (options.scale, looked_at) {
+        (ScaleChoice::Fixed(scale), _) => scale,
+        (ScaleChoice::Auto, Some(looked_at)) => smallest_scale(options.layout, &looked_at.peaks),
+        (ScaleChoice::Auto, None) => unreachable!("a scale to be found is looked for"),
+    };
+    let variance = largest_variance.unwrap_or(0.0);
+    info.variance_scale = match options.layout {
+        Layout::Variance => variance.max(SMALLEST_SCALE * SMALLEST_SCALE),
+        Layout::Schilling => variance.sqrt().max(SMALLEST_SCALE),
+        // The larger eigenvalue can reach the sum of both variances.
+        Layout::SchillingIsotropic => (2.0 * variance).sqrt().max(SMALLEST_SCALE),
+        _ => 1.0,
+    };
+}
+
+/// The smallest scale that holds every slope and, where a layout stores them, every second moment.
+fn smallest_scale(layout: Layout, peaks: &Peaks) -> f32 {
+    let needed = if stores_variance(layout) { peaks.component } else { peaks.second().sqrt() };
+    needed.max(SMALLEST_SCALE)
+}
+
+pub(super) fn advice(
+    info: &TextureInfo,
+    sample_type: SampleType,
+    shape: EncoderShape,
+    looked_at: &Survey,
+    peaks: &Peaks,
+) -> Option<ScaleAdvice> {
+    let max_slope = looked_at.slope_exceeded_by(STEEP_PART);
+    let limited = Peaks { component: max_slope.min(peaks.component), slope: max_slope, ..*peaks };
+    let limited_info = TextureInfo { scale: smallest_scale(info.layout, &limited), ..*info };
+    let power = |info: &TextureInfo, peaks: &Peaks| {
+        texture::bounds_of_shape(info, sample_type, shape, peaks).usable_specular_power()
+    };
+    let factor = power(&limited_info, &limited) / power(info, peaks);
+    // Where nothing can be relied upon now, no factor says how much better it would be.
+    (max_slope > 0.0 && factor > STEEP_COST && factor.is_finite())
+        .then_some(ScaleAdvice { max_slope, factor })
+}

@@ -1,0 +1,275 @@
+//! The stated bounds of every layout in every type: kept on every texel of every level, and not silly.
+
+mod common;
+
+use common::compare::{EPS, check_semidefinite, expect};
+use common::level::{Level, Plane, Texel, decoded, eigenvalues, raw_lean, raw_moments};
+use common::maps::{self, Random};
+use common::{baked_with, options, pyramid_oracle, real_files, slope_oracle};
+use roughcast::texture::{Base, Layout, RoughnessStored};
+use roughcast::{
+    BakeOptions, BakeReport, Baked, BaseRoughness, Bits, Blocks, Image, Kind, Lobe, PyramidFilter,
+    RoughnessTexture, SourceOptions,
+};
+
+/// Float moments are made in single floats: this many roundings of a texel's rms come on top of a bound.
+const AVERAGING: f64 = 24.0;
+
+/// A bound has to come within this factor of the worst error on some map.
+const LOOSEST: f64 = 20.0;
+
+/// `M = Σ + B Bᵀ` is rounded to single floats when decoded: each of its three numbers once or twice.
+const SEMIDEFINITE: f64 = 4.0;
+
+struct Map {
+    name: &'static str,
+    image: Image,
+    source: SourceOptions,
+}
+
+fn maps() -> Vec<Map> {
+    let (wavy, wavy_source) = maps::plain_normal_map(96, 40, 41);
+    let gentle: Vec<[f64; 2]> = maps::slopes(53, 37, 42).into_iter().map(|b| b.map(|v| 0.06 * v)).collect();
+    let (gentle, gentle_source) = maps::slope_map(53, 37, &gentle);
+    let mut random = Random(43);
+    let steep = |random: &mut Random| [6.0 * random.signed(), 4.0 * random.signed()];
+    let steep: Vec<[f64; 2]> = (0..64 * 64).map(|_| steep(&mut random)).collect();
+    let (steep, steep_source) = maps::slope_map(64, 64, &steep);
+    let (flat, flat_source) = maps::slope_map(16, 12, &[[0.0, 0.0]; 16 * 12]);
+    // Brushed metal: hardly any variance across, where the root of a rounding is what counts.
+    let mut groove = |x: usize| [if x.is_multiple_of(2) { 0.6 } else { -0.6 }, 0.002 * random.signed()];
+    let grooves: Vec<[f64; 2]> = (0..48 * 48).map(|i| groove(i % 48)).collect();
+    let (grooves, grooves_source) = maps::slope_map(48, 48, &grooves);
+    let (one, one_source) = maps::slope_map(1, 1, &[[0.4, -0.9]]);
+    let heights = SourceOptions { kind: Kind::Height, ..SourceOptions::default() };
+    let real = |name, path, source| Map { name, image: real_files::read_part(path, 150), source };
+    vec![
+        Map { name: "wavy", image: wavy, source: wavy_source },
+        Map { name: "gentle", image: gentle, source: gentle_source },
+        Map { name: "steep", image: steep, source: steep_source },
+        Map { name: "grooves", image: grooves, source: grooves_source },
+        Map { name: "flat", image: flat, source: flat_source },
+        Map { name: "one texel", image: one, source: one_source },
+        real(
+            "ocean",
+            "materials/surfgrad_ocean16/normals_64crop_16bit_derived.png",
+            SourceOptions::default(),
+        ),
+        real("cube", "materials/parallax_cube/cube_normal.png", SourceOptions::default()),
+        real("brick heights", "materials/brickwall_jme/BrickWall_height.jpg", heights),
+    ]
+}
+
+/// One way to bake.
+#[derive(Clone, Copy, Debug)]
+struct Case {
+    options: BakeOptions,
+    /// Slope variance of the base.
+    base: Option<f32>,
+}
+
+fn cases() -> Vec<Case> {
+    let mut cases = Vec::new();
+    for bits in Bits::ALL {
+        for layout in Layout::ALL {
+            let float_only = matches!(layout, Layout::Moments | Layout::BumpSlopes);
+            if float_only && !bits.sample_type().is_float() {
+                continue;
+            }
+            let options = options(*layout, *bits);
+            match layout {
+                Layout::Toksvig => cases.push(Case { options, base: Some(0.01) }),
+                Layout::Pbr => cases.extend(material_cases(options)),
+                _ => {
+                    let baked = BakeOptions { base: Base::Baked, ..options };
+                    cases.extend([Case { options, base: None }, Case { options: baked, base: Some(0.01) }]);
+                }
+            }
+        }
+    }
+    for layout in [Layout::Variance, Layout::Toksvig, Layout::Pbr] {
+        let options = BakeOptions { blocks: Blocks::Bc, ..options(layout, Bits::Eight) };
+        cases.push(Case { options, base: (layout != Layout::Variance).then_some(0.01) });
+    }
+    cases
+}
+
+fn material_cases(options: BakeOptions) -> Vec<Case> {
+    let mut cases = Vec::new();
+    for stored in RoughnessStored::ALL {
+        if *stored == RoughnessStored::SpecularPower && !options.bits.sample_type().is_float() {
+            continue;
+        }
+        for lobe in Lobe::ALL {
+            for base in [None, Some(0.01)] {
+                let options = BakeOptions { roughness_stored: *stored, lobe: *lobe, ..options };
+                cases.push(Case { options, base });
+            }
+        }
+    }
+    let packed = BakeOptions { roughness_texture: RoughnessTexture::Packed, ..options };
+    cases.push(Case { options: packed, base: None });
+    cases
+}
+
+/// What a layout promises to give back of a texel: mean slope, then the numbers that the bound on variances speaks of.
+struct Promise {
+    slope: [f64; 2],
+    variances: Vec<f64>,
+    /// The whole covariance, where the layout keeps it.
+    covariance: Option<[f64; 3]>,
+}
+
+/// Widths above one cannot be stored in 0 ..= 1; the bounds speak of what can.
+fn storable(case: &Case, variance: f64) -> f64 {
+    let unlimited = case.options.roughness_stored == RoughnessStored::SpecularPower;
+    if unlimited { variance } else { variance.min(0.5) }
+}
+
+fn promised(case: &Case, texel: Texel, normal: [f64; 3]) -> Promise {
+    let c = texel.covariance();
+    let half_trace = (c[0] + c[1]) / 2.0;
+    let plain = |variances, covariance| Promise { slope: texel.b, variances, covariance };
+    match case.options.layout {
+        Layout::Lean | Layout::Moments | Layout::BumpSlopes | Layout::Schilling => {
+            plain(vec![c[0], c[1]], Some(c))
+        }
+        Layout::Variance => plain(vec![c[0], c[1]], None),
+        Layout::Clean => plain(vec![half_trace], None),
+        Layout::SchillingIsotropic => plain(vec![eigenvalues(c).0], None),
+        Layout::Pbr if case.options.lobe == Lobe::Isotropic => plain(vec![storable(case, half_trace)], None),
+        // Strength is a ratio of widths up to one.
+        Layout::Pbr if eigenvalues(c).0 <= 0.5 => plain(vec![c[0], c[1]], Some(c)),
+        Layout::Pbr => plain(vec![], None),
+        Layout::Toksvig => {
+            let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt().min(1.0);
+            let slope = [normal[0] / normal[2], normal[1] / normal[2]];
+            Promise { slope, variances: vec![(1.0 - length) / length], covariance: None }
+        }
+    }
+}
+
+/// The same numbers of a decoded texel.
+fn given(case: &Case, texel: Texel, promise: &Promise) -> Vec<f64> {
+    let c = texel.covariance();
+    match case.options.layout {
+        Layout::Clean | Layout::SchillingIsotropic | Layout::Toksvig => vec![c[0]],
+        Layout::Pbr if case.options.lobe == Lobe::Isotropic => vec![storable(case, c[0])],
+        _ => c[..promise.variances.len()].to_vec(),
+    }
+}
+
+/// Worst errors, in what was allowed.
+#[derive(Clone, Copy, Debug, Default)]
+struct Worst {
+    slope: f64,
+    variance: f64,
+    eigenvalue: f64,
+}
+
+fn check(
+    map: &Map,
+    case: &Case,
+    report: &BakeReport,
+    got: &[Level],
+    wanted: &[Level],
+    normals: &[[Plane; 3]],
+) -> Worst {
+    let mut worst = Worst::default();
+    let bounds = report.bounds;
+    for (number, (got, wanted)) in got.iter().zip(wanted).enumerate() {
+        for (index, (got, wanted)) in got.texels().zip(wanted.texels()).enumerate() {
+            let normal = std::array::from_fn(|k| normals[number][k].values[index]);
+            let promise = promised(case, wanted, normal);
+            let rounding = AVERAGING * EPS * (wanted.rms() + 1.0);
+            let what =
+                || format!("{} {case:?} level {number} texel {index}: {got:?} for {wanted:?}", map.name);
+            let keep = |error: f64, bound: f32, name: &str| {
+                // The float pyramid's own rounding; M's is at most twice the slope's of B, times B.
+                let allowed = f64::from(bound) + rounding * (1.0 + wanted.rms());
+                assert!(error <= allowed, "{name} off by {error:e} > {allowed:e}, {}", what());
+                error / allowed
+            };
+            for (g, w) in got.b.iter().zip(&promise.slope) {
+                worst.slope = worst.slope.max(keep((g - w).abs(), bounds.slope, "slope"));
+            }
+            for (g, w) in given(case, got, &promise).iter().zip(&promise.variances) {
+                worst.variance = worst.variance.max(keep((g - w).abs(), bounds.variance, "variance"));
+            }
+            if let Some(covariance) = promise.covariance {
+                let (g, w) = (eigenvalues(got.covariance()), eigenvalues(covariance));
+                for error in [g.0 - w.0, g.1 - w.1] {
+                    worst.eigenvalue =
+                        worst.eigenvalue.max(keep(error.abs(), bounds.eigenvalue, "eigenvalue"));
+                }
+            }
+        }
+    }
+    worst
+}
+
+/// The covariance along every direction, mixed term included, before the decoder makes it semidefinite.
+fn check_before_mending(baked: &Baked, case: &Case, wanted: &[Level]) {
+    let raw = match case.options.layout {
+        Layout::Lean => raw_lean(baked),
+        Layout::Moments => raw_moments(baked),
+        _ => return,
+    };
+    for (got, wanted) in raw.iter().zip(wanted) {
+        for (got, wanted) in got.texels().zip(wanted.texels()) {
+            let (g, w) = (got.covariance(), wanted.covariance());
+            let (most, least) = eigenvalues([g[0] - w[0], g[1] - w[1], g[2] - w[2]]);
+            let rounding = AVERAGING * EPS * (1.0 + wanted.rms()).powi(2);
+            let allowed = f64::from(baked.report.bounds.eigenvalue) + rounding;
+            assert!(most.abs().max(least.abs()) <= allowed, "{case:?}: {got:?} for {wanted:?}");
+        }
+    }
+}
+
+/// Averages of the unit normals of level 0.
+fn averaged_normals(slopes: &slope_oracle::Slopes, source: &SourceOptions) -> Vec<[Plane; 3]> {
+    let pyramids: [Vec<Plane>; 3] = std::array::from_fn(|component| {
+        let unit = |b: &[f64; 2]| [b[0], b[1], 1.0][component] / (1.0 + b[0] * b[0] + b[1] * b[1]).sqrt();
+        let values = slopes.texels.iter().map(unit).collect();
+        let plane = Plane { width: slopes.width, height: slopes.height, values };
+        pyramid_oracle::pyramid(plane, PyramidFilter::Box, source.wrap)
+    });
+    (0..pyramids[0].len()).map(|level| std::array::from_fn(|k| pyramids[k][level].clone())).collect()
+}
+
+#[test]
+fn what_files_give_back_is_within_the_bounds_and_the_bounds_are_near() {
+    let cases = cases();
+    let mut worst = vec![Worst::default(); cases.len()];
+    for map in maps() {
+        let slopes = slope_oracle::slopes(&map.image, &map.source);
+        let normals = averaged_normals(&slopes, &map.source);
+        let moments = |base: f32| {
+            let base = vec![f64::from(base); slopes.texels.len()];
+            pyramid_oracle::moments(&slopes, &base, PyramidFilter::Box, map.source.wrap)
+        };
+        let (bare, based) = (moments(0.0), moments(0.01));
+        for (case, worst) in cases.iter().zip(&mut worst) {
+            let base = case.base.map(BaseRoughness::Variance);
+            let baked = baked_with(&map.image, &map.source, base, &case.options);
+            let folded = case.options.base == Base::Baked || case.options.layout == Layout::Pbr;
+            let wanted = if folded && base.is_some() { &based } else { &bare };
+            let got = decoded(&baked.arrays);
+            expect(check_semidefinite(&got, SEMIDEFINITE), &(map.name, case));
+            let here = check(&map, case, &baked.report, &got, wanted, &normals);
+            check_before_mending(&baked, case, wanted);
+            worst.slope = worst.slope.max(here.slope);
+            worst.variance = worst.variance.max(here.variance);
+            worst.eigenvalue = worst.eigenvalue.max(here.eigenvalue);
+        }
+    }
+    for (case, worst) in cases.iter().zip(&worst) {
+        if !case.options.bits.sample_type().is_float() {
+            assert!(worst.slope * LOOSEST >= 1.0, "{case:?}: {worst:?}");
+            assert!(worst.variance * LOOSEST >= 1.0, "{case:?}: {worst:?}");
+            if matches!(case.options.layout, Layout::Lean | Layout::Schilling) {
+                assert!(worst.eigenvalue * LOOSEST >= 1.0, "{case:?}: {worst:?}");
+            }
+        }
+    }
+}

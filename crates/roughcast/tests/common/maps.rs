@@ -1,0 +1,167 @@
+//! Synthetic maps: slopes and heights in f64, and every way to store them.
+
+use half::f16;
+use roughcast::texture::RoughnessStored;
+use roughcast::{
+    Green, HeightSense, Image, Kind, NormalChannels, NormalRange, SampleType, Samples, SourceOptions,
+};
+
+/// Sizes that exercise every path: single lines, odd and even, one and several tiles and bands of the fused pass,
+/// sizes that halve evenly for a while and then do not.
+pub const SIZES: [(usize, usize); 11] = [
+    (1, 1),
+    (1, 7),
+    (7, 1),
+    (53, 37),
+    (64, 64),
+    (96, 40),
+    (128, 64),
+    (640, 427),
+    (130, 66),
+    (1024, 8),
+    (1088, 192),
+];
+
+/// Pseudo-random numbers (splitmix64), the same on every machine.
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// In 0 .. 1.
+    pub fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// In -1 .. 1.
+    pub fn signed(&mut self) -> f64 {
+        2.0 * self.unit() - 1.0
+    }
+}
+
+/// Slopes up to about 1.4, row by row: waves and noise, steeper along x than along y, with a mean and a correlation,
+/// so that no two of the five moments are alike.
+pub fn slopes(width: usize, height: usize, seed: u64) -> Vec<[f64; 2]> {
+    let mut random = Random(seed);
+    let mut slopes = Vec::with_capacity(width * height);
+    for y in 0..height {
+        for x in 0..width {
+            let (u, v) = (x as f64, y as f64);
+            let wave = (0.37 * u + 0.11 * v).sin();
+            let ripple = (0.05 * u - 0.83 * v).cos();
+            let bx = 0.15 + 0.7 * wave + 0.35 * random.signed();
+            let by = -0.1 + 0.3 * ripple + 0.25 * wave + 0.2 * random.signed();
+            slopes.push([bx, by]);
+        }
+    }
+    slopes
+}
+
+/// Heights in 0 ..= 1: hills and noise.
+pub fn heights(width: usize, height: usize, seed: u64) -> Vec<f64> {
+    let mut random = Random(seed);
+    let mut heights = Vec::with_capacity(width * height);
+    for y in 0..height {
+        for x in 0..width {
+            let (u, v) = (x as f64, y as f64);
+            let hills = 0.5 + 0.25 * (0.21 * u + 0.4 * v).sin() + 0.15 * (0.6 * u - 0.1 * v).cos();
+            heights.push((hills + 0.1 * random.signed()).clamp(0.0, 1.0));
+        }
+    }
+    heights
+}
+
+/// Samples of a type; unsigned types take 0 ..= 1.
+pub fn samples(values: &[f64], sample_type: SampleType) -> Samples {
+    match sample_type {
+        SampleType::U8 => Samples::U8(values.iter().map(|v| (v * 255.0).round() as u8).collect()),
+        SampleType::U16 => Samples::U16(values.iter().map(|v| (v * 65535.0).round() as u16).collect()),
+        SampleType::F16 => Samples::F16(values.iter().map(|v| f16::from_f64(*v)).collect()),
+        SampleType::F32 => Samples::F32(values.iter().map(|v| *v as f32).collect()),
+    }
+}
+
+pub fn image(width: usize, height: usize, channels: usize, samples: Samples) -> Image {
+    Image::new(width, height, channels, samples).expect("the samples fit the size")
+}
+
+/// A height map with its options.
+pub fn height_map(width: usize, height: usize, sample_type: SampleType, seed: u64) -> (Image, SourceOptions) {
+    let values = heights(width, height, seed);
+    let options =
+        SourceOptions { kind: Kind::Height, height_sense: HeightSense::WhiteHigh, ..Default::default() };
+    (image(width, height, 1, samples(&values, sample_type)), options)
+}
+
+/// Slopes stored as the vectors (b.x, b.y, 1) in signed singles: level 0 reads them back to the last bit.
+pub fn slope_map(width: usize, height: usize, slopes: &[[f64; 2]]) -> (Image, SourceOptions) {
+    let values: Vec<f64> = slopes.iter().flat_map(|[x, y]| [*x, *y, 1.0]).collect();
+    let options = SourceOptions { range: NormalRange::Signed, ..Default::default() };
+    (image(width, height, 3, samples(&values, SampleType::F32)), options)
+}
+
+/// Unit normals of slopes, stored as the options say, in `channels` channels. Channels without a meaning hold junk.
+pub fn normal_map(
+    size: (usize, usize),
+    slopes: &[[f64; 2]],
+    sample_type: SampleType,
+    options: &SourceOptions,
+    channels: usize,
+) -> Image {
+    /// Junk that would be seen if it were read.
+    const JUNK: f64 = 0.77;
+    let mut values = vec![JUNK; slopes.len() * channels];
+    for (texel, [x, y]) in values.chunks_exact_mut(channels).zip(slopes) {
+        let length = (1.0 + x * x + y * y).sqrt();
+        let y = if options.green == Green::Down { -y } else { *y };
+        let stored = |component: f64| match options.range {
+            NormalRange::Signed => component / length,
+            NormalRange::Unorm => 0.5 * component / length + 0.5,
+        };
+        let x_at = if options.normal_channels == NormalChannels::Ag { 3 } else { 0 };
+        texel[x_at] = stored(*x);
+        texel[1] = stored(y);
+        if options.normal_channels == NormalChannels::Xyz {
+            texel[2] = stored(1.0);
+        }
+    }
+    image(size.0, size.1, channels, samples(&values, sample_type))
+}
+
+/// An 8-bit OpenGL normal map of [`slopes`], as most maps are.
+pub fn plain_normal_map(width: usize, height: usize, seed: u64) -> (Image, SourceOptions) {
+    let options = SourceOptions::default();
+    let map = normal_map((width, height), &slopes(width, height, seed), SampleType::U8, &options, 3);
+    (map, options)
+}
+
+/// Slopes gentle enough that no roughness exceeds 1, where the stored forms end.
+pub fn gentle_map(width: usize, height: usize) -> (Image, SourceOptions) {
+    let slopes: Vec<[f64; 2]> = slopes(width, height, 31).into_iter().map(|b| b.map(|v| 0.5 * v)).collect();
+    slope_map(width, height, &slopes)
+}
+
+/// A packed material texture: occlusion, perceptual roughness, metalness.
+pub fn material_map(width: usize, height: usize) -> Image {
+    let heights = heights(width, height, 32);
+    let values: Vec<f64> = heights.iter().flat_map(|h| [1.0 - 0.5 * h, 0.2 + 0.4 * h, h * h]).collect();
+    image(width, height, 3, samples(&values, SampleType::U8))
+}
+
+/// Slope variances of a roughness map, by the table of conventions.
+pub fn variances(image: &Image, channel: usize, stored: RoughnessStored) -> Vec<f64> {
+    let variance = |r: f64| match stored {
+        RoughnessStored::Perceptual => r.powi(4) / 2.0,
+        RoughnessStored::Alpha => r * r / 2.0,
+        RoughnessStored::AlphaSquared => r / 2.0,
+        RoughnessStored::Gloss => (1.0 - r).powi(4) / 2.0,
+        RoughnessStored::SpecularPower => 1.0 / r,
+    };
+    super::level::channel_of(image, channel).values.into_iter().map(variance).collect()
+}

@@ -1,0 +1,46 @@
+//! What the integration tests share: maps to bake, an oracle in plain f64 arithmetic, comparators, real files.
+//!
+//! The oracle shares no code with the library: it follows the texts and the documented rules, texel by texel.
+
+// Every test file is a crate of its own and uses a part of this.
+#![allow(dead_code)]
+
+pub mod compare;
+pub mod level;
+pub mod maps;
+pub mod pyramid_oracle;
+pub mod real_files;
+pub mod slope_oracle;
+
+use roughcast::{BakeOptions, Baked, BaseRoughness, Bits, Image, PyramidFilter, SourceOptions, bake};
+
+/// Bakes, where it must not fail.
+pub fn baked(image: &Image, source: &SourceOptions, options: &BakeOptions) -> Baked {
+    baked_with(image, source, None, options)
+}
+
+/// Bakes with a base roughness, where it must not fail.
+pub fn baked_with(
+    image: &Image,
+    source: &SourceOptions,
+    roughness: Option<BaseRoughness<'_>>,
+    options: &BakeOptions,
+) -> Baked {
+    bake(image, source, roughness, options).unwrap_or_else(|error| panic!("{options:?}: {error}"))
+}
+
+/// Options for a layout and a sample type, everything else as by default.
+pub fn options(layout: roughcast::texture::Layout, bits: Bits) -> BakeOptions {
+    BakeOptions { layout, bits, ..BakeOptions::default() }
+}
+
+/// Options for the moments themselves in single floats.
+pub fn float_moments(filter: PyramidFilter) -> BakeOptions {
+    BakeOptions { filter, ..options(roughcast::texture::Layout::Moments, Bits::Float) }
+}
+
+/// The oracle's levels of a map; `base` is the slope variance of each texel's base roughness.
+pub fn oracle_of(image: &Image, source: &SourceOptions, base: &[f64]) -> Vec<level::Level> {
+    let slopes = slope_oracle::slopes(image, source);
+    pyramid_oracle::moments(&slopes, base, PyramidFilter::Box, source.wrap)
+}

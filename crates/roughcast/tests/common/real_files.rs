@@ -1,0 +1,78 @@
+//! The real maps of the shared data, by their manifest.
+
+use std::path::PathBuf;
+
+use image::DynamicImage;
+use roughcast::{Image, Samples};
+
+/// A line of the manifest.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    pub path: String,
+    pub kind: String,
+    /// "GL (+Y) ..." or "DX (-Y) ...", where known.
+    pub convention: String,
+    /// Rms of the slopes, where it was measured.
+    pub slope_rms: Option<f64>,
+}
+
+fn folder() -> PathBuf {
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"))
+}
+
+/// The manifest's entries of a kind whose files this crate's tests can read.
+pub fn entries(kind: &str) -> Vec<Entry> {
+    let path = folder().join("MANIFEST.tsv");
+    let text = std::fs::read_to_string(&path)
+        .unwrap_or_else(|error| panic!("the shared test data is not there: {}: {error}", path.display()));
+    let mut lines = text.lines().map(|line| line.split('\t').collect::<Vec<_>>());
+    let header = lines.next().expect("the manifest has a header");
+    let column =
+        |name: &str| header.iter().position(|h| *h == name).unwrap_or_else(|| panic!("no column {name}"));
+    let (path, kinds) = (column("path"), column("kind"));
+    let (convention, slope_rms) = (column("convention"), column("slope_rms"));
+    let readable = |path: &str| ["png", "jpg", "webp"].iter().any(|end| path.ends_with(&format!(".{end}")));
+    let in_scope = |path: &str| path.starts_with("materials/") || path.starts_with("heights/");
+    lines
+        .filter(|fields| fields[kinds] == kind && in_scope(fields[path]) && readable(fields[path]))
+        .map(|fields| Entry {
+            path: fields[path].to_owned(),
+            kind: fields[kinds].to_owned(),
+            convention: fields[convention].to_owned(),
+            slope_rms: fields[slope_rms].parse().ok(),
+        })
+        .collect()
+}
+
+/// Reads a file of the shared data.
+pub fn read(path: &str) -> Image {
+    let full = folder().join(path);
+    let picture = image::open(&full).unwrap_or_else(|error| panic!("{}: {error}", full.display()));
+    let (width, height) = (picture.width() as usize, picture.height() as usize);
+    let channels = usize::from(picture.color().channel_count());
+    let samples = match picture {
+        DynamicImage::ImageLuma8(p) => Samples::U8(p.into_raw()),
+        DynamicImage::ImageLumaA8(p) => Samples::U8(p.into_raw()),
+        DynamicImage::ImageRgb8(p) => Samples::U8(p.into_raw()),
+        DynamicImage::ImageRgba8(p) => Samples::U8(p.into_raw()),
+        DynamicImage::ImageLuma16(p) => Samples::U16(p.into_raw()),
+        DynamicImage::ImageRgb16(p) => Samples::U16(p.into_raw()),
+        DynamicImage::ImageRgba16(p) => Samples::U16(p.into_raw()),
+        other => panic!("{path}: no test reads {:?}", other.color()),
+    };
+    Image::new(width, height, channels, samples).expect("the decoder gives what it says")
+}
+
+/// Reads a file of the shared data, of which at most so many columns and rows from the top left are kept.
+pub fn read_part(path: &str, largest_side: usize) -> Image {
+    let image = read(path);
+    let (width, height) = (image.width().min(largest_side), image.height().min(largest_side));
+    let (row_length, kept) = (image.width() * image.channels(), width * image.channels());
+    let rows = || (0..height).map(|y| y * row_length..y * row_length + kept);
+    let samples = match image.samples() {
+        Samples::U8(v) => Samples::U8(rows().flat_map(|row| &v[row]).copied().collect()),
+        Samples::U16(v) => Samples::U16(rows().flat_map(|row| &v[row]).copied().collect()),
+        other => panic!("{path}: no picture is read as {:?}", other.sample_type()),
+    };
+    Image::new(width, height, image.channels(), samples).expect("the rows are as long as they are many")
+}

@@ -1,0 +1,138 @@
+//! Slopes from pixels, in f64, straight from the documented rules.
+
+use roughcast::{
+    Gradient, Green, HeightSense, Image, Kind, NormalChannels, NormalRange, Samples, SourceCounts,
+    SourceOptions, Wrap,
+};
+
+/// Level 0 of a map.
+pub struct Slopes {
+    pub width: usize,
+    pub height: usize,
+    /// (b.x, b.y), row by row from the top.
+    pub texels: Vec<[f64; 2]>,
+    pub counts: SourceCounts,
+}
+
+/// A sample as a number: unsigned types as 0 ..= 1, floats as they are.
+pub fn sample(image: &Image, x: usize, y: usize, channel: usize) -> f64 {
+    let index = (y * image.width() + x) * image.channels() + channel;
+    match image.samples() {
+        Samples::U8(v) => f64::from(v[index]) / 255.0,
+        Samples::U16(v) => f64::from(v[index]) / 65535.0,
+        Samples::F16(v) => v[index].to_f64(),
+        Samples::F32(v) => f64::from(v[index]),
+    }
+}
+
+pub fn slopes(image: &Image, options: &SourceOptions) -> Slopes {
+    let mut counts = SourceCounts::default();
+    let mut texels = Vec::new();
+    for y in 0..image.height() {
+        for x in 0..image.width() {
+            texels.push(match options.kind {
+                Kind::Normal => slope_of_normal(image, options, x, y, &mut counts),
+                Kind::Height => slope_of_height(image, options, x, y, &mut counts),
+            });
+        }
+    }
+    Slopes { width: image.width(), height: image.height(), texels, counts }
+}
+
+fn slope_of_normal(
+    image: &Image,
+    options: &SourceOptions,
+    x: usize,
+    y: usize,
+    counts: &mut SourceCounts,
+) -> [f64; 2] {
+    let is_unsigned = matches!(image.samples(), Samples::U8(_) | Samples::U16(_));
+    let component = |channel: usize| {
+        let value = sample(image, x, y, channel);
+        if is_unsigned || options.range == NormalRange::Unorm { 2.0 * value - 1.0 } else { value }
+    };
+    let nx = component(if options.normal_channels == NormalChannels::Ag { 3 } else { 0 });
+    let ny = component(1) * if options.green == Green::Down { -1.0 } else { 1.0 };
+    let nz = if options.normal_channels == NormalChannels::Xyz {
+        component(2)
+    } else {
+        if !(nx.is_finite() && ny.is_finite()) {
+            counts.non_finite += 1;
+            return [0.0, 0.0];
+        }
+        // Further outside the unit disc than rounding and compression bring a normal: an empty background.
+        if nx * nx + ny * ny > 1.2 {
+            counts.invalid += 1;
+            return [0.0, 0.0];
+        }
+        (1.0 - nx * nx - ny * ny).max(0.0).sqrt()
+    };
+    mended(nx, ny, nz, options, counts)
+}
+
+fn mended(x: f64, y: f64, z: f64, options: &SourceOptions, counts: &mut SourceCounts) -> [f64; 2] {
+    let longest = f64::from(options.max_slope);
+    let across = x.hypot(y);
+    if !(x.is_finite() && y.is_finite() && z.is_finite()) {
+        counts.non_finite += 1;
+        [0.0, 0.0]
+    } else if z > 0.0 && across / z <= longest {
+        [x / z, y / z]
+    } else if across == 0.0 {
+        counts.invalid += 1;
+        [0.0, 0.0]
+    } else {
+        if z > 0.0 {
+            counts.clamped += 1;
+        } else {
+            counts.behind += 1;
+        }
+        [x / across * longest, y / across * longest]
+    }
+}
+
+/// Where a row or column next to the map's edge comes from.
+fn inside(index: i64, size: usize, wrap: Wrap) -> usize {
+    let size = size as i64;
+    let inside = match wrap {
+        Wrap::Repeat => (index + size) % size,
+        Wrap::Clamp if index < 0 => 0,
+        Wrap::Clamp if index >= size => size - 1,
+        // The edge is the line between two texels, so the first texel beyond it is the edge texel's image.
+        Wrap::Mirror if index < 0 => -1 - index,
+        Wrap::Mirror if index >= size => 2 * size - 1 - index,
+        _ => index,
+    };
+    inside as usize
+}
+
+fn slope_of_height(
+    image: &Image,
+    options: &SourceOptions,
+    x: usize,
+    y: usize,
+    counts: &mut SourceCounts,
+) -> [f64; 2] {
+    let sense = if options.height_sense == HeightSense::WhiteDeep { -1.0 } else { 1.0 };
+    let unit = sense * f64::from(options.height_scale) * image.width() as f64;
+    // Columns to the right, rows up.
+    let h = |right: i64, up: i64| {
+        let column = inside(x as i64 + right, image.width(), options.wrap);
+        let row = inside(y as i64 - up, image.height(), options.wrap);
+        unit * sample(image, column, row, 0)
+    };
+    let (slope_right, slope_up) = match options.gradient {
+        Gradient::Central => ((h(1, 0) - h(-1, 0)) / 2.0, (h(0, 1) - h(0, -1)) / 2.0),
+        Gradient::Forward => (h(1, 0) - h(0, 0), h(0, 1) - h(0, 0)),
+        Gradient::Sobel => {
+            let mut right = 0.0;
+            let mut up = 0.0;
+            for (offset, weight) in [(-1, 1.0), (0, 2.0), (1, 1.0)] {
+                right += weight * (h(1, offset) - h(-1, offset)) / 8.0;
+                up += weight * (h(offset, 1) - h(offset, -1)) / 8.0;
+            }
+            (right, up)
+        }
+    };
+    mended(-slope_right, -slope_up, 1.0, options, counts)
+}

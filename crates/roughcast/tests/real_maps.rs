@@ -1,0 +1,124 @@
+//! All real maps of the shared data, as moments and as LEAN in 16 bits.
+
+mod common;
+
+use common::compare::{EPS, check_means, check_semidefinite, compare_levels, expect};
+use common::level::{decoded, raw_lean, raw_moments};
+use common::real_files::{self, Entry};
+use common::{baked, float_moments, maps, options, slope_oracle};
+use roughcast::texture::Layout;
+use roughcast::{Bits, Green, Image, Kind, NormalRange, PyramidFilter, Samples, SourceCounts, SourceOptions};
+
+/// How many maps there are at least; fewer means that the manifest was not understood.
+const NORMAL_MAPS: usize = 35;
+const HEIGHT_MAPS: usize = 12;
+
+/// Larger maps are cut to this, so that their levels in f64 take neither much memory nor much time.
+const LARGEST_SIDE: usize = 768;
+
+/// A pyramid of eleven levels costs some roundings of a footprint's rms slope.
+const ROUNDINGS: f64 = 24.0;
+
+/// Decoded moments are rounded to single floats.
+const SEMIDEFINITE: f64 = 4.0;
+
+/// Every law that a real map has to keep.
+fn check(name: &str, image: &Image, source: &SourceOptions) -> SourceCounts {
+    let moments = baked(image, source, &float_moments(PyramidFilter::Box));
+    let lean = baked(image, source, &options(Layout::Lean, Bits::Sixteen));
+    assert_eq!(lean.report.counts, moments.report.counts, "{name}");
+    let wanted = slope_oracle::slopes(image, source);
+    assert_eq!(lean.report.counts, wanted.counts, "{name}");
+    let levels = raw_moments(&moments);
+    // The mean of all squares is the oracle's, on level 0 and so, by what follows, on every level.
+    let squares: f64 = wanted.texels.iter().map(|b| b[0] * b[0] + b[1] * b[1]).sum();
+    let rms = (squares / wanted.texels.len() as f64).sqrt();
+    let rounding = ROUNDINGS * EPS * (rms + 1.0);
+    let top = levels[0].mean(2) + levels[0].mean(3);
+    assert!((top.sqrt() - rms).abs() <= rounding, "{name}: {} instead of {rms}", top.sqrt());
+    expect(check_means(&levels, (rounding, 2.0 * rms * rounding)), &name);
+    // Sixteen bits: half a code, twice that where the range is signed.
+    let sc = f64::from(lean.report.scale);
+    let code = 1.0 / 65535.0;
+    let allowed = (sc * code + 2.0 * EPS * sc, sc * sc * code + 4.0 * EPS * sc * sc);
+    expect(compare_levels(&raw_lean(&lean), &levels, |_| allowed), &name);
+    expect(check_semidefinite(&decoded(&lean.arrays), SEMIDEFINITE), &name);
+    lean.report.counts
+}
+
+fn green_of(entry: &Entry) -> Green {
+    if entry.convention.starts_with("DX") { Green::Down } else { Green::Up }
+}
+
+#[test]
+fn normal_maps() {
+    let entries = real_files::entries("normal");
+    assert!(entries.len() >= NORMAL_MAPS, "only {} normal maps", entries.len());
+    let mut mended = 0;
+    for entry in &entries {
+        let source = SourceOptions { green: green_of(entry), ..Default::default() };
+        let image = real_files::read_part(&entry.path, LARGEST_SIDE);
+        let counts = check(&entry.path, &image, &source);
+        let texels = (image.width() * image.height()) as u64;
+        assert!(counts.total() * 10 < texels, "{}: {counts:?}", entry.path);
+        mended += usize::from(counts.total() > 0);
+    }
+    // A few maps have normals that point into the surface; most have none.
+    assert!(mended > 0 && mended * 5 < entries.len(), "{mended} of {}", entries.len());
+}
+
+#[test]
+fn height_maps() {
+    let entries = real_files::entries("height");
+    assert!(entries.len() >= HEIGHT_MAPS, "only {} height maps", entries.len());
+    for entry in &entries {
+        let image = real_files::read_part(&entry.path, LARGEST_SIDE);
+        let source = SourceOptions { kind: Kind::Height, ..Default::default() };
+        assert_eq!(check(&entry.path, &image, &source), SourceCounts::default());
+    }
+}
+
+/// The manifest's `slope_rms` was measured with z, as stored, raised to at least 0.1: its own way to tame steep
+/// texels. It is the root of the mean of the squared length, with three decimals.
+#[test]
+fn rms_slopes_are_those_of_the_manifest() {
+    const SMALLEST_Z: f32 = 0.1;
+    /// Half of the last decimal, and a little for the way in which it was rounded.
+    const DECIMALS: f64 = 0.0006;
+    let entries = real_files::entries("normal");
+    let mut compared = 0;
+    for entry in &entries {
+        let Some(wanted) = entry.slope_rms else { continue };
+        let image = real_files::read(&entry.path);
+        let component = |i: usize, k| 2.0 * image.samples().get(i * image.channels() + k) - 1.0;
+        let normals = (0..image.width() * image.height())
+            .flat_map(|i| [component(i, 0), component(i, 1), component(i, 2).max(SMALLEST_Z)])
+            .collect();
+        let raised = maps::image(image.width(), image.height(), 3, Samples::F32(normals));
+        let source = SourceOptions { range: NormalRange::Signed, ..Default::default() };
+        let got = baked(&raised, &source, &options(Layout::Clean, Bits::Sixteen)).report.rms_slope;
+        assert!((got - wanted).abs() <= DECIMALS, "{}: {got} instead of {wanted}", entry.path);
+        compared += 1;
+    }
+    assert!(compared >= NORMAL_MAPS, "only {compared} maps have an rms slope");
+}
+
+/// A map and its twin of the other convention are one map.
+#[test]
+fn both_conventions_of_green_give_the_same_textures() {
+    for path in ["materials/cheese/texture_cheese_normal.png", "materials/surfgrad_ocean16/normals.png"] {
+        let up = real_files::read(path);
+        let mut down = up.clone();
+        match down.samples_mut() {
+            Samples::U8(v) => v.iter_mut().skip(1).step_by(3).for_each(|green| *green = 255 - *green),
+            Samples::U16(v) => v.iter_mut().skip(1).step_by(3).for_each(|green| *green = 65535 - *green),
+            other => panic!("{path} has {:?}", other.sample_type()),
+        }
+        assert_eq!(up.channels(), 3);
+        let options = options(Layout::Lean, Bits::Sixteen);
+        let turned = SourceOptions { green: Green::Down, ..Default::default() };
+        let one = baked(&up, &SourceOptions::default(), &options);
+        assert!(one == baked(&down, &turned, &options), "{path}");
+        assert!(one != baked(&up, &turned, &options), "{path}");
+    }
+}

@@ -1,0 +1,324 @@
+//! Scales of unsigned texels: smallest safe, fixed, advised; and the options that are refused.
+
+mod common;
+
+use common::compare::{EPS, Rounding, compare_levels, compare_rounded, expect};
+use common::level::{decoded, eigenvalues, raw_moments};
+use common::maps;
+use common::{baked, baked_with, options, pyramid_oracle, slope_oracle};
+use roughcast::texture::{Base, Layout, RoughnessStored};
+use roughcast::{
+    BakeError, BakeOptions, Baked, BaseRoughness, Bits, Blocks, Image, NormalChannels, PyramidFilter,
+    RoughnessMap, SampleType, Samples, ScaleChoice, SourceError, SourceOptions, bake,
+};
+
+const UNSIGNED: [Bits; 2] = [Bits::Eight, Bits::Sixteen];
+
+/// The scale is a root or a square of a maximum of single floats: a few roundings.
+const ROUNDINGS: f64 = 8.0;
+
+/// Largest magnitude of B's components, of M's diagonal and of Σ's, and larger eigenvalue, over all levels.
+struct Needs {
+    slope: f64,
+    second: f64,
+    variance: f64,
+    eigenvalue: f64,
+}
+
+fn needs(image: &Image, source: &SourceOptions, base: f64) -> Needs {
+    let slopes = slope_oracle::slopes(image, source);
+    let base = vec![base; slopes.texels.len()];
+    let mut needs = Needs { slope: 0.0, second: 0.0, variance: 0.0, eigenvalue: 0.0 };
+    for level in pyramid_oracle::moments(&slopes, &base, PyramidFilter::Box, source.wrap) {
+        for texel in level.texels() {
+            let c = texel.covariance();
+            needs.slope = needs.slope.max(texel.b[0].abs()).max(texel.b[1].abs());
+            needs.second = needs.second.max(texel.m[0]).max(texel.m[1]);
+            needs.variance = needs.variance.max(c[0]).max(c[1]);
+            needs.eigenvalue = needs.eigenvalue.max(eigenvalues(c).0);
+        }
+    }
+    needs
+}
+
+#[track_caller]
+fn close(got: f32, wanted: f64) {
+    assert!((f64::from(got) / wanted - 1.0).abs() <= ROUNDINGS * EPS, "{got} instead of {wanted}");
+}
+
+/// Nothing saturates, and nothing smaller would do.
+#[test]
+fn the_chosen_scale_is_the_smallest_that_holds_every_texel() {
+    let maps = [
+        maps::plain_normal_map(96, 40, 51),
+        maps::plain_normal_map(53, 37, 52),
+        maps::slope_map(8, 8, &maps::slopes(8, 8, 53).map_scale(20.0)),
+    ];
+    for (image, source) in &maps {
+        for (folded, variance) in [(Base::None, 0.0), (Base::Baked, 0.04_f32)] {
+            let needs = needs(image, source, f64::from(variance));
+            for bits in UNSIGNED {
+                let report = |layout| {
+                    let options = BakeOptions { base: folded, ..options(layout, bits) };
+                    baked_with(image, source, Some(BaseRoughness::Variance(variance)), &options).report
+                };
+                // Level 0 has the largest of all, so what the scale needs is what a texel reaches.
+                for layout in [Layout::Lean, Layout::Clean] {
+                    let report = report(layout);
+                    close(report.scale, needs.second.sqrt());
+                    assert_eq!(report.variance_scale, 1.0);
+                }
+                for (layout, scale) in
+                    [(Layout::Variance, needs.variance), (Layout::Schilling, needs.variance.sqrt())]
+                {
+                    let report = report(layout);
+                    close(report.scale, needs.slope);
+                    close(report.variance_scale, scale);
+                }
+                // Its eigenvalue is bounded by the sum of two variances, not known beforehand.
+                let scale = f64::from(report(Layout::SchillingIsotropic).variance_scale);
+                let needed = needs.eigenvalue.sqrt();
+                assert!(
+                    scale >= needed * (1.0 - ROUNDINGS * EPS)
+                        && scale <= needed * 2.0_f64.sqrt() * (1.0 + ROUNDINGS * EPS)
+                );
+            }
+        }
+    }
+}
+
+trait MapScale {
+    fn map_scale(self, factor: f64) -> Self;
+}
+
+impl MapScale for Vec<[f64; 2]> {
+    fn map_scale(self, factor: f64) -> Self {
+        self.into_iter().map(|b| b.map(|v| factor * v)).collect()
+    }
+}
+
+/// A flat map has no need at all, and still decodes as flat.
+#[test]
+fn flat_maps_bake_and_stay_flat() {
+    let values = vec![128_u8; 12 * 7];
+    let heights = maps::image(12, 7, 1, Samples::U8(values));
+    let (_, height_source) = maps::height_map(1, 1, SampleType::U8, 0);
+    for bits in Bits::ALL {
+        for layout in Layout::ALL {
+            if matches!(layout, Layout::Moments | Layout::BumpSlopes) && !bits.sample_type().is_float() {
+                continue;
+            }
+            let baked = baked_with(
+                &heights,
+                &height_source,
+                Some(BaseRoughness::Variance(0.01)),
+                &options(*layout, *bits),
+            );
+            let report = &baked.report;
+            assert!(report.scale > 0.0 && report.variance_scale > 0.0 && report.advice.is_none());
+            assert_eq!(report.steepest, 0.0);
+            for level in decoded(&baked.arrays) {
+                for texel in level.texels() {
+                    let c = texel.covariance();
+                    // A material's roughness holds the base; everything else is flat.
+                    let wanted = if *layout == Layout::Pbr { 0.01 } else { 0.0 };
+                    let slope = f64::from(report.bounds.slope);
+                    let variance = f64::from(report.bounds.variance) + 4.0 * EPS;
+                    assert!(texel.b.iter().all(|b| b.abs() <= slope), "{layout} {bits} {texel:?}");
+                    assert!((c[0] - wanted).abs() <= variance, "{layout} {bits} {texel:?}");
+                    assert!((c[1] - wanted).abs() <= variance, "{layout} {bits} {texel:?}");
+                }
+            }
+        }
+    }
+}
+
+/// A fixed scale limits slopes before they are averaged, and says how many.
+#[test]
+fn a_fixed_scale_clamps_slopes_and_counts_them() {
+    let (image, source) = maps::slope_map(53, 37, &maps::slopes(53, 37, 54));
+    let powers: Vec<f32> = (0..53 * 37).map(|i| if i == 700 { 10.0 } else { 400.0 }).collect();
+    let powers = maps::image(53, 37, 1, Samples::F32(powers));
+    let map = RoughnessMap { image: &powers, channel: 0, stored: RoughnessStored::SpecularPower };
+    let map_variances: Vec<f64> =
+        (0..53 * 37).map(|i| if i == 700 { f64::from(0.1_f32) } else { f64::from(0.0025_f32) }).collect();
+    let scale = 0.5_f32;
+    for layout in
+        [Layout::Lean, Layout::Clean, Layout::Schilling, Layout::Variance, Layout::SchillingIsotropic]
+    {
+        let holds_squares = matches!(layout, Layout::Lean | Layout::Clean);
+        for (base, largest, variances) in [
+            (None, 0.0, vec![0.0; 53 * 37]),
+            (Some(BaseRoughness::Variance(0.09)), f64::from(0.09_f32), vec![f64::from(0.09_f32); 53 * 37]),
+            (Some(BaseRoughness::Map(map)), f64::from(0.1_f32), map_variances.clone()),
+        ] {
+            // The base takes its part of the range of the second moments.
+            let room =
+                if holds_squares { f64::from(scale).powi(2) - largest } else { f64::from(scale).powi(2) };
+            let limited = SourceOptions { max_slope: room.sqrt() as f32, ..source };
+            let slopes = slope_oracle::slopes(&image, &limited);
+            assert!(slopes.counts.clamped > 100);
+            let wanted = pyramid_oracle::moments(&slopes, &variances, PyramidFilter::Box, source.wrap);
+            let folded = if base.is_some() { Base::Baked } else { Base::None };
+            let options = BakeOptions {
+                scale: ScaleChoice::Fixed(scale),
+                base: folded,
+                ..options(layout, Bits::Sixteen)
+            };
+            let got = baked_with(&image, &source, base, &options);
+            assert_eq!(got.report.scale, scale);
+            assert_eq!(got.report.counts, slopes.counts, "{layout}, base up to {largest}");
+            let bound = f64::from(got.report.bounds.slope) + ROUNDINGS * EPS;
+            let levels = decoded(&got.arrays);
+            // Second moments are compared for the layout that gives all of them.
+            let second = |texel: common::level::Texel| match layout {
+                Layout::Lean => f64::from(got.report.bounds.eigenvalue) + 2.0 * texel.rms() * bound,
+                _ => f64::INFINITY,
+            };
+            expect(compare_levels(&levels, &wanted, |t| (bound, second(t))).map(|_| ()), &(layout, largest));
+        }
+    }
+}
+
+/// A gentle map with so many steep texels, in parts of a thousand.
+fn with_steep_texels(thousandths: f64, direction: [f64; 2]) -> (Image, SourceOptions) {
+    let (width, height) = (128, 128);
+    let mut slopes = maps::slopes(width, height, 55).map_scale(0.1);
+    let count = (thousandths * 1e-3 * slopes.len() as f64) as usize;
+    for i in 0..count {
+        slopes[i * 97] = direction;
+    }
+    maps::slope_map(width, height, &slopes)
+}
+
+#[test]
+fn advice_is_given_where_few_steep_texels_cost_much_and_keeps_its_promise() {
+    /// How near the promise is kept; the quantile itself is known to 1.5 %, its square to 3 %.
+    const WITHIN: f32 = 0.1;
+    for layout in [Layout::Lean, Layout::Clean] {
+        for bits in UNSIGNED {
+            let (image, source) = with_steep_texels(0.5, [9.0, 0.0]);
+            let before = baked(&image, &source, &options(layout, bits)).report;
+            let advice = before.advice.unwrap_or_else(|| panic!("{layout} {bits}: no advice"));
+            assert!(advice.factor > 4.0 && advice.max_slope < 0.2, "{advice:?}");
+            let followed = SourceOptions { max_slope: advice.max_slope, ..source };
+            let after = baked(&image, &followed, &options(layout, bits)).report;
+            let factor = after.bounds.usable_specular_power() / before.bounds.usable_specular_power();
+            assert!(
+                (factor / advice.factor - 1.0).abs() < WITHIN,
+                "{layout} {bits}: {factor} for {advice:?}"
+            );
+            // No more texels are cut than it speaks of.
+            assert!(after.counts.clamped <= after.texels / 1000 + 1, "{:?}", after.counts);
+        }
+    }
+}
+
+#[test]
+fn no_advice_is_given_where_it_would_not_help() {
+    let advised = |thousandths, direction, bits, scale| {
+        let (image, source) = with_steep_texels(thousandths, direction);
+        let options = BakeOptions { scale, ..options(Layout::Lean, bits) };
+        baked(&image, &source, &options).report.advice.is_some()
+    };
+    let steep = [9.0, 0.0];
+    assert!(advised(0.5, steep, Bits::Sixteen, ScaleChoice::Auto));
+    assert!(!advised(0.0, steep, Bits::Sixteen, ScaleChoice::Auto), "no steep texels");
+    assert!(!advised(5.0, steep, Bits::Sixteen, ScaleChoice::Auto), "too many to be cut");
+    assert!(!advised(0.5, [0.2, 0.0], Bits::Sixteen, ScaleChoice::Auto), "not steep enough to cost much");
+    assert!(!advised(0.5, steep, Bits::Half, ScaleChoice::Auto), "floats need no scale");
+    assert!(!advised(0.5, steep, Bits::Sixteen, ScaleChoice::Fixed(10.0)), "the scale was chosen by hand");
+}
+
+/// Everything that is refused, with a word of its error.
+#[test]
+fn combinations_that_make_no_sense_are_refused() {
+    let (image, source) = maps::plain_normal_map(8, 6, 56);
+    let other_size = maps::image(8, 5, 1, Samples::U8(vec![9; 40]));
+    let two_channels = maps::image(8, 6, 2, Samples::U8(vec![9; 96]));
+    let three_channels = maps::image(8, 6, 3, Samples::U8(vec![9; 144]));
+    let map = |image, channel| {
+        Some(BaseRoughness::Map(RoughnessMap { image, channel, stored: RoughnessStored::Alpha }))
+    };
+    let base = Some(BaseRoughness::Variance(0.01));
+    let with = |layout, bits| options(layout, bits);
+    let plain = BakeOptions::default();
+    let fixed = |scale| BakeOptions { scale: ScaleChoice::Fixed(scale), ..plain };
+    let blocks = |layout, bits| BakeOptions { blocks: Blocks::Bc, ..with(layout, bits) };
+    let folded = BakeOptions { base: Base::Baked, ..plain };
+    let power =
+        BakeOptions { roughness_stored: RoughnessStored::SpecularPower, ..with(Layout::Pbr, Bits::Eight) };
+    let steep = SourceOptions { max_slope: 300.0, ..source };
+    type Case<'a> = (&'a str, &'a Image, SourceOptions, Option<BaseRoughness<'a>>, BakeOptions);
+    let cases: Vec<Case<'_>> = vec![
+        ("holds floats", &image, source, None, with(Layout::Moments, Bits::Sixteen)),
+        ("holds floats", &image, source, None, with(Layout::BumpSlopes, Bits::Eight)),
+        ("needs a roughness", &image, source, None, folded),
+        ("gloss factor", &image, source, None, with(Layout::Toksvig, Bits::Eight)),
+        ("specular powers", &image, source, None, power),
+        ("leave --scale out", &image, source, None, BakeOptions { bits: Bits::Float, ..fixed(1.0) }),
+        ("above zero", &image, source, None, fixed(0.0)),
+        ("above zero", &image, source, None, fixed(-1.0)),
+        ("above zero", &image, source, None, fixed(f32::NAN)),
+        ("above zero", &image, source, None, fixed(f32::INFINITY)),
+        ("8 bits", &image, source, None, blocks(Layout::Variance, Bits::Sixteen)),
+        ("cannot be block-compressed", &image, source, None, blocks(Layout::Lean, Bits::Eight)),
+        ("cannot be block-compressed", &image, source, None, blocks(Layout::Clean, Bits::Eight)),
+        ("cannot be block-compressed", &image, source, None, blocks(Layout::Schilling, Bits::Eight)),
+        ("half float", &image, steep, None, with(Layout::Lean, Bits::Half)),
+        ("half float", &image, steep, None, with(Layout::Moments, Bits::Half)),
+        ("raise --scale", &image, source, base, BakeOptions { base: Base::Baked, ..fixed(0.09) }),
+        (
+            "raise --scale",
+            &image,
+            source,
+            map(&three_channels, 1),
+            BakeOptions { base: Base::Baked, ..fixed(0.02) },
+        ),
+        ("finite and not negative", &image, source, Some(BaseRoughness::Variance(-1.0)), plain),
+        ("finite and not negative", &image, source, Some(BaseRoughness::Variance(f32::NAN)), plain),
+        ("resize", &image, source, map(&other_size, 0), plain),
+        ("4 channels or more", &image, source, map(&three_channels, 3), plain),
+        ("3 channels or more", &two_channels, source, None, plain),
+        (
+            "4 channels or more",
+            &three_channels,
+            SourceOptions { normal_channels: NormalChannels::Ag, ..source },
+            None,
+            plain,
+        ),
+        ("largest slope", &image, SourceOptions { max_slope: 0.0, ..source }, None, plain),
+        ("largest slope", &image, SourceOptions { max_slope: f32::INFINITY, ..source }, None, plain),
+        ("height scale", &image, SourceOptions { height_scale: f32::NAN, ..source }, None, plain),
+    ];
+    for (word, image, source, base, options) in cases {
+        let error = bake(image, &source, base, &options).expect_err(word).to_string();
+        assert!(error.contains(word) && !error.contains('\n'), "'{error}' does not say '{word}'");
+    }
+    let error = bake(&two_channels, &source, None, &plain).expect_err("two channels");
+    let channels = SourceError::Channels { wanted: "normal map", needed: 3, got: 2 };
+    assert_eq!(error, BakeError::Source(channels));
+}
+
+/// The names of filters that would break covariances are known, with the reason.
+#[test]
+fn filters_with_lobes_below_zero_are_refused_by_name() {
+    for name in ["lanczos3", "catmull-rom", "mitchell"] {
+        assert!(roughcast::refuse_filter(name).expect(name).contains("below zero"));
+    }
+    for name in ["box", "triangle", "gaussian", "no such filter"] {
+        assert_eq!(roughcast::refuse_filter(name), None);
+    }
+}
+
+/// What is limited by a half float's range is what the source's own limit says.
+#[test]
+fn halves_hold_the_largest_slope_that_they_allow() {
+    let (image, source) = maps::slope_map(2, 2, &[[255.0, 0.0], [0.0, 255.0], [-255.0, 0.0], [0.0, -300.0]]);
+    let source = SourceOptions { max_slope: 255.0, ..source };
+    let half: Baked = baked(&image, &source, &options(Layout::Moments, Bits::Half));
+    let float = baked(&image, &source, &options(Layout::Moments, Bits::Float));
+    assert_eq!(half.report.counts.clamped, 1);
+    let rounding = Rounding { count: 0.0005 / EPS, floor: 0.0 }; // eleven bits
+    expect(compare_rounded(&raw_moments(&half), &raw_moments(&float), rounding).map(|_| ()), &"half");
+}
