@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use roughcast::texture::{Layout, Part, TextureArray};
+use roughcast::texture::{Part, TextureArray};
 use roughcast_io::{Limits, ReadError, dds, exr, ktx2};
 
 use crate::output::{Container, part_path};
@@ -40,13 +40,10 @@ pub fn with_other_parts(path: &Path, first: TextureArray, limits: &Limits) -> Re
     if matches!(part, Part::Whole | Part::Split) {
         return Ok(arrays);
     }
-    let others: &[Part] = match layout {
-        Layout::Toksvig => &[Part::Normal, Part::Gloss],
-        _ => &[Part::Normal, Part::Roughness, Part::OcclusionRoughnessMetallic, Part::Anisotropy],
-    };
     let whole = whole_path(path, part);
     let container = Container::of(path)?;
-    for other in others.iter().filter(|other| **other != part) {
+    let has_a_name = |other: Part| !matches!(other, Part::Whole | Part::Split);
+    for other in layout.parts().iter().filter(|other| **other != part && has_a_name(**other)) {
         let beside = part_path(&whole, *other, container);
         if beside.exists() {
             arrays.push(read(&beside, limits)?);

@@ -67,7 +67,8 @@ impl Covariance {
     /// The nearest by rule: a variance below zero becomes zero, `|xy|` is cut to `sqrt(xx yy)`.
     pub fn positive_semidefinite(self) -> Self {
         let (xx, yy) = (self.xx.max(0.0), self.yy.max(0.0));
-        let mut limit = (f64::from(xx) * f64::from(yy)).sqrt() as f32;
+        // NaN stands for infinity times zero: nothing may be mixed along an axis without variance.
+        let mut limit = (f64::from(xx) * f64::from(yy)).sqrt().max(0.0) as f32;
         // The root may have been rounded up, and then the determinant would be below zero after all.
         if f64::from(limit) * f64::from(limit) > f64::from(xx) * f64::from(yy) {
             limit = limit.next_down().max(0.0);
@@ -112,6 +113,18 @@ mod tests {
         assert_eq!(cut, Covariance { xx: 4.0, yy: 1.0, xy: -2.0 });
         let zero = Covariance { xx: -1e-6, yy: 1.0, xy: 0.1 }.positive_semidefinite();
         assert_eq!(zero, Covariance { xx: 0.0, yy: 1.0, xy: 0.0 });
+    }
+
+    #[test]
+    fn numbers_that_are_none_are_mended_without_a_panic() {
+        let odd = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, -1.0, f32::MAX];
+        for (xx, yy, xy) in odd.iter().flat_map(|x| odd.iter().flat_map(move |y| odd.map(|xy| (*x, *y, xy))))
+        {
+            let mended = Covariance { xx, yy, xy }.positive_semidefinite();
+            assert!(mended.xx >= 0.0 && mended.yy >= 0.0, "{mended:?}");
+        }
+        let endless = Covariance { xx: f32::INFINITY, yy: 0.0, xy: 1.0 }.positive_semidefinite();
+        assert_eq!(endless, Covariance { xx: f32::INFINITY, yy: 0.0, xy: 0.0 });
     }
 
     #[test]

@@ -10,6 +10,7 @@ mod jpeg;
 mod memory;
 mod png;
 mod tiff;
+mod tiff_entries;
 
 use std::path::Path;
 

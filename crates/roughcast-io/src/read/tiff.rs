@@ -8,6 +8,7 @@ use tiff::tags::{CompressionMethod, PhotometricInterpretation, SampleFormat, Tag
 use tiff::{ColorType, TiffError, TiffUnsupportedError};
 
 use super::memory::{check_size, malformed, unsupported, zeros};
+use super::tiff_entries;
 use crate::{Decoded, FileInfo, Limits, ReadError, ValueRange};
 
 const FORMAT: &str = "TIFF";
@@ -18,6 +19,7 @@ const SAVE_PLAIN: &str = "save it as grey or RGB of 8 or 16 bits or of floats";
 /// Unsigned integers of 1, 2, 4, 8 and 16 bits, half floats, floats and doubles are read. Signed and 32-bit integers are
 /// refused: TIFF does not say whether they stand for -1 ..= 1, for metres or for names of objects.
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
+    tiff_entries::check(bytes)?;
     let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(fault)?;
     let (width, height) = decoder.dimensions().map_err(fault)?;
     let (width, height) = check_size(FORMAT, width.into(), height.into(), limits)?;

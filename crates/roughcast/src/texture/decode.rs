@@ -102,6 +102,9 @@ impl<'a> Parts<'a> {
             if array.info.layout != layout {
                 return fault(format!("one file holds '{}'", array.info.layout));
             }
+            if !layout.parts().contains(&array.info.part) {
+                return fault(format!("it has no part '{}'", array.info.part));
+            }
             if array.size() != self.main.size() || array.level_count() != self.main.level_count() {
                 return fault("the files differ in size or in number of levels".to_owned());
             }

@@ -50,6 +50,25 @@ named_enum! {
     }
 }
 
+impl Layout {
+    /// The parts that files of this layout can be.
+    pub const fn parts(self) -> &'static [Part] {
+        match self {
+            Layout::Pbr => {
+                &[Part::Normal, Part::Roughness, Part::OcclusionRoughnessMetallic, Part::Anisotropy]
+            }
+            Layout::Toksvig => &[Part::Whole, Part::Normal, Part::Gloss],
+            Layout::Variance => &[Part::Whole, Part::Split],
+            Layout::Lean
+            | Layout::Clean
+            | Layout::Schilling
+            | Layout::SchillingIsotropic
+            | Layout::BumpSlopes
+            | Layout::Moments => &[Part::Whole],
+        }
+    }
+}
+
 named_enum! {
     /// Whether the base roughness of the material is in the second moments already.
     pub enum Base: "base" {
@@ -240,8 +259,12 @@ impl TextureInfo {
         .checked()
     }
 
-    /// Scales come from files, and a scale of zero or NaN would decode into nonsense without a word.
+    /// All this comes from files: a scale of zero or NaN would decode into nonsense without a word, and a part that the
+    /// layout does not have would promise other channels than its decoder needs.
     fn checked(self) -> Result<Self, InfoError> {
+        if !self.layout.parts().contains(&self.part) {
+            return Err(InfoError::Invalid { key: PART, value: self.part.to_string() });
+        }
         for (key, value) in [(SCALE, self.scale), (VARIANCE_SCALE, self.variance_scale)] {
             if !(value.is_finite() && value > 0.0) {
                 return Err(InfoError::Invalid { key, value: value.to_string() });
@@ -292,6 +315,19 @@ mod tests {
             assert!(TextureInfo::from_pairs(&info.to_pairs()).is_err(), "{scale}");
             assert!(TextureInfo::from_words(&info.to_words()).is_err(), "{scale}");
         }
+    }
+
+    #[test]
+    fn a_part_of_another_layout_is_refused() {
+        let info = TextureInfo::new(Layout::Lean, Part::Gloss);
+        assert!(matches!(
+            TextureInfo::from_pairs(&info.to_pairs()),
+            Err(InfoError::Invalid { key: PART, .. })
+        ));
+        assert!(matches!(
+            TextureInfo::from_words(&info.to_words()),
+            Err(InfoError::Invalid { key: PART, .. })
+        ));
     }
 
     #[test]
