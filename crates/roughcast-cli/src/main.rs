@@ -43,11 +43,7 @@ enum Command {
 fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
-        Err(error) => {
-            // clap's own rule: help and version are no errors and go to stdout.
-            let _ = error.print();
-            return ExitCode::from(error.exit_code() as u8);
-        }
+        Err(error) => return explain(&error),
     };
     let result = match cli.command {
         Command::Bake(args) => bake::run(&args),
@@ -63,6 +59,24 @@ fn main() -> ExitCode {
             ExitCode::from(if usage { 2 } else { 1 })
         }
     }
+}
+
+/// Says what is wrong with the command line, in one line, or shows the help that was asked for.
+fn explain(error: &clap::Error) -> ExitCode {
+    let asked_for_help = !error.use_stderr()
+        || error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
+    if asked_for_help {
+        let _ = error.print();
+    } else {
+        // clap adds a usage and a pointer to --help, each after an empty line, which scripts' logs can do without.
+        let text = error.render().to_string();
+        let said = text
+            .split("\n\n")
+            .filter(|part| !part.starts_with("Usage:") && !part.starts_with("For more information"));
+        let words = said.flat_map(str::split_whitespace).collect::<Vec<_>>();
+        complain(&format!("{} (see --help)", words.join(" ")));
+    }
+    ExitCode::from(error.exit_code() as u8)
 }
 
 /// A command line that makes no sense, whatever the files hold.

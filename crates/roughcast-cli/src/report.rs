@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use anyhow::Result;
 use roughcast::texture::{TextureArray, decode};
-use roughcast::{BakeOptions, BakeReport, Kind, Moments, SourceOptions};
+use roughcast::{BakeOptions, BakeReport, Bits, Kind, Moments, SourceOptions};
 use roughcast_io::FileInfo;
 use serde_json::{Value, json};
 
@@ -79,7 +79,7 @@ impl FileReport {
         let mut lines = vec![
             format!("{} -> {shown}", self.input.display()),
             format!(
-                "  {} map, {}x{} ({} {}), {} levels of '{}', {} bits",
+                "  {} map, {}x{} ({} {}), {} levels of '{}', {}",
                 self.source.kind,
                 self.info.width,
                 self.info.height,
@@ -87,7 +87,7 @@ impl FileReport {
                 self.info.format,
                 report.levels.len(),
                 self.options.layout,
-                self.options.bits,
+                texels_in_words(self.options.bits),
             ),
             format!(
                 "  slopes: rms {:.4}, steepest {:.3}; scale {}; specular power up to {:.0} ({:.0} in any direction)",
@@ -181,5 +181,14 @@ impl FileReport {
             "warnings": self.warnings,
             "seconds": times,
         })
+    }
+}
+
+fn texels_in_words(bits: Bits) -> &'static str {
+    match bits {
+        Bits::Eight => "8 bits",
+        Bits::Sixteen => "16 bits",
+        Bits::Half => "half floats",
+        Bits::Float => "floats",
     }
 }
