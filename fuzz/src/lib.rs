@@ -114,8 +114,8 @@ fn words_of(info: &TextureInfo) -> [u32; 11] {
 /// From any file of ours to moments: whatever the texels are, the covariance is one.
 pub fn decode(data: &[u8]) {
     let read = [
-        roughcast_io::ktx2::read_textures(data, LIMITS),
-        roughcast_io::dds::read_textures(data, LIMITS),
+        roughcast_io::ktx2::read_textures(data, &LIMITS),
+        roughcast_io::dds::read_textures(data, &LIMITS),
         roughcast_io::exr::read_textures(data, &LIMITS),
     ];
     for textures in read.into_iter().flatten() {

@@ -28,14 +28,11 @@ enum Expected {
 
 fn table() -> BTreeMap<&'static str, Expected> {
     let lines = include_str!("every_input.tsv").lines().filter(|line| !line.starts_with('#'));
-    let row = |line: &'static str| {
-        let expected = match line.split('\t').collect::<Vec<_>>()[..] {
-            [path, kind @ ("normal" | "height")] => (path, Expected::Kind(kind)),
-            [path, "doubtful"] => (path, Expected::Doubtful),
-            [path, "refused", words] => (path, Expected::Refused(words)),
-            _ => panic!("no row of the table: {line}"),
-        };
-        expected
+    let row = |line: &'static str| match line.split('\t').collect::<Vec<_>>()[..] {
+        [path, kind @ ("normal" | "height")] => (path, Expected::Kind(kind)),
+        [path, "doubtful"] => (path, Expected::Doubtful),
+        [path, "refused", words] => (path, Expected::Refused(words)),
+        _ => panic!("no row of the table: {line}"),
     };
     lines.map(row).collect()
 }

@@ -153,7 +153,7 @@ mod exr_file {
         let layer = file.layer_data;
         let planes: Vec<Vec<f32>> = (names.iter())
             .map(|name| {
-                let channel = layer.channel_data.list.iter().find(|channel| channel.name.eq(*name));
+                let channel = layer.channel_data.list.iter().find(|channel| channel.name.eq(name));
                 channel.expect("the file has the six channels").sample_data.values_as_f32().collect()
             })
             .collect();

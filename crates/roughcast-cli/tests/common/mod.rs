@@ -151,8 +151,8 @@ pub fn textures(path: &Path) -> TextureArray {
     let bytes = std::fs::read(path).unwrap_or_else(|fault| panic!("{}: {fault}", path.display()));
     let limits = Limits::default();
     let read = match path.extension().and_then(OsStr::to_str) {
-        Some("ktx2") => ktx2::read_textures(&bytes, limits),
-        Some("dds") => dds::read_textures(&bytes, limits),
+        Some("ktx2") => ktx2::read_textures(&bytes, &limits),
+        Some("dds") => dds::read_textures(&bytes, &limits),
         Some("exr") => exr::read_textures(&bytes, &limits),
         other => panic!("no reader for {other:?}"),
     };
