@@ -185,22 +185,7 @@ pub fn bake_file(input: &Path, output: &Path, args: &Args, stages: &mut Stages) 
     output::check_destination(output, container, args.first_part())?;
     stages.begin("reading");
     let mut map = read_map(input, &args.source)?;
-    let roughness = match args.roughness.load(&args.source.limits())? {
-        None if args.layout == Layout::Toksvig => {
-            map.warnings.push(format!(
-                "the gloss factor is for a specular power of {TOKSVIG_POWER}: say --specular-power for another"
-            ));
-            Some(Roughness::Variance(1.0 / TOKSVIG_POWER))
-        }
-        None if args.layout == Layout::Pbr => {
-            map.warnings.push(
-                "the material's own roughness is taken as 0, a mirror: say --roughness or --specular-power"
-                    .to_owned(),
-            );
-            None
-        }
-        roughness => roughness,
-    };
+    let roughness = roughness_of(args, &mut map.warnings)?;
     let options = args.options(container, roughness.as_ref());
     stages.begin("baking");
     let baked = bake(&map.image, &map.options, roughness.as_ref().map(Roughness::base), &options)
@@ -239,6 +224,31 @@ pub fn bake_file(input: &Path, output: &Path, args: &Args, stages: &mut Stages) 
     })
 }
 
+/// The material's roughness, with a warning where the layout needs one and nobody named it.
+fn roughness_of(args: &Args, warnings: &mut Vec<String>) -> Result<Option<Roughness>> {
+    let named = args.roughness.load(&args.source.limits())?;
+    if named.is_some() {
+        return Ok(named);
+    }
+    match args.layout {
+        Layout::Toksvig => {
+            warnings.push(format!(
+                "the gloss factor is for a specular power of {TOKSVIG_POWER}: say --specular-power for another"
+            ));
+            Ok(Some(Roughness::Variance(1.0 / TOKSVIG_POWER)))
+        }
+        Layout::Pbr => {
+            warnings.push(
+                "the material's own roughness is taken as 0, a mirror: say --roughness or --specular-power"
+                    .to_owned(),
+            );
+            Ok(None)
+        }
+        _ => Ok(None),
+    }
+}
+
+/// Options that contradict each other are a fault of the command line, not of the map.
 pub fn usage_where_options(error: BakeError) -> anyhow::Error {
     match error {
         BakeError::Options(line) => UsageError(line).into(),
