@@ -14,7 +14,7 @@ ALLOWED = {
     "roughcast-io": {"roughcast"},
     "roughcast-scene": {"roughcast"},
     "roughcast-gpu": {"roughcast", "roughcast-scene"},
-    "roughcast-cli": {"roughcast", "roughcast-io", "roughcast-gpu"},
+    "roughcast-cli": {"roughcast", "roughcast-io", "roughcast-scene", "roughcast-gpu"},
     "roughcast-py": {"roughcast"},
     "roughcast-fuzz": {"roughcast", "roughcast-io"},
 }

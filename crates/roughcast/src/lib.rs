@@ -9,12 +9,13 @@
 //!
 //! - [`bake`]: a map in memory to a layout's textures, every level of them ([`texture::Layout`] lists the layouts);
 //! - [`texture::decode`]: from any layout back to moments, and [`texture::bounds`]: how far off these can be;
+//! - [`shading`]: models that shade with these textures, each with a WGSL twin for GPUs;
 //! - [`precision`]: which storage type carries which shininess;
 //! - [`detect`]: whether an image holds normals or heights, in which channels, with green up or down.
 //!
 //! # What is out of scope
 //!
-//! Files (see `roughcast-io`), block compression (there, too), the GPU, shading, colour textures, and normal maps in object
+//! Files (see `roughcast-io`), block compression (there, too), the GPU, colour textures, and normal maps in object
 //! space: slopes are those of the tangent plane.
 //!
 //! # Conventions
@@ -69,6 +70,7 @@ mod options;
 pub mod precision;
 mod pyramid;
 mod row;
+pub mod shading;
 mod slope;
 mod source;
 mod survey;

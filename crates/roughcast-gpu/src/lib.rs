@@ -1,0 +1,1 @@
+//! roughcast on the GPU.

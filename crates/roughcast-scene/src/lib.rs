@@ -1,0 +1,19 @@
+//! Cameras, meshes and lights; the CPU reference renderer, which is the supersampled truth of every comparison; and the
+//! measures by which pictures are compared.
+//!
+//! # Conventions
+//!
+//! - World space is right-handed, y up; lengths have no unit. Geometry is computed in f64.
+//! - Texture coordinates are glTF's: (0, 0) is the top left corner of the image, v grows downwards. The tangent frame is
+//!   x right (growing u), y up (falling v), z out of the surface.
+//! - Colours are linear radiance.
+
+#![forbid(unsafe_code)]
+
+mod camera;
+mod hit;
+mod light;
+
+pub use camera::Camera;
+pub use hit::{Footprint, Frame, Hit, Ray};
+pub use light::Light;

@@ -1,0 +1,119 @@
+//! Shading models: what a filtered surface reflects. One model a file, each with a WGSL twin of the same name beside it.
+//!
+//! Every model has two steps, with the same names in Rust and in WGSL:
+//!
+//! 1. `<model>_surface`: filtered texels of the model's layout become a surface, once a pixel;
+//! 2. `<model>_lobe`: the lobe for a direction to the viewer and one to the light, once a light.
+//!
+//! All directions are unit vectors in the tangent frame of the *surface* (x right, y up, z the surface normal), and `h` is
+//! the half vector. A lobe of slope density `p` has two forms ([`Form`]).
+
+use crate::named::named_enum;
+use crate::texture::{Layout, Part};
+
+named_enum! {
+    /// A shading model.
+    pub enum Shading: "shading model" {
+        /// Phong: the reflected ray, about the filtered bump normal.
+        Phong = "phong",
+        /// Blinn-Phong on the filtered bump normal: the ordinary way, the thing that fails.
+        BlinnPhong = "blinn-phong",
+        /// Beckmann (Ward) in the frame of the filtered bump normal.
+        Beckmann = "beckmann",
+        /// Off-centre Beckmann in the surface frame, of the filtered bump's slope (LEAN Eq. 1 without filtered moments).
+        OffCentre = "off-centre",
+        /// LEAN mapping, from filtered moments.
+        Lean = "lean",
+        /// CLEAN mapping, from the filtered trace of the moments.
+        Clean = "clean",
+        /// Toksvig: Blinn-Phong with the exponent that the averaged normal's length leaves.
+        Toksvig = "toksvig",
+        /// Off-centre Beckmann with a stored variance.
+        Variance = "variance",
+        /// GGX with the baked roughness of `pbr`, isotropic or anisotropic.
+        Ggx = "ggx",
+    }
+}
+
+named_enum! {
+    /// The form of a lobe, given its density `p` over slopes.
+    pub enum Form: "form" {
+        /// The LEAN text's: `2 pi p`, without the factor `1 / h.z^4`. Blinn-Phong is `s cos^s`.
+        Paper = "paper",
+        /// A microfacet distribution, `D = p / h.z^4`: it integrates to 1 over the projected solid angle of its own axis.
+        /// Blinn-Phong is `(s + 2) / (2 pi) cos^s`.
+        Normalised = "normalised",
+    }
+}
+
+named_enum! {
+    /// What the base roughness of a facet looks like in the plane of the surface, for lobes in the surface frame.
+    pub enum BaseLobe: "base lobe" {
+        /// Round, with variance `1 / s` whatever the facet's slope: LEAN's approximation.
+        Plane = "plane",
+        /// The true lobe of a facet of slope B, seen there: variance `(1 + B^2)^2 / s` along B, `(1 + B^2) / s` across.
+        Facet = "facet",
+    }
+}
+
+named_enum! {
+    /// What becomes of a covariance that rounding has made impossible.
+    pub enum Repair: "repair" {
+        /// Made positive semidefinite: negative variances become zero, the mixed term is cut.
+        Clamp = "clamp",
+        /// The texts' rules: no highlight where the determinant is not positive (LEAN Figure 16), no covariance (CLEAN).
+        Published = "published",
+    }
+}
+
+/// How lobes are evaluated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LobeOptions {
+    /// Blinn-Phong exponent `s` of the base roughness; its slope variance is `1 / s`.
+    pub specular_power: f32,
+    /// The form of the lobe.
+    pub form: Form,
+    /// The base roughness in the plane of the surface.
+    pub base: BaseLobe,
+    /// What becomes of impossible covariances.
+    pub repair: Repair,
+}
+
+impl Default for LobeOptions {
+    fn default() -> Self {
+        Self { specular_power: 256.0, form: Form::Paper, base: BaseLobe::Plane, repair: Repair::Clamp }
+    }
+}
+
+/// A texture that a model samples: which file of the layout, and which of its layers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Input {
+    /// The file.
+    pub part: Part,
+    /// The layer's name.
+    pub layer: &'static str,
+}
+
+impl Shading {
+    /// The layout whose textures the model samples.
+    pub const fn layout(self) -> Layout {
+        match self {
+            Self::Phong | Self::BlinnPhong | Self::Beckmann | Self::OffCentre | Self::Lean => Layout::Lean,
+            Self::Clean => Layout::Clean,
+            Self::Toksvig => Layout::Toksvig,
+            Self::Variance => Layout::Variance,
+            Self::Ggx => Layout::Pbr,
+        }
+    }
+
+    /// The model's base lobe: what it would be were every bump resolved. A method is compared with the truth of that lobe.
+    pub const fn base_lobe(self) -> Self {
+        match self {
+            Self::Phong => Self::Phong,
+            Self::BlinnPhong | Self::Toksvig => Self::BlinnPhong,
+            Self::Beckmann => Self::Beckmann,
+            Self::OffCentre | Self::Lean | Self::Clean | Self::Variance => Self::OffCentre,
+            Self::Ggx => Self::Ggx,
+        }
+    }
+}
