@@ -13,6 +13,7 @@
 mod camera;
 mod hit;
 mod light;
+pub mod pattern;
 
 pub use camera::Camera;
 pub use hit::{Footprint, Frame, Hit, Ray};
