@@ -11,9 +11,12 @@
 #![forbid(unsafe_code)]
 
 mod camera;
+mod footprint;
 mod hit;
 mod light;
+mod shape;
 
-pub use camera::Camera;
+pub use camera::{Camera, CameraError, View};
 pub use hit::{Footprint, Frame, Hit, Ray};
 pub use light::Light;
+pub use shape::{Bounds, MAX_DETAIL, Plane, Shape, ShapeError, Sphere, Torus, TriangleMesh};
