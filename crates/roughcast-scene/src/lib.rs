@@ -11,10 +11,13 @@
 #![forbid(unsafe_code)]
 
 mod camera;
+mod footprint;
 mod hit;
 mod light;
 pub mod pattern;
+mod shape;
 
-pub use camera::Camera;
+pub use camera::{Camera, CameraError, PixelRays};
 pub use hit::{Footprint, Frame, Hit, Ray};
 pub use light::Light;
+pub use shape::{Bounds, MAX_DETAIL, Plane, Shape, ShapeError, Sphere, Torus, TriangleMesh};
