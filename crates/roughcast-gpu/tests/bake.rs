@@ -22,6 +22,15 @@ const ALLOWED_STEPS: u32 = 1;
 const SCALE_ROUNDING: f32 = 4.0 * f32::EPSILON;
 
 const SIZES: [(usize, usize); 7] = [(1, 1), (1, 7), (64, 64), (256, 128), (100, 60), (127, 33), (513, 511)];
+/// Maps of 8 and 16 bits and floats, steep and fine.
+const REAL_MAPS: &[(&str, Kind)] = &[
+    ("materials/aluminium_brushed/aluminium_normal.png", Kind::Normal),
+    ("materials/bricks_godot/texture_bricks_normal.jpg", Kind::Normal),
+    ("materials/pmndrs_normals/0004.webp", Kind::Normal),
+    ("heights/canyon_height.jpg", Kind::Height),
+    ("heights/surfgrad_Dump_u16.tif", Kind::Height),
+    ("heights/t3d_stones.exr", Kind::Height),
+];
 const FORMATS: [Bits; 3] = [Bits::Half, Bits::Sixteen, Bits::Eight];
 const LAYOUTS: [Layout; 2] = [Layout::Lean, Layout::Clean];
 
@@ -98,13 +107,9 @@ const PATHS: [BakePath; 2] = [BakePath::Compute, BakePath::Raster];
 fn every_size_of_normals_is_the_cpus_bake() {
     let gpu = gpu();
     for (width, height) in SIZES {
-        for (sample_type, bits) in [(SampleType::U8, Bits::Half), (SampleType::U16, Bits::Sixteen)] {
-            let image = normals(width, height, 3, sample_type);
-            for layout in LAYOUTS {
-                for path in PATHS {
-                    Case { path, ..Case::new(&image, normal_source(), layout, bits) }.check(&gpu);
-                }
-            }
+        let image = normals(width, height, 3, SampleType::U8);
+        for path in PATHS {
+            Case { path, ..Case::new(&image, normal_source(), Layout::Lean, Bits::Half) }.check(&gpu);
         }
     }
 }
@@ -113,21 +118,19 @@ fn every_size_of_normals_is_the_cpus_bake() {
 fn every_size_of_heights_is_the_cpus_bake() {
     let gpu = gpu();
     for (width, height) in SIZES {
-        for (sample_type, bits) in
-            [(SampleType::U8, Bits::Eight), (SampleType::U16, Bits::Half), (SampleType::F32, Bits::Sixteen)]
-        {
-            let image = heights(width, height, sample_type);
-            for path in PATHS {
-                Case { path, ..Case::new(&image, height_source(), Layout::Lean, bits) }.check(&gpu);
-            }
+        let image = heights(width, height, SampleType::U16);
+        for path in PATHS {
+            Case { path, ..Case::new(&image, height_source(), Layout::Clean, Bits::Sixteen) }.check(&gpu);
         }
     }
 }
 
+// The sizes from here on are even twice and then odd: every way to average is met, and shaders stay small.
+
 #[test]
 fn every_format_layout_and_path_is_the_cpus_bake() {
     let gpu = gpu();
-    let image = normals(96, 40, 3, SampleType::U8);
+    let image = normals(92, 44, 3, SampleType::U16);
     for bits in FORMATS {
         for layout in LAYOUTS {
             for path in PATHS {
@@ -138,15 +141,22 @@ fn every_format_layout_and_path_is_the_cpus_bake() {
 }
 
 #[test]
+fn every_type_of_height_is_the_cpus_bake() {
+    let gpu = gpu();
+    for sample_type in [SampleType::U8, SampleType::U16, SampleType::F16, SampleType::F32] {
+        let image = heights(44, 36, sample_type);
+        Case::new(&image, height_source(), Layout::Lean, Bits::Half).check(&gpu);
+    }
+}
+
+#[test]
 fn every_gradient_wrap_and_sense_is_the_cpus_bake() {
     let gpu = gpu();
-    let image = heights(45, 34, SampleType::U16);
+    let image = heights(44, 36, SampleType::U16);
     for gradient in Gradient::ALL {
         for wrap in Wrap::ALL {
             let source = SourceOptions { gradient: *gradient, wrap: *wrap, ..height_source() };
-            for path in PATHS {
-                Case { path, ..Case::new(&image, source, Layout::Lean, Bits::Half) }.check(&gpu);
-            }
+            Case::new(&image, source, Layout::Lean, Bits::Half).check(&gpu);
         }
     }
     let source = SourceOptions { height_sense: HeightSense::WhiteDeep, ..height_source() };
@@ -159,16 +169,16 @@ fn every_way_to_store_normals_is_the_cpus_bake() {
     for order in NormalChannels::ALL {
         for green in Green::ALL {
             for sample_type in [SampleType::U8, SampleType::U16, SampleType::F16, SampleType::F32] {
-                let image = normals(40, 24, 4, sample_type);
+                let image = normals(44, 36, 4, sample_type);
                 let source = SourceOptions { normal_channels: *order, green: *green, ..normal_source() };
                 Case::new(&image, source, Layout::Lean, Bits::Half).check(&gpu);
             }
         }
     }
-    let unsigned = normals(40, 24, 3, SampleType::F32);
+    let unsigned = normals(44, 36, 3, SampleType::F32);
     let Samples::F32(values) = unsigned.samples() else { unreachable!("asked for") };
     let signed = values.iter().map(|v| 2.0 * v - 1.0).collect();
-    let image = Image::new(40, 24, 3, Samples::F32(signed)).expect("as many");
+    let image = Image::new(44, 36, 3, Samples::F32(signed)).expect("as many");
     let source = SourceOptions { range: NormalRange::Signed, ..normal_source() };
     Case::new(&image, source, Layout::Lean, Bits::Half).check(&gpu);
 }
@@ -190,7 +200,7 @@ fn bad_texels_are_mended_and_counted_as_on_the_cpu() {
 #[test]
 fn base_roughness_and_fixed_scales_are_the_cpus_bake() {
     let gpu = gpu();
-    let image = normals(64, 48, 3, SampleType::U8);
+    let image = normals(44, 36, 3, SampleType::U8);
     let roughness = Some(BaseRoughness::Variance(1.0 / 64.0));
     for bits in FORMATS {
         for base in [Base::None, Base::Baked] {
@@ -214,12 +224,10 @@ fn base_roughness_and_fixed_scales_are_the_cpus_bake() {
 fn real_maps_are_the_cpus_bake() {
     let gpu = gpu();
     for (path, kind) in REAL_MAPS {
-        let image = real(path, 300, 256);
+        let image = real(path, 300, 252);
         let source = SourceOptions { kind: *kind, ..Default::default() };
-        for bits in FORMATS {
-            for path in PATHS {
-                Case { path, ..Case::new(&image, source, Layout::Lean, bits) }.check(&gpu);
-            }
+        for path in PATHS {
+            Case { path, ..Case::new(&image, source, Layout::Lean, Bits::Sixteen) }.check(&gpu);
         }
     }
 }
@@ -227,7 +235,7 @@ fn real_maps_are_the_cpus_bake() {
 #[test]
 fn the_webs_limits_take_more_dispatches_to_the_same_result() {
     let (native, web) = (gpu(), gpu_of_the_web());
-    let image = normals(256, 128, 3, SampleType::U8);
+    let image = normals(96, 48, 3, SampleType::U8);
     for layout in LAYOUTS {
         let case = Case::new(&image, normal_source(), layout, Bits::Half);
         let ((many, expected), (few, got)) = (case.on_gpu(&native), case.on_gpu(&web));
@@ -245,7 +253,8 @@ fn moving_bumps_reuse_textures_and_differ_as_their_inputs_do() {
     let options = BakeOptions { bits: Bits::Sixteen, ..Default::default() };
     for path in PATHS {
         let first = &frames[0];
-        let baker = block_on(GpuBaker::for_image(&gpu, first, &normal_source(), None, &options, path)).expect("made");
+        let baker =
+            block_on(GpuBaker::for_image(&gpu, first, &normal_source(), None, &options, path)).expect("made");
         let textures = baker.textures().to_vec();
         let mut read = Vec::new();
         for frame in &frames {
@@ -258,7 +267,10 @@ fn moving_bumps_reuse_textures_and_differ_as_their_inputs_do() {
             assert_eq!(baker.textures(), textures);
             read.push(array);
         }
-        assert!(difference(&read[0], &read[1]).expect("one shape").steps > 1000, "another frame, other texels");
+        assert!(
+            difference(&read[0], &read[1]).expect("one shape").steps > 1000,
+            "another frame, other texels"
+        );
         let other = normals(32, 32, 3, SampleType::U8);
         assert!(matches!(baker.upload(&other), Err(GpuError::Shape(_))));
     }
@@ -283,11 +295,15 @@ fn what_the_gpu_cannot_do_is_refused_with_the_reason() {
     let gpu = gpu();
     let image = normals(8, 8, 3, SampleType::U8);
     let refused = |options: BakeOptions, word: &str| {
-        let error = block_on(GpuBaker::for_image(&gpu, &image, &normal_source(), None, &options, BakePath::Fastest));
+        let error =
+            block_on(GpuBaker::for_image(&gpu, &image, &normal_source(), None, &options, BakePath::Fastest));
         let line = error.err().expect("refused").to_string();
         assert!(line.contains(word) && !line.contains('\n'), "{line}");
     };
-    refused(BakeOptions { filter: PyramidFilter::Gaussian, bits: Bits::Half, ..Default::default() }, "gaussian");
+    refused(
+        BakeOptions { filter: PyramidFilter::Gaussian, bits: Bits::Half, ..Default::default() },
+        "gaussian",
+    );
     refused(BakeOptions { bits: Bits::Float, ..Default::default() }, "half");
     refused(BakeOptions { layout: Layout::Schilling, ..Default::default() }, "schilling");
     refused(BakeOptions { base: Base::Baked, ..Default::default() }, "--base baked");

@@ -5,6 +5,7 @@
 
 mod bindings;
 mod compute;
+mod pipelines;
 mod plan;
 mod raster;
 mod scale;
@@ -330,11 +331,11 @@ impl Job {
             width,
             height,
             0,
-            0,
+            source::code_of_wrap(source.wrap),
             source.max_slope.to_bits(),
             source::texels_from_height(source, self.size.width).to_bits(),
             self.base_variance.to_bits(),
-            0,
+            source::sign_of_green(source.green).to_bits(),
         ];
         device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("bake"),

@@ -61,7 +61,8 @@ pub fn real(path: &str, width: usize, height: usize) -> Image {
     let full = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")).join(path);
     let bytes = std::fs::read(&full)
         .unwrap_or_else(|error| panic!("the shared test data is not there: {}: {error}", full.display()));
-    let whole = roughcast_io::read_image(&bytes, &Default::default())
+    let extension = full.extension().and_then(|extension| extension.to_str());
+    let whole = roughcast_io::read_image(&bytes, extension, &Default::default())
         .unwrap_or_else(|error| panic!("{}: {error}", full.display()))
         .image;
     let (width, height) = (width.min(whole.width()), height.min(whole.height()));
