@@ -3,6 +3,7 @@
 //! The result is that of [`roughcast::bake`] to within one step of the format on every texel of every level: the same
 //! options, the same order of additions, quotients and roots rounded as the CPU rounds them.
 
+mod bandwidth;
 mod bindings;
 mod compute;
 mod pipelines;
@@ -22,6 +23,7 @@ use wgpu::util::DeviceExt;
 
 use crate::read_back::read_buffer;
 use crate::{Gpu, GpuError, Span};
+pub use bandwidth::{Bandwidth, bake_bandwidth, copy_bandwidth};
 use bindings::Bindings;
 use compute::ComputeBake;
 use raster::RasterBake;
