@@ -4,7 +4,7 @@ mod common;
 
 use common::compare::difference;
 use common::maps::{heights, normals, real};
-use common::{gpu, gpu_of_the_web};
+use common::{gpu, gpu_of_the_web, gpu_without_features};
 use pollster::block_on;
 use roughcast::texture::{Base, Layout, TextureArray};
 use roughcast::{
@@ -13,6 +13,7 @@ use roughcast::{
 };
 use roughcast_gpu::bake::{BakePath, GpuBaker};
 use roughcast_gpu::{Gpu, GpuError};
+use wgpu::util::DeviceExt;
 
 /// One step of the format, which the issue allows: where the CPU's value lies next to the middle between two codes, the
 /// last bit of a float decides, and a GPU may fuse or round that bit in another way.
@@ -274,6 +275,59 @@ fn moving_bumps_reuse_textures_and_differ_as_their_inputs_do() {
         let other = normals(32, 32, 3, SampleType::U8);
         assert!(matches!(baker.upload(&other), Err(GpuError::Shape(_))));
     }
+}
+
+#[test]
+fn textures_that_are_on_the_gpu_already_are_the_cpus_bake() {
+    let gpu = gpu();
+    let options = BakeOptions { bits: Bits::Half, ..Default::default() };
+    let cases = [
+        (normals(44, 36, 4, SampleType::U8), normal_source(), wgpu::TextureFormat::Rgba8Unorm),
+        (normals(44, 36, 4, SampleType::U16), normal_source(), wgpu::TextureFormat::Rgba16Unorm),
+        (heights(44, 36, SampleType::U8), height_source(), wgpu::TextureFormat::R8Unorm),
+        (heights(44, 36, SampleType::F32), height_source(), wgpu::TextureFormat::R32Float),
+    ];
+    for (image, source, format) in cases {
+        let bytes: &[u8] = match image.samples() {
+            Samples::U8(v) => v,
+            Samples::U16(v) => bytemuck::cast_slice(v),
+            Samples::F16(v) => bytemuck::cast_slice(v),
+            Samples::F32(v) => bytemuck::cast_slice(v),
+        };
+        let descriptor = wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width: 44, height: 36, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        };
+        let map = gpu.device.create_texture_with_data(&gpu.queue, &descriptor, Default::default(), bytes);
+        let cpu = roughcast::bake(&image, &source, None, &options).expect("baked");
+        for path in PATHS {
+            let baker =
+                block_on(GpuBaker::for_texture(&gpu, &map, &source, None, &options, path)).expect("made");
+            baker.run();
+            let array = block_on(baker.read_back()).expect("read back");
+            let found = difference(&array, &cpu.arrays[0]).expect("one shape");
+            assert!(found.steps <= ALLOWED_STEPS, "{format:?} {path:?}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn a_device_without_16_bit_unorm_says_so() {
+    let gpu = gpu_without_features();
+    let image = normals(8, 8, 3, SampleType::U16);
+    let make = |bits| {
+        let options = BakeOptions { bits, ..Default::default() };
+        block_on(GpuBaker::for_image(&gpu, &image, &normal_source(), None, &options, BakePath::Fastest))
+    };
+    let line = make(Bits::Sixteen).err().expect("a feature").to_string();
+    assert!(line.contains("Rgba16Unorm") && line.contains("--bits half"), "{line}");
+    make(Bits::Half).expect("half floats need no feature, nor does a map of 16 bits");
 }
 
 /// A picture with its rows in reverse.

@@ -3,11 +3,11 @@
 mod common;
 
 use common::maps::normals;
-use common::{gpu, gpu_of_the_web};
+use common::{gpu, gpu_without_features};
 use pollster::block_on;
 use roughcast::{BakeOptions, Bits, SampleType, SourceOptions};
 use roughcast_gpu::bake::{BakePath, GpuBaker, bake_bandwidth, copy_bandwidth};
-use roughcast_gpu::{Gpu, GpuError, Timestamps};
+use roughcast_gpu::{GpuError, Timestamps};
 
 #[test]
 fn each_span_has_its_name_and_a_time() {
@@ -36,14 +36,8 @@ fn each_span_has_its_name_and_a_time() {
 
 #[test]
 fn without_the_feature_there_is_an_error_and_no_zero() {
-    let Gpu { device: _, queue: _, info, .. } = gpu_of_the_web();
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    descriptor.backends = info.backend.into();
-    let instance = wgpu::Instance::new(descriptor);
-    let adapter = block_on(instance.request_adapter(&Default::default())).expect("an adapter");
-    let (device, queue) = block_on(adapter.request_device(&Default::default())).expect("a plain device");
-    let plain = Gpu::from_device(device, queue);
-    let error = block_on(Timestamps::new(&plain, 1)).expect_err("the feature was not asked for");
+    let error =
+        block_on(Timestamps::new(&gpu_without_features(), 1)).expect_err("the feature was not asked for");
     assert!(matches!(error, GpuError::Feature { feature: "timestamp queries", .. }), "{error:?}");
 }
 
