@@ -11,9 +11,13 @@
 #![forbid(unsafe_code)]
 
 mod camera;
+mod filter;
 mod hit;
 mod light;
+mod mipmap;
 
 pub use camera::Camera;
+pub use filter::{Filter, Sampler, SummedAreaTable};
 pub use hit::{Footprint, Frame, Hit, Ray};
 pub use light::Light;
+pub use mipmap::{Level, Mipmap, MipmapError};
