@@ -14,10 +14,13 @@ mod camera;
 mod filter;
 mod hit;
 mod light;
+pub mod metrics;
 mod mipmap;
+mod picture;
 
 pub use camera::Camera;
 pub use filter::{Filter, Sampler, SummedAreaTable};
 pub use hit::{Footprint, Frame, Hit, Ray};
 pub use light::Light;
 pub use mipmap::{Level, Mipmap, MipmapError};
+pub use picture::{Picture, luminance};
