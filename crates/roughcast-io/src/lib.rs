@@ -4,6 +4,7 @@
 //!   an [`roughcast::Image`] in the type in which the file stores its samples;
 //! - [`ktx2`], [`dds`] and [`exr`] write a [`roughcast::texture::TextureArray`] with its levels, and read back what they
 //!   wrote; [`png_levels`] writes one level as a PNG;
+//! - [`picture`] writes rendered pictures as PNG, animated PNG and EXR;
 //! - [`compress`] makes BC4, BC5 and BC7 blocks, and [`decompress`] shows what a graphics processor will see of them;
 //! - [`AtomicFile`] and [`AtomicSet`] let files appear whole or not at all.
 //!
@@ -47,6 +48,7 @@ mod file_info;
 pub mod ktx2;
 mod metadata;
 mod payload;
+pub mod picture;
 pub mod png_levels;
 mod read;
 mod texels;

@@ -16,6 +16,7 @@ mod hit;
 mod light;
 pub mod metrics;
 mod mipmap;
+pub mod pattern;
 mod picture;
 
 pub use camera::Camera;

@@ -6,11 +6,11 @@ use roughcast::Image;
 use roughcast_scene::Picture;
 use roughcast_scene::metrics::{DEFAULT_PIXELS_PER_DEGREE, ldr_flip};
 
-/// Largest difference of a pixel's error. Both compute in f32, but the powers of small errors are steep: a difference of
-/// colour that is zero for the one and 1e-6 for the other becomes a few thousandths.
-const PIXEL_TOLERANCE: f32 = 5e-3;
-/// Difference of the mean error.
-const MEAN_TOLERANCE: f64 = 1e-4;
+/// Largest difference of a pixel's error. Both compute in f32; the largest that was seen is 7e-5, on dark pictures, where
+/// roots make much of a rounding.
+const PIXEL_TOLERANCE: f32 = 2e-4;
+/// Difference of the mean error; 1e-5 was seen.
+const MEAN_TOLERANCE: f64 = 3e-5;
 /// Side of what is compared of each picture.
 const SIDE: usize = 160;
 
@@ -81,7 +81,7 @@ fn real_pictures_have_nvidias_error() {
         means.push(compare(&pixels(pair[0], (10, 10)), &pixels(pair[1], (10, 10))));
     }
     // The pairs are neither all alike nor all as different as can be.
-    assert!(means.iter().any(|m| *m == 0.0) && means.iter().any(|m| *m > 0.3), "{means:?}");
+    assert!(means.contains(&0.0) && means.iter().any(|m| *m > 0.3), "{means:?}");
 }
 
 #[test]

@@ -1,0 +1,182 @@
+//! Height maps of the texts' figures, made by formula: all repeat without a seam, and their slopes are known.
+
+use std::f64::consts::TAU;
+
+use roughcast::{Image, Kind, Samples, SourceOptions};
+
+/// A height map and how it is to be read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pattern {
+    /// One channel of single floats: heights in units of the map's width.
+    pub heights: Image,
+}
+
+impl Pattern {
+    fn of(size: usize, height_in_texels: impl Fn(f64, f64) -> f64) -> Self {
+        let texels = (0..size * size).map(|i| {
+            let (x, y) = ((i % size) as f64, (i / size) as f64);
+            (height_in_texels(x, y) / size as f64) as f32
+        });
+        let heights = Image::new(size, size, 1, Samples::F32(texels.collect()));
+        Self { heights: heights.expect("a square of one channel") }
+    }
+
+    /// How the heights become slopes: the defaults, with heights in units of the width.
+    pub fn source_options(&self) -> SourceOptions {
+        SourceOptions { kind: Kind::Height, height_scale: 1.0, ..SourceOptions::default() }
+    }
+}
+
+/// A checkerboard of raised squares with slanted edges (LEAN Figure 14).
+///
+/// `squares` along each side, an even number so that the board repeats; the edges rise over `bevel` texels with this
+/// `slope`. Most of the surface is flat, so its highlight is as sharp as the base lobe, with a faint cross from the edges.
+pub fn raised_checker(size: usize, squares: usize, bevel: f64, slope: f64) -> Pattern {
+    let side = size as f64 / squares as f64;
+    Pattern::of(size, |x, y| {
+        // Texel centres.
+        let (x, y) = (x + 0.5, y + 0.5);
+        let (column, row) = ((x / side).floor(), (y / side).floor());
+        if (column + row) % 2.0 == 0.0 {
+            return 0.0;
+        }
+        let from_edge = |t: f64, cell: f64| (t - cell * side).min((cell + 1.0) * side - t);
+        from_edge(x, column).min(from_edge(y, row)).min(bevel) * slope
+    })
+}
+
+/// Sharp V grooves along y: slopes of `±slope` along x and nothing between, which no single Gaussian describes (LEAN, section 6).
+/// `grooves` of them over the map.
+pub fn v_grooves(size: usize, grooves: usize, slope: f64) -> Pattern {
+    let period = size as f64 / grooves as f64;
+    Pattern::of(size, |x, _| {
+        let t = (x + 0.5).rem_euclid(period);
+        t.min(period - t) * slope
+    })
+}
+
+/// Ridges along y of random heights and widths (LEAN Figure 2 d, 13): slopes along x are nearly Gaussian with this root
+/// mean square.
+pub fn random_ridges(size: usize, rms_slope: f64, seed: u64) -> Pattern {
+    let waves: Vec<Wave> = (0..RIDGE_WAVES).map(|i| Wave::ridge(i, size, seed)).collect();
+    superposition(size, &waves, rms_slope)
+}
+
+/// Random bumps without a direction (LEAN Figure 2 a): slopes are nearly Gaussian with this root mean square length.
+pub fn random_bumps(size: usize, rms_slope: f64, seed: u64) -> Pattern {
+    let waves: Vec<Wave> = (0..BUMP_WAVES).map(|i| Wave::bump(i, size, seed)).collect();
+    superposition(size, &waves, rms_slope)
+}
+
+/// Enough waves for nearly Gaussian slopes, which the sum of many independent ones has.
+const RIDGE_WAVES: u64 = 24;
+const BUMP_WAVES: u64 = 48;
+/// Waves are this many texels long, at the least and at the most.
+const SHORTEST_WAVE: f64 = 12.0;
+const LONGEST_WAVE: f64 = 40.0;
+
+/// A cosine over the map, a whole number of times each way.
+struct Wave {
+    cycles: [f64; 2],
+    phase: f64,
+}
+
+impl Wave {
+    fn ridge(index: u64, size: usize, seed: u64) -> Self {
+        let [length, phase, _] = random(seed, index);
+        let cycles = size as f64 / (SHORTEST_WAVE + length * (LONGEST_WAVE - SHORTEST_WAVE));
+        Self { cycles: [cycles.round().max(1.0), 0.0], phase: phase * TAU }
+    }
+
+    fn bump(index: u64, size: usize, seed: u64) -> Self {
+        let [length, phase, turn] = random(seed, index);
+        let cycles = size as f64 / (SHORTEST_WAVE + length * (LONGEST_WAVE - SHORTEST_WAVE));
+        // Directions go round evenly, with a little chance, so that the bumps have no direction of their own.
+        let angle = (index as f64 + turn) * TAU / BUMP_WAVES as f64;
+        let [x, y] = [(cycles * angle.cos()).round(), (cycles * angle.sin()).round()];
+        Self { cycles: if x == 0.0 && y == 0.0 { [1.0, 0.0] } else { [x, y] }, phase: phase * TAU }
+    }
+}
+
+/// The sum of waves of equal root mean square slope, which together have the one asked for.
+fn superposition(size: usize, waves: &[Wave], rms_slope: f64) -> Pattern {
+    let frequency = TAU / size as f64;
+    // The slope of a cosine of amplitude a and wave number k has mean square (a k)^2 / 2.
+    let slope_amplitude = rms_slope * (2.0 / waves.len() as f64).sqrt();
+    Pattern::of(size, |x, y| {
+        let height = |wave: &Wave| {
+            let [kx, ky] = wave.cycles.map(|cycles| cycles * frequency);
+            slope_amplitude / kx.hypot(ky) * (kx * x + ky * y + wave.phase).cos()
+        };
+        waves.iter().map(height).sum()
+    })
+}
+
+/// Three numbers in 0 .. 1 of a seed and an index (SplitMix64).
+fn random(seed: u64, index: u64) -> [f64; 3] {
+    std::array::from_fn(|i| {
+        let mut z = seed
+            .wrapping_add((3 * index + i as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15))
+            .wrapping_mul(0xd134_2543_de82_ef95);
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use roughcast::texture::{Layout, decode};
+    use roughcast::{BakeOptions, Bits, Moments, bake};
+
+    use super::*;
+
+    const SIZE: usize = 256;
+    const SLOPE: f64 = 0.25;
+
+    /// The moments of the whole map, by the library.
+    fn whole(pattern: &Pattern) -> Moments {
+        let options = BakeOptions { layout: Layout::Moments, bits: Bits::Float, ..BakeOptions::default() };
+        let baked = bake(&pattern.heights, &pattern.source_options(), None, &options).expect("a map");
+        decode(&baked.arrays).expect("moments").last().expect("a level").moments[0]
+    }
+
+    #[test]
+    fn random_patterns_have_the_slopes_asked_for() {
+        // Waves that happen to be equal add up by chance phase; and the Sobel filter weakens the shortest waves
+        // (sin(k)/k at 12 texels: 5 %).
+        const CHANCE: f64 = 0.15;
+        let ridges = whole(&random_ridges(SIZE, SLOPE, 1)).covariance();
+        assert!((f64::from(ridges.xx).sqrt() / SLOPE - 1.0).abs() < CHANCE, "{ridges:?}");
+        assert!(ridges.yy < 1e-9 && ridges.xy.abs() < 1e-6, "{ridges:?}");
+        let bumps = whole(&random_bumps(SIZE, SLOPE, 1)).covariance();
+        assert!((f64::from(bumps.trace()).sqrt() / SLOPE - 1.0).abs() < CHANCE, "{bumps:?}");
+        assert!((f64::from(bumps.xx / bumps.yy) - 1.0).abs() < 2.0 * CHANCE, "{bumps:?}");
+        assert!(f64::from(bumps.xy.abs()) < CHANCE * f64::from(bumps.xx), "{bumps:?}");
+    }
+
+    #[test]
+    fn every_pattern_is_level_on_the_whole_and_so_repeats_without_a_seam() {
+        let patterns = [
+            raised_checker(SIZE, 8, 4.0, 0.5),
+            v_grooves(SIZE, 16, 0.4),
+            random_ridges(SIZE, SLOPE, 2),
+            random_bumps(SIZE, SLOPE, 2),
+        ];
+        for pattern in patterns {
+            let mean = whole(&pattern).mean;
+            assert!(mean.x.abs() < 1e-5 && mean.y.abs() < 1e-5, "{mean:?}");
+        }
+    }
+
+    #[test]
+    fn grooves_have_two_slopes_and_edges_have_theirs() {
+        // Away from the kinks; the three texels about each of 32 kinks of 256 columns see both sides.
+        let grooves = whole(&v_grooves(SIZE, 16, 0.4)).covariance();
+        assert!((grooves.xx / 0.16 - 1.0).abs() < 0.2, "{grooves:?}");
+        let heights = raised_checker(SIZE, 8, 4.0, 0.5).heights;
+        let Samples::F32(heights) = heights.samples() else { panic!("floats") };
+        let highest = heights.iter().fold(0.0_f32, |a, b| a.max(*b)) * SIZE as f32;
+        assert_eq!(highest, 2.0); // four texels at one half
+    }
+}
