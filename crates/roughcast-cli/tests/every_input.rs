@@ -6,7 +6,7 @@ mod common;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use common::{Outcome, bake, check_all, data, data_files, moments, names, scratch};
+use common::{Outcome, bake, check_all, data, expect_every_file_named, moments, names, scratch};
 use roughcast::texture::MomentLevel;
 
 const FOLDERS: [&str; 4] = ["materials", "heights", "formats", "hdri"];
@@ -39,12 +39,7 @@ fn table() -> BTreeMap<&'static str, Expected> {
 
 #[test]
 fn the_table_names_every_file_and_no_other() {
-    let files: Vec<String> = FOLDERS.iter().flat_map(|folder| data_files(folder)).collect();
-    let table = table();
-    let missing: Vec<_> = files.iter().filter(|file| !table.contains_key(file.as_str())).collect();
-    let gone: Vec<_> = table.keys().filter(|file| !files.iter().any(|other| other == *file)).collect();
-    assert!(missing.is_empty(), "not in the table: {missing:#?}");
-    assert!(gone.is_empty(), "in the table, but not there: {gone:#?}");
+    expect_every_file_named(&table(), &FOLDERS);
 }
 
 #[test]

@@ -49,3 +49,25 @@ pub struct FileInfo {
     /// Pairs that the file keeps beside the pixels (KTX2 key-value data, EXR text attributes, PNG text, DDS words).
     pub metadata: BTreeMap<String, String>,
 }
+
+impl FileInfo {
+    /// What is to be said of a plain picture: one layer, one level, unsigned samples, nothing kept beside them.
+    pub(crate) fn of_picture(
+        container: &'static str,
+        format: String,
+        (width, height): (usize, usize),
+        channels: &[&str],
+    ) -> Self {
+        Self {
+            container,
+            format,
+            width,
+            height,
+            layers: 1,
+            levels: 1,
+            range: ValueRange::Unorm,
+            channels: channels.iter().map(|&name| name.to_owned()).collect(),
+            metadata: BTreeMap::new(),
+        }
+    }
+}

@@ -3,6 +3,7 @@
 // Every test file is a crate of its own and uses a part of this.
 #![allow(dead_code)]
 
+use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -202,4 +203,14 @@ pub fn difference(a: &[MomentLevel], b: &[MomentLevel]) -> Difference {
         largest.trace = largest.trace.max(0.5 * (of_a.trace() - of_b.trace()).abs());
     }
     largest
+}
+
+/// Panics unless a table of expectations names exactly the files of these folders of the test data.
+#[track_caller]
+pub fn expect_every_file_named<T>(table: &BTreeMap<&'static str, T>, folders: &[&str]) {
+    let files: Vec<String> = folders.iter().flat_map(|folder| data_files(folder)).collect();
+    let missing: Vec<_> = files.iter().filter(|file| !table.contains_key(file.as_str())).collect();
+    let gone: Vec<_> = table.keys().filter(|file| !files.iter().any(|other| other == *file)).collect();
+    assert!(missing.is_empty(), "not in the table: {missing:#?}");
+    assert!(gone.is_empty(), "in the table, but not there: {gone:#?}");
 }

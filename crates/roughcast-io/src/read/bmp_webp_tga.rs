@@ -9,7 +9,7 @@ use image::{ColorType, ExtendedColorType, ImageDecoder, ImageError};
 use roughcast::{Image, Samples};
 
 use super::memory::{check_size, malformed, unsupported, zeros};
-use crate::{Decoded, FileInfo, Limits, ReadError, ValueRange};
+use crate::{Decoded, FileInfo, Limits, ReadError};
 
 /// Memory that a decoder may use beside the image, per pixel: a frame of RGBA and one of indices.
 const WORKING_BYTES_PER_PIXEL: u64 = 16;
@@ -90,17 +90,7 @@ fn decode(
     decoder.read_image(&mut samples).map_err(|e| fault(format, e))?;
     let image =
         Image::new(width, height, channels.len(), Samples::U8(samples)).map_err(|e| malformed(format, e))?;
-    let info = FileInfo {
-        container: format,
-        format: words.to_owned(),
-        width,
-        height,
-        layers: 1,
-        levels: 1,
-        range: ValueRange::Unorm,
-        channels: channels.iter().map(|&name| name.to_owned()).collect(),
-        metadata: Default::default(),
-    };
+    let info = FileInfo::of_picture(format, words.to_owned(), (width, height), channels);
     Ok(Decoded { image, info })
 }
 

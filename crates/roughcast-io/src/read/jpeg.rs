@@ -11,7 +11,7 @@ use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
 use super::memory::{check_size, malformed, unsupported, zeros};
-use crate::{Decoded, FileInfo, Limits, ReadError, ValueRange};
+use crate::{Decoded, FileInfo, Limits, ReadError};
 
 const FORMAT: &str = "JPEG";
 
@@ -45,17 +45,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> 
     decoder.decode_into(&mut samples).map_err(fault)?;
     let image =
         Image::new(width, height, channels.len(), Samples::U8(samples)).map_err(|e| malformed(FORMAT, e))?;
-    let info = FileInfo {
-        container: FORMAT,
-        format: words.to_owned(),
-        width,
-        height,
-        layers: 1,
-        levels: 1,
-        range: ValueRange::Unorm,
-        channels: channels.iter().map(|&name| name.to_owned()).collect(),
-        metadata: Default::default(),
-    };
+    let info = FileInfo::of_picture(FORMAT, words.to_owned(), (width, height), channels);
     Ok(Decoded { image, info })
 }
 

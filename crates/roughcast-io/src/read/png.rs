@@ -8,7 +8,7 @@ use roughcast::{Image, Samples};
 
 use super::memory::{DEFLATE_MAX_RATIO, check_size, malformed, zeros};
 use crate::metadata::{MAX_VALUE_BYTES, insert};
-use crate::{Decoded, FileInfo, Limits, ReadError, ValueRange};
+use crate::{Decoded, FileInfo, Limits, ReadError};
 
 const FORMAT: &str = "PNG";
 /// Memory that the chunks beside the pixels may use.
@@ -57,15 +57,8 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> 
     };
     let image = Image::new(width, height, channels.len(), samples).map_err(|e| malformed(FORMAT, e))?;
     let info = FileInfo {
-        container: FORMAT,
-        format: stored,
-        width,
-        height,
-        layers: 1,
-        levels: 1,
-        range: ValueRange::Unorm,
-        channels: channels.iter().map(|&name| name.to_owned()).collect(),
         metadata: text_pairs(reader.info()),
+        ..FileInfo::of_picture(FORMAT, stored, (width, height), channels)
     };
     Ok(Decoded { image, info })
 }
