@@ -19,7 +19,10 @@ pub mod metrics;
 mod mipmap;
 pub mod pattern;
 mod picture;
+pub mod render;
+mod scene;
 mod shape;
+mod slope_map;
 
 pub use camera::{Camera, CameraError, PixelRays};
 pub use filter::{Filter, Sampler, SummedAreaTable};
@@ -27,4 +30,6 @@ pub use hit::{Footprint, Frame, Hit, Ray};
 pub use light::Light;
 pub use mipmap::{Level, Mipmap, MipmapError};
 pub use picture::{Picture, luminance};
+pub use scene::Scene;
 pub use shape::{Bounds, MAX_DETAIL, Plane, Shape, ShapeError, Sphere, Torus, TriangleMesh};
+pub use slope_map::{Reconstruction, SlopeMap};
