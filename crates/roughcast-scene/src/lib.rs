@@ -14,9 +14,11 @@ mod camera;
 mod footprint;
 mod hit;
 mod light;
+mod mesh;
 mod shape;
 
 pub use camera::{Camera, CameraError, View};
 pub use hit::{Footprint, Frame, Hit, Ray};
 pub use light::Light;
+pub use mesh::{MAX_FILE_BYTES, MAX_TRIANGLES, MAX_VERTICES, Mesh, MeshError, MeshFault, load_mesh};
 pub use shape::{Bounds, MAX_DETAIL, Plane, Shape, ShapeError, Sphere, Torus, TriangleMesh};

@@ -5,13 +5,15 @@ mod polynomial;
 mod sphere;
 mod torus;
 
-use glam::{DVec3, Vec3};
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3, Vec3};
 
 pub use plane::Plane;
 pub use sphere::Sphere;
 pub use torus::Torus;
 
-use crate::{Frame, Hit, Ray};
+use crate::{Frame, Hit, Mesh, Ray};
 
 /// A shape, in world space, with its texture coordinates in 0 .. 1 (meshes: as their file has them).
 #[derive(Clone, Debug)]
@@ -22,6 +24,8 @@ pub enum Shape {
     Sphere(Sphere),
     /// A ring.
     Torus(Torus),
+    /// Triangles. Shared, since scenes are copied.
+    Mesh(Arc<Mesh>),
 }
 
 /// A sphere that holds a shape.
@@ -74,6 +78,7 @@ impl Shape {
             Self::Plane(plane) => plane.hit(ray),
             Self::Sphere(sphere) => sphere.hit(ray),
             Self::Torus(torus) => torus.hit(ray),
+            Self::Mesh(mesh) => mesh.hit(ray),
         }
     }
 
@@ -83,6 +88,7 @@ impl Shape {
             Self::Plane(plane) => plane.bounds(),
             Self::Sphere(sphere) => sphere.bounds(),
             Self::Torus(torus) => torus.bounds(),
+            Self::Mesh(mesh) => mesh.bounds(),
         }
     }
 
@@ -96,6 +102,7 @@ impl Shape {
             Self::Plane(plane) => plane.triangles(detail),
             Self::Sphere(sphere) => sphere.triangles(detail),
             Self::Torus(torus) => torus.triangles(detail),
+            Self::Mesh(mesh) => mesh.triangles().clone(),
         }
     }
 }
@@ -107,7 +114,7 @@ struct SurfacePoint {
     normal: DVec3,
     /// Unit, towards growing u.
     tangent: DVec3,
-    uv: glam::DVec2,
+    uv: DVec2,
     dpdu: DVec3,
     dpdv: DVec3,
 }
