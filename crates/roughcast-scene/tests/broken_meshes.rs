@@ -122,9 +122,10 @@ fn broken_gltf_files() {
         (DATA_URI, "should hold vectors of 3", |s| s.replace("VEC3", "VEC2")),
         (DATA_URI, "should hold indices", |s| s.replace("SCALAR", "VEC2").replace("5121", "5123")),
         (DATA_URI, "attribute stored as U32", |s| s.replace("5126", "5125")),
-        (DATA_URI, "names vertex 258", |s| {
-            s.replace("5121", "5123").replace(r#""count":3,"type":"SCALAR""#, r#""count":1,"type":"SCALAR""#)
+        (DATA_URI, "names vertex 2, but there are 2", |s| {
+            s.replace(r#""count":3,"type":"VEC3""#, r#""count":2,"type":"VEC3""#)
         }),
+        (DATA_URI, "an accessor that is not there", |s| s.replace(r#""POSITION":0"#, r#""POSITION":9"#)),
         (DATA_URI, "no triangle", |s| s.replace(r#""indices":1"#, r#""mode":1"#)),
         (DATA_URI, "broken glTF file", |s| s.replace(r#""mesh":0"#, r#""mesh":7"#)),
         (DATA_URI, "nodes are no trees", |s| s.replace(r#"{"mesh":0}"#, r#"{"mesh":0,"children":[0]}"#)),

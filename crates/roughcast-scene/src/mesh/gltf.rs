@@ -14,11 +14,24 @@ use crate::TriangleMesh;
 /// The triangles of the default scene, in world space, one part a primitive.
 pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Vec<TriangleMesh>, MeshFault> {
     let (json, chunk) = if bytes.starts_with(b"glTF") { chunks(bytes)? } else { (bytes, None) };
-    let document = gltf::Gltf::from_slice(json).map_err(|error| malformed(one_line(&error)))?.document;
+    let document = document(json)?;
     let mut scene =
         Scene { buffers: Buffers::new(folder, chunk), parts: Vec::new(), vertices: 0, triangles: 0 };
     scene.read(&document)?;
     Ok(scene.parts)
+}
+
+/// The JSON, whose indices are valid.
+fn document(json: &[u8]) -> Result<Document, MeshFault> {
+    let fault = |error: gltf::Error| malformed(one_line(&error));
+    let root = gltf::Gltf::from_slice_without_validation(json).map_err(fault)?.document.into_json();
+    // The validation of the gltf crate takes this index for valid before it has looked.
+    let positions = gltf::json::validation::Checked::Valid(Semantic::Positions);
+    let mut primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    if primitives.any(|p| p.attributes.get(&positions).is_some_and(|i| i.value() >= root.accessors.len())) {
+        return Err(malformed("a primitive's positions are an accessor that is not there"));
+    }
+    Document::from_json(root).map_err(fault)
 }
 
 /// The first of what may be many faults.

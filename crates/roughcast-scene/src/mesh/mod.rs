@@ -55,7 +55,9 @@ impl std::fmt::Debug for Mesh {
 /// Reads a mesh: Wavefront OBJ (`.obj`) or glTF 2.0 (`.gltf`, `.glb`).
 ///
 /// Of glTF all triangles of the default scene are taken, in the places that its nodes give them, with the first set of
-/// texture coordinates; materials, skins, morph targets and animations are not. Textures are not read.
+/// texture coordinates; materials, skins, morph targets and animations are not. Textures are not read. Tangents of a file
+/// are taken as they are. Some exporters write them with the bitangent along growing v, against the convention of this
+/// crate; bumps on such a mesh look like dents from one side, and a map for it is one with green down.
 pub fn load_mesh(path: impl AsRef<Path>) -> Result<Mesh, MeshError> {
     let path = path.as_ref();
     parts_of_file(path).and_then(Mesh::new).map_err(|fault| MeshError { path: path.to_owned(), fault })

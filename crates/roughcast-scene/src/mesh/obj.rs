@@ -58,7 +58,7 @@ fn check_indices(text: &str) -> Result<(), MeshFault> {
                     // Empty or not a number is tobj's to judge.
                     let Some(index) = index.parse::<i64>().ok().filter(|_| kind < 3) else { continue };
                     let there =
-                        if index < 0 { -index <= counts[kind] } else { (1..=total[kind]).contains(&index) };
+                        if index < 0 { index >= -counts[kind] } else { (1..=total[kind]).contains(&index) };
                     if !there {
                         let fault = format!("there is no {} {index}", kinds[kind]);
                         return Err(MeshFault::ObjLine { line: number + 1, fault });

@@ -5,6 +5,7 @@ mod polynomial;
 mod sphere;
 mod torus;
 
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3, Vec3};
@@ -133,6 +134,13 @@ impl SurfacePoint {
         };
         facing(hit, ray)
     }
+}
+
+/// Sine and cosine of an angle in turns. A whole turn more gives the same bits, and half a turn a sine of zero: seams close.
+fn sin_cos_turns(turns: f64) -> (f64, f64) {
+    let turns = turns - turns.round();
+    let from_axis = if turns.abs() > 0.25 { turns.signum() * 0.5 - turns } else { turns };
+    ((from_axis * TAU).sin(), (turns * TAU).cos())
 }
 
 /// Reverses the frame of a hit that is seen from behind.
