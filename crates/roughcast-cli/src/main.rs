@@ -13,6 +13,7 @@ mod precision;
 mod progress;
 mod report;
 mod roughness;
+mod shader;
 mod textures;
 mod unpack;
 
@@ -38,6 +39,7 @@ enum Command {
     Info(info::Args),
     Unpack(unpack::Args),
     Precision(precision::Args),
+    Shader(shader::Args),
 }
 
 fn main() -> ExitCode {
@@ -50,6 +52,7 @@ fn main() -> ExitCode {
         Command::Info(args) => info::run(&args),
         Command::Unpack(args) => unpack::run(&args),
         Command::Precision(args) => precision::run(&args),
+        Command::Shader(args) => shader::run(&args),
     };
     match result {
         Ok(code) => code,
