@@ -1,1 +1,14 @@
 //! roughcast on the GPU.
+//!
+//! Everything that has to wait is `async` and nothing blocks, so that the crate can be compiled for the web. Natively any
+//! executor will do; `pollster::block_on` is the smallest.
+
+#![forbid(unsafe_code)]
+
+mod device;
+mod error;
+pub mod read_back;
+
+pub use device::{AdapterChoice, Gpu, GpuOptions, LimitChoice};
+pub use error::GpuError;
+pub use wgpu;

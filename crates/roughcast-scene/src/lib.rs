@@ -11,10 +11,17 @@
 #![forbid(unsafe_code)]
 
 mod camera;
+mod filter;
+mod footprint;
 mod hit;
 mod light;
+mod mipmap;
 pub mod pattern;
+mod shape;
 
-pub use camera::Camera;
+pub use camera::{Camera, CameraError, PixelRays};
+pub use filter::{Filter, Sampler, SummedAreaTable};
 pub use hit::{Footprint, Frame, Hit, Ray};
 pub use light::Light;
+pub use mipmap::{Level, Mipmap, MipmapError};
+pub use shape::{Bounds, MAX_DETAIL, Plane, Shape, ShapeError, Sphere, Torus, TriangleMesh};

@@ -47,6 +47,12 @@ impl Moments {
     /// The covariance (LEAN Eq. 5), made positive semidefinite: rounding of stored moments must not turn into a lobe
     /// of negative width.
     pub fn covariance(self) -> Covariance {
+        self.covariance_as_stored().positive_semidefinite()
+    }
+
+    /// The covariance as it comes out of the subtraction: rounding of stored moments may have made it one of no
+    /// distribution.
+    pub fn covariance_as_stored(self) -> Covariance {
         // The products are exact in f64, so that only the rounding of the stored numbers themselves is left.
         let (x, y) = (f64::from(self.mean.x), f64::from(self.mean.y));
         Covariance {
@@ -54,7 +60,6 @@ impl Moments {
             yy: (f64::from(self.yy) - y * y) as f32,
             xy: (f64::from(self.xy) - x * y) as f32,
         }
-        .positive_semidefinite()
     }
 }
 

@@ -5,11 +5,56 @@
 //! 1. `<model>_surface`: filtered texels of the model's layout become a surface, once a pixel;
 //! 2. `<model>_lobe`: the lobe for a direction to the viewer and one to the light, once a light.
 //!
+//! The base lobes (`phong`, `blinn_phong`, `beckmann`, `off_centre`) take a filtered normal instead of texels, so that they
+//! serve any normal map; [`bump_normal`] reads it from LEAN's first texture. [`Surface`] does both steps for any model, and
+//! [`reflect`] makes radiance of its lobe.
+//!
 //! All directions are unit vectors in the tangent frame of the *surface* (x right, y up, z the surface normal), and `h` is
 //! the half vector. A lobe of slope density `p` has two forms ([`Form`]).
+//!
+//! No lobe is ever NaN or infinite, whatever filtering leaves: a zero normal counts as flat, a horizontal one as steep, and
+//! a covariance without width is given the least there is ([`LEAST_VARIANCE`]). The base's exponent s is meant to be from 1
+//! to 10⁵.
+
+mod base;
+mod beckmann;
+mod blinn_phong;
+mod clean;
+mod facet;
+mod gaussian;
+mod ggx;
+mod lean;
+mod off_centre;
+mod phong;
+mod reflectance;
+mod surface;
+mod toksvig;
+mod variance;
+mod vector;
+
+pub use base::{base_covariance, base_to_add};
+pub use beckmann::{beckmann_lobe, beckmann_surface};
+pub use blinn_phong::{blinn_phong_against_beckmann, blinn_phong_lobe, blinn_phong_surface};
+pub use clean::{clean_lobe, clean_surface};
+pub use facet::{
+    BumpFacet, LEAST_COSINE, LEAST_NORMAL_Z, bump_facet, bump_normal, cosine_lobe, cosine_power, unit_normal,
+};
+pub use gaussian::{LARGEST_EXPONENT, LEAST_VARIANCE, SlopeGaussian, gaussian_lobe, slope_gaussian};
+pub use ggx::{
+    GgxSurface, ISOTROPIC, LEAST_STORED_POWER, ggx_lobe, ggx_normal, ggx_surface, ggx_surface_of_normal,
+};
+pub use lean::{lean_lobe, lean_surface};
+pub use off_centre::{off_centre_lobe, off_centre_surface};
+pub use phong::{phong_lobe, phong_surface};
+pub use reflectance::{
+    LightSample, Material, Radiance, ambient_radiance, diffuse_radiance, reflect, schlick, specular_radiance,
+};
+pub use surface::{Surface, SurfaceLobe, slope_normal};
+pub use toksvig::{toksvig_lobe, toksvig_normal, toksvig_surface};
+pub use variance::{variance_lobe, variance_surface};
 
 use crate::named::named_enum;
-use crate::texture::{Layout, Part};
+use crate::texture::{Base, Layout, Part, RoughnessStored, TextureInfo};
 
 named_enum! {
     /// A shading model.
@@ -77,11 +122,46 @@ pub struct LobeOptions {
     pub base: BaseLobe,
     /// What becomes of impossible covariances.
     pub repair: Repair,
+    /// Whether the maps hold the base roughness already, so that `1 / s` is not to be added to them again. The maps of
+    /// `blinn-phong` and its like hold none in any case, and Toksvig's factor is one of s.
+    pub base_in_maps: Base,
+    /// How a material's roughness is stored.
+    pub roughness_stored: RoughnessStored,
 }
 
 impl Default for LobeOptions {
     fn default() -> Self {
-        Self { specular_power: 256.0, form: Form::Paper, base: BaseLobe::Plane, repair: Repair::Clamp }
+        Self {
+            specular_power: 256.0,
+            form: Form::Paper,
+            base: BaseLobe::Plane,
+            repair: Repair::Clamp,
+            base_in_maps: Base::None,
+            roughness_stored: RoughnessStored::Perceptual,
+        }
+    }
+}
+
+impl LobeOptions {
+    /// The same options for textures with this meaning.
+    #[must_use]
+    pub fn for_maps(self, info: &TextureInfo) -> Self {
+        Self { base_in_maps: info.base, roughness_stored: info.roughness_stored, ..self }
+    }
+
+    /// The bytes of WGSL's `struct LobeOptions`: the exponent's bits, then the place of each choice in its enum's `ALL`.
+    /// The last two words are zero, since uniform buffers hold structs in multiples of sixteen bytes.
+    pub fn to_words(&self) -> [u32; 8] {
+        [
+            self.specular_power.to_bits(),
+            self.form as u32,
+            self.base as u32,
+            self.repair as u32,
+            self.base_in_maps as u32,
+            self.roughness_stored as u32,
+            0,
+            0,
+        ]
     }
 }
 

@@ -10,6 +10,7 @@ mod info;
 mod lean;
 mod moments;
 pub(crate) mod pack;
+pub(crate) mod packing;
 pub(crate) mod pbr;
 mod pbr_bounds;
 mod schilling;
@@ -19,6 +20,7 @@ mod variance;
 pub use codec::{Bounds, LayerSpec, Peaks};
 pub use decode::{DecodeError, MomentLevel, decode};
 pub use info::{Base, Brdf, InfoError, Layout, Part, RoughnessStored, TextureInfo};
+pub use packing::Packing;
 pub use schilling::Factor;
 
 use crate::moments::Moments;

@@ -125,7 +125,7 @@ pub(super) fn normal_from_stored(units: Units, texel: &[f32]) -> Normal {
 }
 
 /// Steeper than any slope that an eight-bit normal can tell from horizontal.
-pub(super) const FLATTEST: f32 = 1.0 / 512.0;
+pub(crate) const FLATTEST: f32 = 1.0 / 512.0;
 
 /// Moments of base and bumps together, from the parts' texels.
 pub(super) fn decode(

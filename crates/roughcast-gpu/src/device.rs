@@ -1,0 +1,237 @@
+//! A device, made here without a window or given by the caller, and what it can do.
+
+use crate::GpuError;
+use crate::error::one_line;
+
+/// Features that are asked for where the adapter has them. None is needed by everything.
+const WANTED_FEATURES: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
+    .union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS)
+    .union(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM)
+    .union(wgpu::Features::FLOAT32_FILTERABLE)
+    .union(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES);
+
+/// Which adapters may be taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AdapterChoice {
+    /// The fastest, whatever it is; a software driver where there is nothing else.
+    #[default]
+    Fastest,
+    /// A software driver: the same on every machine.
+    Software,
+}
+
+/// Which limits are asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LimitChoice {
+    /// All that the adapter has.
+    #[default]
+    Adapter,
+    /// Those that every implementation of WebGPU has, so that nothing works here that would not work there.
+    WebGpu,
+}
+
+/// How a device is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GpuOptions {
+    /// The APIs among which to choose.
+    pub backends: wgpu::Backends,
+    /// Which adapters may be taken.
+    pub adapter: AdapterChoice,
+    /// Which limits are asked for.
+    pub limits: LimitChoice,
+}
+
+impl Default for GpuOptions {
+    /// The fastest adapter of any API with all its limits.
+    fn default() -> Self {
+        Self {
+            backends: wgpu::Backends::all(),
+            adapter: AdapterChoice::default(),
+            limits: LimitChoice::default(),
+        }
+    }
+}
+
+/// A device with its queue, and what it can do.
+#[derive(Clone, Debug)]
+pub struct Gpu {
+    /// The device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// The adapter: its name, driver, and whether it is a software one.
+    pub info: wgpu::AdapterInfo,
+    /// Features that may be used.
+    pub features: wgpu::Features,
+    /// Limits that hold.
+    pub limits: wgpu::Limits,
+}
+
+impl Gpu {
+    /// Makes a device without a window.
+    ///
+    /// # Errors
+    /// [`GpuError::NoAdapter`] and [`GpuError::NoDevice`].
+    pub async fn new(options: &GpuOptions) -> Result<Self, GpuError> {
+        // OpenGL only where there is nothing better: asking it opens connections to displays, which print complaints where
+        // there are none.
+        let (first, second) = (options.backends & wgpu::Backends::PRIMARY, options.backends);
+        let adapter = match request_adapter(first, options.adapter).await {
+            Ok(adapter) => adapter,
+            Err(_) => request_adapter(second, options.adapter)
+                .await
+                .map_err(|error| GpuError::NoAdapter { reason: one_line(&error) })?,
+        };
+        Self::from_adapter(&adapter, options.limits).await
+    }
+
+    /// Makes a device of an adapter that the caller has chosen, such as one that can present to a window.
+    ///
+    /// # Errors
+    /// [`GpuError::NoDevice`].
+    pub async fn from_adapter(adapter: &wgpu::Adapter, limits: LimitChoice) -> Result<Self, GpuError> {
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("roughcast"),
+            required_features: adapter.features() & WANTED_FEATURES,
+            required_limits: match limits {
+                LimitChoice::Adapter => adapter.limits(),
+                LimitChoice::WebGpu => wgpu::Limits::default(),
+            },
+            ..Default::default()
+        };
+        let (device, queue) = adapter.request_device(&descriptor).await.map_err(|error| {
+            GpuError::NoDevice { adapter: adapter.get_info().name, reason: one_line(&error) }
+        })?;
+        Ok(Self::from_device(device, queue))
+    }
+
+    /// Takes a device that the caller has: an engine's, a browser's, a window's.
+    pub fn from_device(device: wgpu::Device, queue: wgpu::Queue) -> Self {
+        let (info, features, limits) = (device.adapter_info(), device.features(), device.limits());
+        Self { device, queue, info, features, limits }
+    }
+
+    /// Whether the adapter is a program on the CPU: its timings say nothing about graphics hardware.
+    pub fn is_software(&self) -> bool {
+        self.info.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// Whether there are compute shaders. WebGL2 has none.
+    pub fn has_compute(&self) -> bool {
+        self.limits.max_compute_invocations_per_workgroup > 0
+    }
+
+    /// Whether a pass's time can be taken.
+    pub fn has_timestamps(&self) -> bool {
+        self.features.contains(wgpu::Features::TIMESTAMP_QUERY)
+    }
+
+    /// Refuses a format that the device cannot use in all of these ways.
+    ///
+    /// # Errors
+    /// [`GpuError::Format`], which names what to use instead.
+    pub fn require_format(
+        &self,
+        format: wgpu::TextureFormat,
+        usages: wgpu::TextureUsages,
+    ) -> Result<(), GpuError> {
+        let instead = match format {
+            wgpu::TextureFormat::Rgba16Unorm => "use half floats (--bits half) or 8 bits (--bits 8) instead",
+            _ => "use half floats (--bits half) instead",
+        };
+        if !self.features.contains(format.required_features()) {
+            return Err(GpuError::Format { wanted: "use", format, instead });
+        }
+        let allowed = format.guaranteed_format_features(self.features).allowed_usages;
+        for (usage, wanted) in [
+            (wgpu::TextureUsages::STORAGE_BINDING, "store to"),
+            (wgpu::TextureUsages::RENDER_ATTACHMENT, "render to"),
+            (wgpu::TextureUsages::TEXTURE_BINDING, "sample"),
+        ] {
+            if usages.contains(usage) && !allowed.contains(usage) {
+                return Err(GpuError::Format { wanted, format, instead });
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes a texture, or says why there can be none.
+    ///
+    /// # Errors
+    /// [`GpuError::Empty`], [`GpuError::TextureTooLarge`], [`GpuError::OutOfMemory`], [`GpuError::Refused`].
+    pub async fn create_texture(
+        &self,
+        what: &'static str,
+        descriptor: &wgpu::TextureDescriptor<'_>,
+    ) -> Result<wgpu::Texture, GpuError> {
+        let wgpu::Extent3d { width, height, .. } = descriptor.size;
+        let limit = self.limits.max_texture_dimension_2d;
+        if width == 0 || height == 0 {
+            return Err(GpuError::Empty { width, height });
+        }
+        if width > limit || height > limit {
+            return Err(GpuError::TextureTooLarge { width, height, limit });
+        }
+        self.checked(what, |device| device.create_texture(descriptor)).await
+    }
+
+    /// Makes a buffer, or says why there can be none.
+    ///
+    /// # Errors
+    /// [`GpuError::BufferTooLarge`], [`GpuError::OutOfMemory`], [`GpuError::Refused`].
+    pub async fn create_buffer(
+        &self,
+        what: &'static str,
+        descriptor: &wgpu::BufferDescriptor<'_>,
+    ) -> Result<wgpu::Buffer, GpuError> {
+        let mut limit = self.limits.max_buffer_size;
+        if descriptor.usage.contains(wgpu::BufferUsages::STORAGE) {
+            limit = limit.min(self.limits.max_storage_buffer_binding_size);
+        }
+        if descriptor.size > limit {
+            return Err(GpuError::BufferTooLarge { what, bytes: descriptor.size, limit });
+        }
+        self.checked(what, |device| device.create_buffer(descriptor)).await
+    }
+
+    /// Makes something of which wgpu may say that it is wrong or too large; what it says becomes an error, where by
+    /// itself it would be a panic.
+    ///
+    /// # Errors
+    /// [`GpuError::OutOfMemory`], [`GpuError::Refused`].
+    pub async fn checked<T>(
+        &self,
+        what: &'static str,
+        make: impl FnOnce(&wgpu::Device) -> T,
+    ) -> Result<T, GpuError> {
+        let (made, refused, full) = {
+            let full = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+            let refused = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+            let made = make(&self.device);
+            // The inner scope ends first.
+            let refused = refused.pop();
+            (made, refused, full.pop())
+        };
+        if full.await.is_some() {
+            return Err(GpuError::OutOfMemory { what });
+        }
+        match refused.await {
+            Some(error) => Err(GpuError::Refused { what, reason: one_line(&error) }),
+            None => Ok(made),
+        }
+    }
+}
+
+async fn request_adapter(
+    backends: wgpu::Backends,
+    choice: AdapterChoice,
+) -> Result<wgpu::Adapter, wgpu::RequestAdapterError> {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = backends;
+    let request = wgpu::RequestAdapterOptions {
+        power_preference: wgpu::PowerPreference::HighPerformance,
+        force_fallback_adapter: choice == AdapterChoice::Software,
+        ..Default::default()
+    };
+    wgpu::Instance::new(descriptor).request_adapter(&request).await
+}

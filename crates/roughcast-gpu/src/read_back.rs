@@ -1,0 +1,206 @@
+//! From the GPU's memory back: futures that never block, so that the same code serves a page in a browser.
+
+use std::future::Future;
+use std::pin::Pin;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::task::{Context, Poll, Waker};
+
+use crate::error::one_line;
+use crate::{Gpu, GpuError};
+
+/// A copy in memory that the CPU can see, made by an encoder. Read it once the encoder's commands are submitted.
+#[derive(Debug)]
+pub struct Staged {
+    buffer: wgpu::Buffer,
+    /// Bytes of a row that matter, and bytes from one row to the next.
+    row: u64,
+    stride: u64,
+}
+
+impl Staged {
+    /// Waits for the copy and returns its bytes, rows without padding.
+    ///
+    /// # Errors
+    /// [`GpuError::ReadBack`] where the device was lost.
+    pub async fn read(self, gpu: &Gpu) -> Result<Vec<u8>, GpuError> {
+        map(gpu, &self.buffer).await?;
+        let view = self
+            .buffer
+            .get_mapped_range(..)
+            .map_err(|error| GpuError::ReadBack { reason: one_line(&error) })?;
+        let rows = view.chunks(self.stride as usize).map(|row| &row[..self.row as usize]);
+        let bytes = rows.collect::<Vec<_>>().concat();
+        drop(view);
+        self.buffer.unmap();
+        Ok(bytes)
+    }
+}
+
+/// Encodes a copy of a whole buffer, which needs the usage `COPY_SRC` and a size that is a multiple of four.
+///
+/// # Errors
+/// [`GpuError`] where the copy does not fit into memory.
+pub async fn stage_buffer(
+    gpu: &Gpu,
+    encoder: &mut wgpu::CommandEncoder,
+    buffer: &wgpu::Buffer,
+) -> Result<Staged, GpuError> {
+    let staging = staging_buffer(gpu, buffer.size()).await?;
+    encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, buffer.size());
+    Ok(Staged { row: staging.size(), stride: staging.size(), buffer: staging })
+}
+
+/// Encodes a copy of one level of a texture of one plane of colour, which needs the usage `COPY_SRC`. Layers of an array
+/// follow each other.
+///
+/// # Errors
+/// [`GpuError`] where the copy does not fit into memory, or the texture holds depth or several planes.
+pub async fn stage_texture(
+    gpu: &Gpu,
+    encoder: &mut wgpu::CommandEncoder,
+    texture: &wgpu::Texture,
+    level: u32,
+) -> Result<Staged, GpuError> {
+    let format = texture.format();
+    let Some(block_bytes) = format.block_copy_size(None) else {
+        let instead = "copy one of its aspects to a colour texture first";
+        return Err(GpuError::Format { wanted: "read back", format, instead });
+    };
+    let size = texture.size().mip_level_size(level, texture.dimension()).physical_size(format);
+    let (block_width, block_height) = format.block_dimensions();
+    let row = u64::from(size.width / block_width) * u64::from(block_bytes);
+    let stride = row.next_multiple_of(u64::from(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT));
+    let rows = size.height / block_height;
+    let buffer =
+        staging_buffer(gpu, stride * u64::from(rows) * u64::from(size.depth_or_array_layers)).await?;
+    encoder.copy_texture_to_buffer(
+        wgpu::TexelCopyTextureInfo {
+            texture,
+            mip_level: level,
+            origin: wgpu::Origin3d::ZERO,
+            aspect: wgpu::TextureAspect::All,
+        },
+        wgpu::TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(stride as u32),
+                rows_per_image: Some(rows),
+            },
+        },
+        size,
+    );
+    Ok(Staged { buffer, row, stride })
+}
+
+/// The bytes of a whole buffer; see [`stage_buffer`].
+///
+/// # Errors
+/// [`GpuError`] where the copy does not fit into memory or the device was lost.
+pub async fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let staged = stage_buffer(gpu, &mut encoder, buffer).await?;
+    gpu.queue.submit([encoder.finish()]);
+    staged.read(gpu).await
+}
+
+/// The texels of one level of a texture, rows without padding; see [`stage_texture`].
+///
+/// # Errors
+/// [`GpuError`] where the copy does not fit into memory or the device was lost.
+pub async fn read_texture(gpu: &Gpu, texture: &wgpu::Texture, level: u32) -> Result<Vec<u8>, GpuError> {
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let staged = stage_texture(gpu, &mut encoder, texture, level).await?;
+    gpu.queue.submit([encoder.finish()]);
+    staged.read(gpu).await
+}
+
+async fn staging_buffer(gpu: &Gpu, size: u64) -> Result<wgpu::Buffer, GpuError> {
+    let descriptor = wgpu::BufferDescriptor {
+        label: Some("read back"),
+        size,
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    };
+    gpu.create_buffer("a copy to be read back", &descriptor).await
+}
+
+/// Waits until all that was submitted so far is done.
+pub async fn submitted_work_done(gpu: &Gpu) {
+    let signal = Signal::default();
+    let sender = signal.clone();
+    gpu.queue.on_submitted_work_done(move || sender.send(()));
+    Wait { device: &gpu.device, signal }.await
+}
+
+async fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<(), GpuError> {
+    let signal = Signal::default();
+    let sender = signal.clone();
+    buffer.map_async(wgpu::MapMode::Read, .., move |result| sender.send(result));
+    Wait { device: &gpu.device, signal }
+        .await
+        .map_err(|error| GpuError::ReadBack { reason: one_line(&error) })
+}
+
+/// What a callback of wgpu hands to the future that waits for it.
+struct Signal<T>(Arc<Mutex<SignalState<T>>>);
+
+struct SignalState<T> {
+    value: Option<T>,
+    waker: Option<Waker>,
+}
+
+impl<T> Default for Signal<T> {
+    fn default() -> Self {
+        Self(Arc::new(Mutex::new(SignalState { value: None, waker: None })))
+    }
+}
+
+impl<T> Clone for Signal<T> {
+    fn clone(&self) -> Self {
+        Self(Arc::clone(&self.0))
+    }
+}
+
+impl<T> Signal<T> {
+    fn send(&self, value: T) {
+        let waker = {
+            let mut state = self.state();
+            state.value = Some(value);
+            state.waker.take()
+        };
+        if let Some(waker) = waker {
+            waker.wake();
+        }
+    }
+
+    /// No code that holds the lock can panic, so what a poisoned one guards is sound.
+    fn state(&self) -> MutexGuard<'_, SignalState<T>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+struct Wait<'a, T> {
+    device: &'a wgpu::Device,
+    signal: Signal<T>,
+}
+
+impl<T> Future for Wait<'_, T> {
+    type Output = T;
+
+    fn poll(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<T> {
+        // Natively, callbacks come from polling. An error of it is a lost device, of which the callback tells as well.
+        let _ = self.device.poll(wgpu::PollType::Poll);
+        let mut state = self.signal.state();
+        if let Some(value) = state.value.take() {
+            return Poll::Ready(value);
+        }
+        state.waker = Some(context.waker().clone());
+        drop(state);
+        // Nobody else polls, so this asks to be polled again; in a browser the callback alone wakes.
+        if cfg!(not(target_arch = "wasm32")) {
+            context.waker().wake_by_ref();
+        }
+        Poll::Pending
+    }
+}

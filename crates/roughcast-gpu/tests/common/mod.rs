@@ -1,0 +1,21 @@
+//! What the tests share.
+
+#![allow(dead_code)] // each test program uses a part
+
+use roughcast_gpu::{Gpu, GpuOptions, LimitChoice};
+
+/// A device with all that the adapter has. Without an adapter every test fails: none is skipped in silence.
+pub fn gpu() -> Gpu {
+    gpu_with(&GpuOptions::default())
+}
+
+/// A device with WebGPU's default limits.
+pub fn gpu_of_the_web() -> Gpu {
+    gpu_with(&GpuOptions { limits: LimitChoice::WebGpu, ..Default::default() })
+}
+
+fn gpu_with(options: &GpuOptions) -> Gpu {
+    pollster::block_on(Gpu::new(options)).unwrap_or_else(|error| {
+        panic!("these tests need a GPU adapter, real or software (Debian: mesa-vulkan-drivers): {error}")
+    })
+}

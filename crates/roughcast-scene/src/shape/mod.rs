@@ -1,0 +1,171 @@
+//! What a scene is made of: one shape a file.
+
+mod plane;
+mod polynomial;
+mod sphere;
+mod torus;
+
+use glam::{DVec3, Vec3};
+
+pub use plane::Plane;
+pub use sphere::Sphere;
+pub use torus::Torus;
+
+use crate::{Frame, Hit, Ray};
+
+/// A shape, in world space, with its texture coordinates in 0 .. 1 (meshes: as their file has them).
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// A square on the ground.
+    Plane(Plane),
+    /// The unit sphere.
+    Sphere(Sphere),
+    /// A ring.
+    Torus(Torus),
+}
+
+/// A sphere that holds a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// The sphere's centre.
+    pub centre: DVec3,
+    /// The sphere's radius.
+    pub radius: f64,
+}
+
+/// Why a shape cannot be.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum ShapeError {
+    /// A plane without extent.
+    #[error("a plane's half size must be positive and finite, not {0}")]
+    HalfSize(f64),
+    /// A torus that is a circle, or one that meets itself.
+    #[error("a torus' minor radius must lie between 0 and 1, the major radius, not at {0}")]
+    MinorRadius(f64),
+}
+
+/// Triangles for a GPU. Front faces are counter-clockwise.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TriangleMesh {
+    /// Points in world space, one a vertex.
+    pub positions: Vec<[f32; 3]>,
+    /// Unit normals.
+    pub normals: Vec<[f32; 3]>,
+    /// Unit tangents (growing u) and the handedness w, as glTF has them: the bitangent (falling v) is w cross(normal,
+    /// tangent).
+    pub tangents: Vec<[f32; 4]>,
+    /// Texture coordinates.
+    pub uvs: Vec<[f32; 2]>,
+    /// Three vertices a triangle.
+    pub indices: Vec<u32>,
+}
+
+/// The largest `detail` of [`Shape::triangles`]; larger ones are cut to it. A sphere then has half a million triangles.
+pub const MAX_DETAIL: u32 = 512;
+
+impl Shape {
+    /// The nearest point that a ray meets in front of its origin.
+    ///
+    /// All shapes have two sides. A back side shows glTF's double-sided material: all three axes of the frame and the
+    /// geometric normal are reversed, so that they face the viewer and what is a bump from the front is a dent from behind.
+    /// Texture coordinates and their derivatives stay.
+    pub fn hit(&self, ray: &Ray) -> Option<Hit> {
+        match self {
+            Self::Plane(plane) => plane.hit(ray),
+            Self::Sphere(sphere) => sphere.hit(ray),
+            Self::Torus(torus) => torus.hit(ray),
+        }
+    }
+
+    /// A sphere that holds the shape, to frame it with a camera.
+    pub fn bounds(&self) -> Bounds {
+        match self {
+            Self::Plane(plane) => plane.bounds(),
+            Self::Sphere(sphere) => sphere.bounds(),
+            Self::Torus(torus) => torus.bounds(),
+        }
+    }
+
+    /// Triangles that approximate the shape; normals and tangents at their vertices are exact.
+    ///
+    /// `detail`, in 1 ..= [`MAX_DETAIL`], is the number of squares along v; round shapes have twice as many along u. A
+    /// mesh is given as it is.
+    pub fn triangles(&self, detail: u32) -> TriangleMesh {
+        let detail = detail.clamp(1, MAX_DETAIL);
+        match self {
+            Self::Plane(plane) => plane.triangles(detail),
+            Self::Sphere(sphere) => sphere.triangles(detail),
+            Self::Torus(torus) => torus.triangles(detail),
+        }
+    }
+}
+
+/// A point of a parametrised surface, seen from its front.
+struct SurfacePoint {
+    position: DVec3,
+    /// Unit, outwards.
+    normal: DVec3,
+    /// Unit, towards growing u.
+    tangent: DVec3,
+    uv: glam::DVec2,
+    dpdu: DVec3,
+    dpdv: DVec3,
+}
+
+impl SurfacePoint {
+    fn hit(self, ray: &Ray, distance: f64) -> Hit {
+        let bitangent = self.normal.cross(self.tangent);
+        let hit = Hit {
+            distance,
+            position: self.position,
+            geometric_normal: self.normal,
+            frame: Frame { tangent: self.tangent, bitangent, normal: self.normal },
+            uv: self.uv,
+            dpdu: self.dpdu,
+            dpdv: self.dpdv,
+        };
+        facing(hit, ray)
+    }
+}
+
+/// Reverses the frame of a hit that is seen from behind.
+pub(crate) fn facing(hit: Hit, ray: &Ray) -> Hit {
+    if hit.geometric_normal.dot(ray.direction) <= 0.0 {
+        return hit;
+    }
+    let Frame { tangent, bitangent, normal } = hit.frame;
+    Hit {
+        geometric_normal: -hit.geometric_normal,
+        frame: Frame { tangent: -tangent, bitangent: -bitangent, normal: -normal },
+        ..hit
+    }
+}
+
+/// A grid of `across` x `down` squares over the unit square of texture coordinates, each cut into two triangles that turn
+/// counter-clockwise where the surface is seen from its front. Triangles without area (at poles) are left out.
+fn tessellate(across: u32, down: u32, point: impl Fn(f64, f64) -> SurfacePoint) -> TriangleMesh {
+    let mut mesh = TriangleMesh::default();
+    for j in 0..=down {
+        for i in 0..=across {
+            let p = point(f64::from(i) / f64::from(across), f64::from(j) / f64::from(down));
+            mesh.positions.push(p.position.as_vec3().into());
+            mesh.normals.push(p.normal.as_vec3().into());
+            mesh.tangents.push(p.tangent.as_vec3().extend(1.0).into());
+            mesh.uvs.push(p.uv.as_vec2().into());
+        }
+    }
+    let at = |k: u32| Vec3::from(mesh.positions[k as usize]);
+    for j in 0..down {
+        for i in 0..across {
+            let top_left = j * (across + 1) + i;
+            let (top_right, bottom_left) = (top_left + 1, top_left + across + 1);
+            let bottom_right = bottom_left + 1;
+            for [a, b, c] in [[top_left, bottom_left, top_right], [top_right, bottom_left, bottom_right]] {
+                if at(a) != at(b) && at(b) != at(c) && at(c) != at(a) {
+                    mesh.indices.extend([a, b, c]);
+                }
+            }
+        }
+    }
+    mesh
+}

@@ -1,0 +1,35 @@
+//! The base roughness of the material as a covariance in the plane of the surface.
+//!
+//! Source: LEAN mapping, 3.4, where it is `I / s` whatever the facet's slope ([`BaseLobe::Plane`]). [`BaseLobe::Facet`] is
+//! the lobe that a facet of slope B really shows there: a turn takes the plane of slopes about the facet into that of the
+//! surface, and its Jacobian at the lobe's middle stretches deviations by `1 + B²` along B and by `sqrt(1 + B²)` across.
+
+use super::{BaseLobe, LobeOptions};
+use crate::moments::Covariance;
+use crate::slope::Slope;
+use crate::texture::Base;
+
+/// Slope covariance of the base roughness about a facet with this slope, in the plane of the surface.
+pub fn base_covariance(slope: Slope, options: &LobeOptions) -> Covariance {
+    let variance = 1.0 / options.specular_power;
+    match options.base {
+        BaseLobe::Plane => Covariance::isotropic(variance),
+        BaseLobe::Facet => {
+            // (1 + B²) (I + B Bᵀ) / s has the two stretches, squared, as its eigenvalues.
+            let across = variance * (1.0 + slope.x * slope.x + slope.y * slope.y);
+            Covariance {
+                xx: across * (1.0 + slope.x * slope.x),
+                yy: across * (1.0 + slope.y * slope.y),
+                xy: across * slope.x * slope.y,
+            }
+        }
+    }
+}
+
+/// The base roughness that is still to be added to what a map holds: none where it is in the map.
+pub fn base_to_add(mean: Slope, options: &LobeOptions) -> Covariance {
+    match options.base_in_maps {
+        Base::None => base_covariance(mean, options),
+        Base::Baked => Covariance::default(),
+    }
+}

@@ -1,0 +1,58 @@
+//! A facet of the filtered bump map: what the models in the frame of the bump have in common.
+
+use super::Form;
+use super::vector::{Vector, cross, dot, normalize};
+use crate::texture::Packing;
+use crate::texture::packing::unpack;
+
+/// Filtered normals are not flatter than this: steeper than any slope that an eight-bit normal can tell from horizontal.
+pub const LEAST_NORMAL_Z: f32 = crate::texture::pbr::FLATTEST;
+
+/// Cosines below this count as none. Its square is the smallest by which an f32 can still be divided.
+pub const LEAST_COSINE: f32 = 1e-18;
+
+/// A facet and the exponent of the cosine lobe about it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BumpFacet {
+    /// Unit bump normal.
+    pub normal: [f32; 3],
+    /// Blinn-Phong exponent.
+    pub specular_power: f32,
+}
+
+/// The facet with a filtered normal of any length. A zero vector counts as flat, a normal into the surface as steep.
+pub fn bump_facet(normal: Vector, specular_power: f32) -> BumpFacet {
+    BumpFacet { normal: unit_normal(normal), specular_power }
+}
+
+/// The direction of a filtered normal: z at least [`LEAST_NORMAL_Z`], unit length.
+pub fn unit_normal(normal: Vector) -> Vector {
+    normalize([normal[0], normal[1], normal[2].max(LEAST_NORMAL_Z)])
+}
+
+/// The filtered normal that LEAN's first texture holds; its length is what averaging has left of it.
+pub fn bump_normal(lean1: [f32; 4], packing: &Packing) -> Vector {
+    [unpack(lean1[0], packing.unit), unpack(lean1[1], packing.unit), lean1[2]]
+}
+
+/// `cos^exponent` of the angle between two directions of any length, zero from a right angle on.
+///
+/// From the tangent, `(1 + tan²)^(-exponent / 2)`: for exponents in the thousands a rounded cosine near one is useless.
+pub fn cosine_power(axis: Vector, direction: Vector, exponent: f32) -> f32 {
+    let cosine = dot(axis, direction);
+    if cosine < LEAST_COSINE {
+        return 0.0;
+    }
+    let sine = cross(axis, direction);
+    let tangent_squared = dot(sine, sine) / (cosine * cosine);
+    (-0.5 * exponent * tangent_squared.ln_1p()).exp()
+}
+
+/// The cosine lobe about an axis. Normalised it integrates to 1 over the projected solid angle of that axis.
+pub fn cosine_lobe(axis: Vector, direction: Vector, exponent: f32, form: Form) -> f32 {
+    let constant = match form {
+        Form::Paper => exponent,
+        Form::Normalised => (exponent + 2.0) / std::f32::consts::TAU,
+    };
+    constant * cosine_power(axis, direction, exponent)
+}

@@ -1,0 +1,119 @@
+//! How to read stored texels as a shader does: one affine map for each kind of quantity.
+
+use super::TextureInfo;
+use super::codec::{Affine, Units};
+use crate::SampleType;
+
+/// The way from stored texels, as a sampler returns them, to values: `value = stored * scale + offset`, each pair a
+/// `[scale, offset]`. For float texels, which hold values as they are, every pair is `[1, 0]`.
+///
+/// Filtering and these maps may change places, since both are affine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Packing {
+    /// A component of a slope.
+    pub slope: [f32; 2],
+    /// `Mxx` or `Myy`.
+    pub second: [f32; 2],
+    /// `Mxy`.
+    pub mixed: [f32; 2],
+    /// `Mxx + Myy`.
+    pub trace: [f32; 2],
+    /// A stored variance.
+    pub variance: [f32; 2],
+    /// A component of a unit vector. LEAN's and Schilling's `N.z` is stored as it is and needs none.
+    pub unit: [f32; 2],
+}
+
+impl Packing {
+    /// Texels that hold the values themselves.
+    pub const IDENTITY: Self = Self {
+        slope: [1.0, 0.0],
+        second: [1.0, 0.0],
+        mixed: [1.0, 0.0],
+        trace: [1.0, 0.0],
+        variance: [1.0, 0.0],
+        unit: [1.0, 0.0],
+    };
+
+    /// The packing of a file with this meaning and sample type.
+    pub fn new(info: &TextureInfo, sample_type: SampleType) -> Self {
+        let units = Units::new(info, sample_type);
+        Self {
+            slope: inverse(units.slope()),
+            second: inverse(units.second()),
+            mixed: inverse(units.mixed()),
+            trace: inverse(units.trace()),
+            variance: inverse(units.variance()),
+            unit: inverse(units.unit()),
+        }
+    }
+
+    /// The numbers in the order of the fields: the bytes of WGSL's `struct Packing`, six `vec2f`.
+    pub fn to_array(&self) -> [f32; 12] {
+        let pairs = [self.slope, self.second, self.mixed, self.trace, self.variance, self.unit];
+        std::array::from_fn(|i| pairs[i / 2][i % 2])
+    }
+}
+
+fn inverse(affine: Affine) -> [f32; 2] {
+    let (mul, add) = (f64::from(affine.mul), f64::from(affine.add));
+    // Zero minus it, so that the offset of floats is a plain zero.
+    [(1.0 / mul) as f32, (0.0 - add / mul) as f32]
+}
+
+/// `stored * scale + offset`.
+pub(crate) fn unpack(stored: f32, [scale, offset]: [f32; 2]) -> f32 {
+    stored * scale + offset
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::texture::{Layout, Part};
+
+    /// Two f32 roundings, of the product and of the sum, of numbers up to the full scale.
+    const ROUNDING: f32 = 2.0 * f32::EPSILON;
+
+    fn info() -> TextureInfo {
+        TextureInfo { scale: 1.37, variance_scale: 0.021, ..TextureInfo::new(Layout::Lean, Part::Whole) }
+    }
+
+    #[test]
+    fn unpacking_undoes_what_the_encoders_do() {
+        let units = Units::new(&info(), SampleType::U16);
+        let packing = Packing::new(&info(), SampleType::U16);
+        let scale = info().scale;
+        let pairs = [
+            (units.slope(), packing.slope, scale),
+            (units.second(), packing.second, scale * scale),
+            (units.mixed(), packing.mixed, scale * scale),
+            (units.trace(), packing.trace, 2.0 * scale * scale),
+            (units.variance(), packing.variance, info().variance_scale),
+            (units.unit(), packing.unit, 1.0),
+        ];
+        for (affine, pair, full) in pairs {
+            for part in [0.0, 0.25, 0.7, 1.0] {
+                let value = part * full;
+                let back = unpack(affine.store(value), pair);
+                assert!((back - value).abs() <= 2.0 * ROUNDING * full, "{affine:?}: {value} -> {back}");
+                assert!((back - affine.load(affine.store(value))).abs() <= ROUNDING * full);
+            }
+        }
+    }
+
+    #[test]
+    fn the_ends_of_the_codes_are_the_ends_of_the_ranges() {
+        let packing = Packing::new(&info(), SampleType::U8);
+        assert_eq!(unpack(0.0, packing.slope), -1.37);
+        assert_eq!(unpack(0.5, packing.slope), 0.0);
+        assert_eq!(unpack(1.0, packing.slope), 1.37);
+        assert_eq!(unpack(0.0, packing.second), 0.0);
+    }
+
+    #[test]
+    fn floats_are_left_alone() {
+        for sample_type in [SampleType::F16, SampleType::F32] {
+            assert_eq!(Packing::new(&info(), sample_type), Packing::IDENTITY);
+        }
+    }
+}
