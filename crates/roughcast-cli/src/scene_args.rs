@@ -7,6 +7,7 @@ use clap::Args;
 use glam::DVec3;
 use roughcast::shading::{BaseLobe, Form, LobeOptions, Material, Repair};
 use roughcast::{Bits, Lobe};
+use roughcast_scene::render::MAX_PIXELS;
 use roughcast_scene::{Camera, Light, Scene, Shape, View, load_mesh};
 
 use crate::args::{one_of, positive};
@@ -15,9 +16,6 @@ use crate::{UsageError, usage};
 /// Headings under which the help lists these options.
 const SCENE: &str = "Scene";
 pub const SHADING: &str = "Shading";
-
-/// The largest picture: a mistyped size should not ask for all memory.
-const MOST_PIXELS: usize = 1 << 26;
 
 /// What the map lies on.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -129,8 +127,8 @@ fn light(text: &str) -> Result<Light, String> {
 /// The size of a picture in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size {
-    pub width: usize,
-    pub height: usize,
+    pub width: u32,
+    pub height: u32,
 }
 
 pub fn size(text: &str) -> Result<Size, String> {
@@ -138,10 +136,10 @@ pub fn size(text: &str) -> Result<Size, String> {
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(wanted)?;
     let size =
         Size { width: width.parse().map_err(|_| wanted())?, height: height.parse().map_err(|_| wanted())? };
-    match size.width.checked_mul(size.height) {
-        Some(0) => Err(format!("a picture of {text} has no pixels: both numbers must be above zero")),
-        Some(pixels) if pixels <= MOST_PIXELS => Ok(size),
-        _ => Err(format!("a picture of {text} is too large: at most {MOST_PIXELS} pixels")),
+    match u64::from(size.width) * u64::from(size.height) {
+        0 => Err(format!("a picture of {text} has no pixels: both numbers must be above zero")),
+        pixels if pixels <= MAX_PIXELS => Ok(size),
+        _ => Err(format!("a picture of {text} is too large: at most {MAX_PIXELS} pixels")),
     }
 }
 
