@@ -125,6 +125,15 @@ impl Mipmap {
         Ok(Self { levels, table: OnceLock::new() })
     }
 
+    /// The same texture with another channel in the place of the first.
+    pub(crate) fn with_first_channel(mut self, channel: usize) -> Self {
+        for texel in self.levels.iter_mut().flat_map(|level| &mut level.texels) {
+            texel[0] = texel[channel];
+        }
+        self.table = OnceLock::new();
+        self
+    }
+
     /// The levels, the finest first; at least one.
     pub fn levels(&self) -> &[Level] {
         &self.levels
@@ -145,6 +154,8 @@ impl Mipmap {
 pub(crate) fn wrapped(index: i64, length: usize, wrap: Wrap) -> usize {
     let length = length as i64;
     let inside = match wrap {
+        // Most indices lie inside, and a division is slow.
+        Wrap::Repeat if (0..length).contains(&index) => index,
         Wrap::Repeat => index.rem_euclid(length),
         Wrap::Clamp => index.clamp(0, length - 1),
         Wrap::Mirror => {

@@ -31,6 +31,7 @@ mod surface;
 mod toksvig;
 mod variance;
 mod vector;
+pub mod wgsl;
 
 pub use base::{base_covariance, base_to_add};
 pub use beckmann::{beckmann_lobe, beckmann_surface};
