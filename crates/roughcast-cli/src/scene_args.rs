@@ -1,6 +1,7 @@
 //! Arguments that say what a picture shows and how it is shaded, shared by the subcommands that render.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use anyhow::{Context, Result};
 use clap::Args;
@@ -8,7 +9,7 @@ use glam::DVec3;
 use roughcast::shading::{BaseLobe, Form, LobeOptions, Material, Repair};
 use roughcast::{Bits, Lobe};
 use roughcast_scene::render::MAX_PIXELS;
-use roughcast_scene::{Camera, Light, Scene, Shape, View, load_mesh};
+use roughcast_scene::{Camera, Light, Plane, Scene, Shape, Sphere, Torus, View, load_mesh};
 
 use crate::args::{one_of, positive};
 use crate::{UsageError, usage};
@@ -51,9 +52,9 @@ impl SceneChoice {
     /// The shape; a mesh is read from its file.
     pub fn shape(&self) -> Result<Shape> {
         Ok(match self {
-            Self::Plane => Shape::plane(),
-            Self::Sphere => Shape::sphere(),
-            Self::Torus => Shape::torus(),
+            Self::Plane => Shape::Plane(Plane::default()),
+            Self::Sphere => Shape::Sphere(Sphere),
+            Self::Torus => Shape::Torus(Torus::default()),
             Self::Mesh(path) => {
                 let mesh = load_mesh(path).with_context(|| path.display().to_string())?;
                 if !mesh.has_texture_coordinates() {
@@ -63,7 +64,7 @@ impl SceneChoice {
                          and export it with texture coordinates",
                     ));
                 }
-                Shape::Mesh(mesh)
+                Shape::Mesh(Arc::new(mesh))
             }
         })
     }
