@@ -30,9 +30,10 @@ fn positive_semidefinite(sigma: vec3f) -> vec3f {
 
 // The Gaussian with this mean and covariance (xx, yy, xy), which has its base roughness in it.
 fn slope_gaussian(mean: vec2f, sigma: vec3f, options: LobeOptions) -> SlopeGaussian {
-    let det = covariance_determinant(sigma);
-    // The quotient is at most the smaller eigenvalue and at least half of it. What is added raises both.
+    // Of two negative variances, too, the determinant is positive, and the lobe would grow with the distance.
     let trace = sigma.x + sigma.y;
+    let det = select(0.0, covariance_determinant(sigma), trace > 0.0);
+    // The quotient is at most the smaller eigenvalue and at least half of it. What is added raises both.
     let least = select(0.0, det / max(trace, LEAST_VARIANCE), trace > LEAST_VARIANCE);
     let missing = max(LEAST_VARIANCE - least, 0.0);
     let added = select(missing, 0.0, options.repair == REPAIR_PUBLISHED);
@@ -47,8 +48,8 @@ fn gaussian_lobe(surface: SlopeGaussian, view: vec3f, light: vec3f, options: Lob
     let h = half_vector(view, light);
     // Both sides of the quotient times h.z^2, so that grazing half vectors divide nothing by zero.
     let d = h.xy - surface.mean * h.z;
-    let distance = surface.variance.y * d.x * d.x - 2.0 * surface.covariance * d.x * d.y
-        + surface.variance.x * d.y * d.y;
+    let squares = surface.variance.y * d.x * d.x + surface.variance.x * d.y * d.y;
+    let distance = max(squares - 2.0 * surface.covariance * d.x * d.y, 0.0);
     let scale = 2.0 * surface.det * h.z * h.z;
     if !((scale > 0.0) & (distance < LARGEST_EXPONENT * scale)) {
         return 0.0;

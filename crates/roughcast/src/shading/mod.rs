@@ -53,6 +53,7 @@ pub use reflectance::{
 pub use surface::{Surface, SurfaceLobe, slope_normal};
 pub use toksvig::{toksvig_lobe, toksvig_normal, toksvig_surface};
 pub use variance::{variance_lobe, variance_surface};
+pub use vector::LEAST_HEIGHT;
 
 use crate::named::named_enum;
 use crate::texture::{Base, Layout, Part, RoughnessStored, TextureInfo};
