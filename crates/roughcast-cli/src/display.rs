@@ -27,8 +27,7 @@ pub fn shown(picture: &Picture, exposure: f32) -> Srgb8Picture {
 /// The code of a linear value in sRGB (IEC 61966-2-1). What is no number is black.
 pub fn srgb8(linear: f32) -> u8 {
     let linear = if linear > 0.0 { linear.min(1.0) } else { 0.0 };
-    let encoded =
-        if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+    let encoded = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
     (255.0 * encoded).round() as u8
 }
 

@@ -52,7 +52,8 @@ impl Page {
     /// A table. The first column is text, the others are numbers.
     pub fn table(&mut self, header: &[&str], rows: &[Vec<String>]) {
         let cells = |tag: &str, cells: &[String]| {
-            let cells: String = cells.iter().map(|cell| format!("<{tag}>{}</{tag}>", escaped(cell))).collect();
+            let cells: String =
+                cells.iter().map(|cell| format!("<{tag}>{}</{tag}>", escaped(cell))).collect();
             format!("<tr>{cells}</tr>\n")
         };
         let header: Vec<String> = header.iter().map(|cell| (*cell).to_owned()).collect();

@@ -122,7 +122,9 @@ fn filter(text: &str) -> Result<FilterChoice, String> {
             ))
         };
     }
-    text.parse().map(FilterChoice::Textures).map_err(|error: roughcast::UnknownName| format!("{error}, truth:N"))
+    text.parse()
+        .map(FilterChoice::Textures)
+        .map_err(|error: roughcast::UnknownName| format!("{error}, truth:N"))
 }
 
 fn level(text: &str) -> Result<f64, String> {
@@ -165,7 +167,10 @@ impl PictureFormat {
         match extension.as_str() {
             "png" => Ok(Self::Png),
             "exr" => Ok(Self::Exr),
-            _ => Err(usage(path, "pictures are written as .png or .exr: end the name of the output in one of them")),
+            _ => Err(usage(
+                path,
+                "pictures are written as .png or .exr: end the name of the output in one of them",
+            )),
         }
     }
 }
@@ -175,7 +180,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     args.check()?;
     let map = read_map(&args.map, &args.source)?;
     map.warnings.iter().for_each(|warning| warn(&args.map, warning));
-    let scene = args.scene.scene(&map.image, args.shading_options.material())?;
+    let scene = args.scene.scene(&map.image, args.size, args.shading_options.material())?;
     let painter = Painter::new(args, &map)?;
     match args.frames {
         None => {
@@ -198,12 +203,20 @@ impl Args {
         if self.frames.is_none() {
             PictureFormat::of(&self.output)?;
             if is_same_file(&self.output, &self.map) {
-                return Err(usage(&self.output, "it is the map, which would be lost: give the output another name"));
+                return Err(usage(
+                    &self.output,
+                    "it is the map, which would be lost: give the output another name",
+                ));
             }
             let output = || self.output.display().to_string();
             AtomicFile::create(&self.output).map(drop).with_context(output)?;
         }
-        if self.gpu && !matches!(self.filter, FilterChoice::Textures(Filter::Nearest | Filter::Trilinear | Filter::Anisotropic)) {
+        if self.gpu
+            && !matches!(
+                self.filter,
+                FilterChoice::Textures(Filter::Nearest | Filter::Trilinear | Filter::Anisotropic)
+            )
+        {
             let line = "--gpu filters as the hardware does: nearest, trilinear or anisotropic; leave --gpu out for the others";
             return Err(UsageError(line.to_owned()).into());
         }
@@ -222,8 +235,20 @@ impl Args {
 
 /// What renders, with the textures that it needs.
 enum Painter {
-    Method { textures: ShadingTextures, sampler: Sampler, args: ShadingArgs, size: Size },
-    Truth { slopes: SlopeMap, shading: Shading, samples: u32, map_wrap: roughcast::Wrap, args: ShadingArgs, size: Size },
+    Method {
+        textures: ShadingTextures,
+        sampler: Sampler,
+        args: ShadingArgs,
+        size: Size,
+    },
+    Truth {
+        slopes: SlopeMap,
+        shading: Shading,
+        samples: u32,
+        map_wrap: roughcast::Wrap,
+        args: ShadingArgs,
+        size: Size,
+    },
 }
 
 impl Painter {
@@ -295,7 +320,13 @@ fn render_frames(args: &Args, scene: &Scene, painter: &Painter, frames: u32) -> 
 }
 
 /// Writes a picture to a file that appears with the set.
-fn add(set: &mut AtomicSet, path: &Path, format: PictureFormat, picture: &Picture, exposure: f32) -> Result<()> {
+fn add(
+    set: &mut AtomicSet,
+    path: &Path,
+    format: PictureFormat,
+    picture: &Picture,
+    exposure: f32,
+) -> Result<()> {
     let named = || path.display().to_string();
     let mut file = AtomicFile::create(path).with_context(named)?;
     match format {

@@ -7,9 +7,9 @@ use anyhow::{Context, Result};
 use clap::Args;
 use glam::DVec3;
 use roughcast::shading::{BaseLobe, Form, LobeOptions, Material, Repair};
-use roughcast::{Bits, Lobe};
+use roughcast::{Bits, Image, Lobe};
 use roughcast_scene::render::MAX_PIXELS;
-use roughcast_scene::{Camera, Light, Plane, Scene, Shape, Sphere, Torus, View, load_mesh};
+use roughcast_scene::{Camera, Light, Plane, Scene, Shape, Sphere, Torus, View, default_light, load_mesh};
 
 use crate::args::{one_of, positive};
 use crate::{UsageError, usage};
@@ -115,7 +115,9 @@ fn light(text: &str) -> Result<Light, String> {
             (DVec3::new(*x, *y, *z), [*r as f32, *g as f32, *b as f32])
         }
         _ => {
-            return Err("it must be X,Y,Z or X,Y,Z,R,G,B, with 'point:' before it for a point light".to_owned());
+            return Err(
+                "it must be X,Y,Z or X,Y,Z,R,G,B, with 'point:' before it for a point light".to_owned()
+            );
         }
     };
     if is_point {
@@ -172,6 +174,39 @@ pub struct SceneArgs {
     /// How often the map repeats over the scene's texture coordinates [default: chosen for the scene]
     #[arg(long, value_name = "N", value_parser = positive)]
     pub repeat: Option<f32>,
+}
+
+impl SceneArgs {
+    /// The scene for a map and a picture of this size.
+    pub fn scene(&self, map: &Image, size: Size, material: Material) -> Result<Scene> {
+        let shape = Arc::new(self.scene.shape()?);
+        let (texels, size) = ((map.width(), map.height()), (size.width, size.height));
+        let mut scene = match self.camera {
+            CameraChoice::View(view) => {
+                if self.look_at.is_some() {
+                    let line =
+                        "--look-at goes with a camera at X,Y,Z; a named view looks at the scene by itself";
+                    return Err(UsageError(line.to_owned()).into());
+                }
+                view.scene(shape, texels, size, material)
+            }
+            CameraChoice::Eye(eye) => {
+                let target = self.look_at.unwrap_or_else(|| shape.bounds().centre);
+                let camera = Camera::new(eye, target, DVec3::Y, self.fov.to_radians())
+                    .map_err(|error| UsageError(format!("--camera: {error}")))?;
+                let scene = View::Mid.scene(shape, texels, size, material);
+                let lights = vec![default_light(&scene.shape, &camera, size, View::Mid)];
+                Scene { camera, lights, ..scene }
+            }
+        };
+        if !self.lights.is_empty() {
+            scene.lights.clone_from(&self.lights);
+        }
+        if let Some(repeats) = self.repeat {
+            scene.repeats = f64::from(repeats);
+        }
+        Ok(scene)
+    }
 }
 
 fn angle(text: &str) -> Result<f64, String> {

@@ -43,14 +43,17 @@ pub fn make() -> Result<Figure> {
     let stage = stage(SIZE);
     let truth = stage.truth(Shading::OffCentre, SAMPLES)?;
     let exposure = exposure_of(&truth);
-    let mut panels =
-        vec![Panel { picture: shown(&truth, exposure), caption: format!("truth, {SAMPLES} samples a pixel") }];
+    let mut panels = vec![Panel {
+        picture: shown(&truth, exposure),
+        caption: format!("truth, {SAMPLES} samples a pixel"),
+    }];
     let (mut rows, mut errors, mut numbers) = (Vec::new(), Vec::new(), Map::new());
     let flickers = flickers()?;
     for ((name, shading, filter), flicker) in METHODS.into_iter().zip(&flickers) {
         let picture = stage.method(shading, filter)?;
         let (error, energy) = (rmse(&picture, &truth)?, energy_error(&picture, &truth)?);
-        panels.push(Panel { picture: shown(&picture, exposure), caption: format!("{name}: RMSE {error:.4}") });
+        panels
+            .push(Panel { picture: shown(&picture, exposure), caption: format!("{name}: RMSE {error:.4}") });
         rows.push(vec![
             name.to_owned(),
             format!("{error:.5}"),

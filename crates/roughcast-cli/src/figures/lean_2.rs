@@ -49,7 +49,10 @@ pub fn make() -> Result<Figure> {
         ),
         panels: figure.panels,
         charts: Vec::new(),
-        table: Some(Table { header: vec!["highlight", "variance 1", "variance 2", "aspect ratio", "expected"], rows: figure.rows }),
+        table: Some(Table {
+            header: vec!["highlight", "variance 1", "variance 2", "aspect ratio", "expected"],
+            rows: figure.rows,
+        }),
     })
 }
 
@@ -129,7 +132,8 @@ fn highlight(scene: &Scene, picture: &Picture) -> Covariance {
         for x in 0..width {
             let (cx, cy) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
             let half = |x: f64, y: f64| half_slope(scene, picture, x, y);
-            let (Some(at), Some(right), Some(below)) = (half(cx, cy), half(cx + 0.5, cy), half(cx, cy + 0.5)) else {
+            let (Some(at), Some(right), Some(below)) = (half(cx, cy), half(cx + 0.5, cy), half(cx, cy + 0.5))
+            else {
                 continue;
             };
             if at.length() > FARTHEST {
@@ -140,7 +144,8 @@ fn highlight(scene: &Scene, picture: &Picture) -> Covariance {
             let w = area * f64::from(luminance(picture.specular[(y * width + x) as usize]));
             weight += w;
             sum += w * at;
-            squares = [squares[0] + w * at.x * at.x, squares[1] + w * at.y * at.y, squares[2] + w * at.x * at.y];
+            squares =
+                [squares[0] + w * at.x * at.x, squares[1] + w * at.y * at.y, squares[2] + w * at.x * at.y];
         }
     }
     let mean = sum / weight;

@@ -52,7 +52,10 @@ fn chart(s: f64) -> Chart {
     // Four deviations of the lobe.
     let widest = (4.0 / s.sqrt()).min(std::f64::consts::FRAC_PI_2);
     let points = |lobe: &dyn Fn(f64) -> f64| {
-        (0..=POINTS).map(|i| widest * f64::from(i) / f64::from(POINTS)).map(|angle| (angle, lobe(angle))).collect()
+        (0..=POINTS)
+            .map(|i| widest * f64::from(i) / f64::from(POINTS))
+            .map(|angle| (angle, lobe(angle)))
+            .collect()
     };
     let blinn_phong = points(&|angle: f64| angle.cos().powf(s));
     let beckmann = points(&|angle: f64| (-0.5 * s * angle.tan().powi(2)).exp());

@@ -71,12 +71,8 @@ fn largest_difference(picture: &Picture, other: &Picture) -> f32 {
 }
 
 fn stage() -> Stage {
-    let camera = Camera {
-        eye: DVec3::new(0.0, 0.4, 4.2),
-        target: DVec3::ZERO,
-        up: DVec3::Y,
-        vertical_fov: 0.55,
-    };
+    let camera =
+        Camera { eye: DVec3::new(0.0, 0.4, 4.2), target: DVec3::ZERO, up: DVec3::Y, vertical_fov: 0.55 };
     let mut scene = scene(Shape::Sphere(Sphere), 2.0, camera, DVec3::new(-0.3, 0.7, 1.0));
     let glancing = DVec3::new(1.0, 0.15, -0.55).normalize();
     scene.lights.push(Light::Directional { towards: glancing, irradiance: WHITE });

@@ -8,9 +8,7 @@ use roughcast::shading::{LobeOptions, Material, Shading};
 use roughcast::{Bits, Lobe, Wrap};
 use roughcast_scene::pattern::Pattern;
 use roughcast_scene::render::{Method, ShadingTextures, Truth, unwatched};
-use roughcast_scene::{
-    Camera, Filter, Light, Picture, Reconstruction, Sampler, Scene, Shape, SlopeMap,
-};
+use roughcast_scene::{Camera, Filter, Light, Picture, Reconstruction, Sampler, Scene, Shape, SlopeMap};
 
 use crate::method::{TextureOptions, bake_for};
 
