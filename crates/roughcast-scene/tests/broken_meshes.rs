@@ -5,7 +5,9 @@ mod common;
 use std::path::PathBuf;
 
 use common::Numbers;
-use roughcast_scene::{Mesh, MeshError, MeshFault, TriangleMesh, load_mesh};
+use roughcast_scene::{
+    MAX_FILE_BYTES, MAX_TRIANGLES, MAX_VERTICES, Mesh, MeshError, MeshFault, TriangleMesh, load_mesh,
+};
 
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data");
 
@@ -172,6 +174,30 @@ fn broken_glb_files() {
         // The length of the whole file is not needed; that of the JSON is.
         assert_eq!(load_mesh(&path).is_ok(), at == 8);
     }
+}
+
+#[test]
+fn files_beyond_the_limits_are_refused_before_memory_is_taken() {
+    let corners = " 1".repeat(MAX_TRIANGLES + 3);
+    let path = file("limits", "polygon.obj", format!("{TRIANGLE}f{corners}\n"));
+    assert!(message(load_mesh(&path), &path).contains("more triangles than the limit"));
+    // One node after another shows the same mesh.
+    let many = MAX_VERTICES / 3 / 1000 + 1;
+    let edit = |s: String| {
+        let nodes = vec![r#"{"mesh":0}"#; many].join(",");
+        let roots: Vec<String> = (0..many).map(|i| i.to_string()).collect();
+        let mesh = r#"{"attributes":{"POSITION":0},"indices":1}"#;
+        s.replace(r#"{"mesh":0}"#, &nodes)
+            .replace(r#""nodes":[0]"#, &format!(r#""nodes":[{}]"#, roots.join(",")))
+            .replace(mesh, &vec![mesh; 1000].join(","))
+    };
+    let path = file("limits", "nodes.gltf", gltf(DATA_URI, edit));
+    assert!(message(load_mesh(&path), &path).contains("than the limit"));
+    let path = file("limits", "values.gltf", format!("[{}", "{},".repeat(1 << 22)));
+    assert!(message(load_mesh(&path), &path).contains("more values in its JSON than the limit"));
+    let path = file("limits", "large.glb", "");
+    std::fs::File::options().write(true).open(&path).unwrap().set_len(MAX_FILE_BYTES as u64 + 1).unwrap();
+    assert!(message(load_mesh(&path), &path).contains("more bytes than the limit"));
 }
 
 #[test]

@@ -39,7 +39,7 @@ fn append<const N: usize>(to: &mut Vec<[f32; N]>, from: Vec<[f32; N]>, vertices:
 /// Whether arrays and indices of a part fit together and all numbers are finite.
 fn check(part: &TriangleMesh) -> Result<(), MeshFault> {
     let vertices = part.positions.len();
-    if part.indices.len() % 3 != 0 {
+    if !part.indices.len().is_multiple_of(3) {
         return Err(MeshFault::Count {
             what: "indices",
             count: part.indices.len(),
