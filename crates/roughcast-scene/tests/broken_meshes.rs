@@ -5,9 +5,7 @@ mod common;
 use std::path::PathBuf;
 
 use common::Numbers;
-use roughcast_scene::{
-    MAX_FILE_BYTES, MAX_TRIANGLES, MAX_VERTICES, Mesh, MeshError, MeshFault, TriangleMesh, load_mesh,
-};
+use roughcast_scene::{MAX_FILE_BYTES, MAX_TRIANGLES, Mesh, MeshError, MeshFault, TriangleMesh, load_mesh};
 
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data");
 
@@ -57,7 +55,7 @@ fn broken_obj_files() {
     }
     // The same triangle, whole, loads: the faults above are what is refused.
     let path = file("broken_obj", "whole.obj", format!("# caf\u{e9}\n{TRIANGLE}f 1 2 3\nf -3 -2 -1\n"));
-    assert_eq!(load_mesh(&path).unwrap().triangle_count(), 2);
+    assert_eq!(load_mesh(&path).unwrap().triangle_count(), 1, "the second repeats the first");
     let latin = [b"# caf\xe9\n".as_slice(), TRIANGLE.as_bytes(), b"f 1 2 3\n"].concat();
     assert!(load_mesh(file("broken_obj", "latin.OBJ", latin)).is_ok());
 }
@@ -181,18 +179,29 @@ fn files_beyond_the_limits_are_refused_before_memory_is_taken() {
     let corners = " 1".repeat(MAX_TRIANGLES + 3);
     let path = file("limits", "polygon.obj", format!("{TRIANGLE}f{corners}\n"));
     assert!(message(load_mesh(&path), &path).contains("more triangles than the limit"));
-    // One node after another shows the same mesh.
-    let many = MAX_VERTICES / 3 / 1000 + 1;
-    let edit = |s: String| {
-        let nodes = vec![r#"{"mesh":0}"#; many].join(",");
-        let roots: Vec<String> = (0..many).map(|i| i.to_string()).collect();
-        let mesh = r#"{"attributes":{"POSITION":0},"indices":1}"#;
-        s.replace(r#"{"mesh":0}"#, &nodes)
-            .replace(r#""nodes":[0]"#, &format!(r#""nodes":[{}]"#, roots.join(",")))
-            .replace(mesh, &vec![mesh; 1000].join(","))
+    // Nodes show one mesh of a hundred thousand triangles over and over.
+    let (triangles, shown) = (100_000, MAX_TRIANGLES / 100_000 + 1);
+    let positions = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let mut bytes: Vec<u8> = positions.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+    bytes.extend([0, 1, 2].repeat(triangles));
+    file("limits", "many.bin", &bytes);
+    let text = |shown: usize| {
+        let roots: Vec<String> = (0..shown).map(|i| i.to_string()).collect();
+        gltf("many.bin", |s| {
+            s.replace(r#"{"mesh":0}"#, &vec![r#"{"mesh":0}"#; shown].join(","))
+                .replace(r#""nodes":[0]"#, &format!(r#""nodes":[{}]"#, roots.join(",")))
+                .replace(r#""byteLength":3}"#, &format!(r#""byteLength":{}}}"#, 3 * triangles))
+                .replace(
+                    r#""count":3,"type":"SCALAR""#,
+                    &format!(r#""count":{},"type":"SCALAR""#, 3 * triangles),
+                )
+        })
     };
-    let path = file("limits", "nodes.gltf", gltf(DATA_URI, edit));
-    assert!(message(load_mesh(&path), &path).contains("than the limit"));
+    let path = file("limits", "two.gltf", text(2));
+    // All of them are the same one.
+    assert_eq!(load_mesh(&path).unwrap().triangle_count(), 1);
+    let path = file("limits", "nodes.gltf", text(shown));
+    assert!(message(load_mesh(&path), &path).contains("more triangles than the limit"));
     let path = file("limits", "values.gltf", format!("[{}", "{},".repeat(1 << 22)));
     assert!(message(load_mesh(&path), &path).contains("more values in its JSON than the limit"));
     let path = file("limits", "large.glb", "");

@@ -90,8 +90,8 @@ impl Mesh {
     ///
     /// Each part needs positions and indices; its other arrays may be empty. Missing normals are computed, smooth across
     /// all triangles that meet at a position and weighed by their areas; missing tangents by MikkTSpace. A triangle that
-    /// turns clockwise seen from the side to which its normals point is turned over. Triangles without an area are
-    /// dropped. Where not all parts have texture coordinates, the mesh counts as having none.
+    /// turns clockwise seen from the side to which its normals point is turned over. Triangles without an area,
+    /// and those that repeat another, are dropped. Where not all parts have texture coordinates, the mesh counts as having none.
     pub fn new(parts: Vec<TriangleMesh>) -> Result<Self, MeshFault> {
         let has_texture_coordinates = parts.iter().all(|part| !part.uvs.is_empty());
         let mut triangles = merge::merge(parts)?;
