@@ -21,8 +21,10 @@ pub mod pattern;
 mod picture;
 pub mod render;
 mod scene;
+mod sequence;
 mod shape;
 mod slope_map;
+mod views;
 
 pub use camera::{Camera, CameraError, PixelRays};
 pub use filter::{Filter, Sampler, SummedAreaTable};
@@ -31,5 +33,7 @@ pub use light::Light;
 pub use mipmap::{Level, Mipmap, MipmapError};
 pub use picture::{Picture, luminance};
 pub use scene::Scene;
+pub use sequence::Sequence;
 pub use shape::{Bounds, MAX_DETAIL, Plane, Shape, ShapeError, Sphere, Torus, TriangleMesh};
 pub use slope_map::{Reconstruction, SlopeMap};
+pub use views::{Setup, View};
