@@ -1,36 +1,26 @@
-//! Slow camera moves, for flicker.
-
-use glam::DVec3;
+//! Slow camera moves, in which aliasing shows as flicker.
 
 use crate::Scene;
 
-/// A camera move: eye and target go together, along a straight line, by the same step each frame.
-#[derive(Clone, Debug)]
-pub struct Sequence {
-    /// The scene of frame 0.
-    pub scene: Scene,
-    /// The move from one frame to the next, in world space.
-    pub step: DVec3,
-}
+/// What the middle of the picture moves by from frame to frame, in parts of the picture's height: less than a pixel, so
+/// that whatever jumps does so by aliasing.
+const STEP: f64 = 1.0 / 600.0;
+/// The move is mostly sideways; so much of it is forward, so that the scale of things changes, too.
+const FORWARD: f64 = 0.5;
 
-impl Sequence {
-    /// A move to the right of the picture, by this many pixels a frame at the distance of the camera's target, in a picture
-    /// of this height. A part of a pixel is slow enough that what the truth shows changes little from frame to frame.
-    pub fn drift(scene: &Scene, pixels_per_frame: f64, height: u32) -> Self {
-        let camera = &scene.camera;
-        let view = camera.target - camera.eye;
-        let pixel = 2.0 * (0.5 * camera.vertical_fov).tan() * view.length() / f64::from(height.max(1));
-        let right = view.cross(camera.up).normalize_or_zero();
-        Self { scene: scene.clone(), step: right * (pixel * pixels_per_frame) }
-    }
-
-    /// The scene of a frame; parts of one are between frames.
-    pub fn at(&self, frame: f64) -> Scene {
-        let mut scene = self.scene.clone();
-        scene.camera.eye += self.step * frame;
-        scene.camera.target += self.step * frame;
-        scene
-    }
+/// The scene at `frames` times of a slow camera move, the first being the scene itself.
+pub fn slow_move(scene: &Scene, frames: u32) -> Vec<Scene> {
+    let camera = scene.camera;
+    let forward = camera.target - camera.eye;
+    let right = forward.cross(camera.up).normalize_or_zero();
+    let height_there = 2.0 * (0.5 * camera.vertical_fov).tan() * forward.length();
+    let step = STEP * height_there * (right + FORWARD * forward.normalize_or_zero());
+    let at = |frame: u32| {
+        let moved = step * f64::from(frame);
+        let camera = crate::Camera { eye: camera.eye + moved, target: camera.target + moved, ..camera };
+        Scene { camera, ..scene.clone() }
+    };
+    (0..frames).map(at).collect()
 }
 
 #[cfg(test)]
@@ -40,25 +30,25 @@ mod tests {
     use roughcast::shading::Material;
 
     use super::*;
-    use crate::{Camera, Plane, Shape};
+    use crate::{Plane, Shape, View};
 
     #[test]
-    fn a_drift_moves_what_the_camera_looks_at_by_so_many_pixels() {
-        let camera = Camera::new(DVec3::new(1.0, 2.0, 3.0), DVec3::ZERO, DVec3::Y, 0.7).unwrap();
-        let scene = Scene {
-            shape: Arc::new(Shape::Plane(Plane::default())),
-            camera,
-            lights: vec![],
-            material: Material::default(),
-            repeats: 1.0,
-            background: [0.0; 3],
+    fn a_move_starts_where_the_scene_is_and_goes_by_less_than_a_pixel() {
+        const SIZE: (u32, u32) = (256, 192);
+        let plane = Arc::new(Shape::Plane(Plane::default()));
+        let scene = View::Mid.scene(plane, (64, 64), SIZE, Material::default());
+        let frames = slow_move(&scene, 5);
+        assert_eq!((frames.len(), frames[0].camera), (5, scene.camera));
+        // Where a point of the first frame's middle is seen in each frame.
+        let seen = |frame: &Scene| {
+            let aspect = f64::from(SIZE.0) / f64::from(SIZE.1);
+            let clip = frame.camera.clip_from_world(aspect, 0.01, 100.0);
+            let at = clip * scene.camera.target.extend(1.0);
+            0.5 * f64::from(SIZE.0) * at.x / at.w
         };
-        let moved = Sequence::drift(&scene, 0.25, 100).at(8.0);
-        // What was in the middle is two pixels further left now.
-        let ray = moved.camera.ray(48.0, 50.0, 160, 100);
-        let middle = moved.camera.ray(78.0, 50.0, 160, 100);
-        assert!(middle.direction.cross((camera.target - middle.origin).normalize()).length() < 1e-4);
-        assert!(ray.direction.cross((camera.target - ray.origin).normalize()).length() > 1e-2);
-        assert_eq!(Sequence::drift(&scene, 0.25, 100).at(0.0).camera, camera);
+        for pair in frames.windows(2) {
+            let moved = seen(&pair[0]) - seen(&pair[1]);
+            assert!(moved > 0.1 && moved < 1.0, "{moved} pixels");
+        }
     }
 }

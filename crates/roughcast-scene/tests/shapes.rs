@@ -29,6 +29,7 @@ fn residual(shape: &Shape, p: DVec3) -> f64 {
         }
         Shape::Sphere(_) => (p.length() - 1.0).abs(),
         Shape::Torus(torus) => ((p.x.hypot(p.z) - 1.0).hypot(p.y) - torus.minor()).abs(),
+        Shape::Mesh(_) => unreachable!(),
     }
 }
 
@@ -43,6 +44,7 @@ fn point(shape: &Shape, uv: DVec2) -> DVec3 {
             let r = 1.0 - torus.minor() * (2.0 * v).cos();
             DVec3::new(r * u.sin(), torus.minor() * (2.0 * v).sin(), r * u.cos())
         }
+        Shape::Mesh(_) => unreachable!(),
     }
 }
 
@@ -353,6 +355,7 @@ fn tessellations_converge_to_the_shape() {
             Shape::Plane(plane) => 4.0 * plane.half_size() * plane.half_size(),
             Shape::Sphere(_) => 4.0 * pi,
             Shape::Torus(torus) => 4.0 * pi * pi * torus.minor(),
+            Shape::Mesh(_) => unreachable!(),
         };
         // Chords instead of arcs of 1/128 turn: 1 - cos(pi / 128) = 3e-4.
         assert!((area / wanted - 1.0).abs() < 1e-3, "{name}: {area} {wanted}");
