@@ -1,6 +1,8 @@
 //! Enums whose variants have a name: the one that the command line, the files' metadata and Python all use.
 
-/// Declares an enum with `ALL`, `name()`, `Display` and `FromStr`, from one list of variants.
+/// Declares an enum with `ALL`, `name()`, `Display` and `FromStr`, from one list of variants. For the crates of this
+/// workspace, so that all names that a user types behave alike.
+#[macro_export]
 macro_rules! named_enum {
     (
         $(#[$meta:meta])*

@@ -1,17 +1,20 @@
 //! What a scene is made of: one shape a file.
 
 mod plane;
-mod polynomial;
+mod quartic;
 mod sphere;
 mod torus;
 
-use glam::{DVec3, Vec3};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3, Vec3};
 
 pub use plane::Plane;
 pub use sphere::Sphere;
 pub use torus::Torus;
 
-use crate::{Frame, Hit, Ray};
+use crate::{Frame, Hit, Mesh, Ray};
 
 /// A shape, in world space, with its texture coordinates in 0 .. 1 (meshes: as their file has them).
 #[derive(Clone, Debug)]
@@ -22,6 +25,8 @@ pub enum Shape {
     Sphere(Sphere),
     /// A ring.
     Torus(Torus),
+    /// Triangles. Shared, since scenes are copied.
+    Mesh(Arc<Mesh>),
 }
 
 /// A sphere that holds a shape.
@@ -74,6 +79,7 @@ impl Shape {
             Self::Plane(plane) => plane.hit(ray),
             Self::Sphere(sphere) => sphere.hit(ray),
             Self::Torus(torus) => torus.hit(ray),
+            Self::Mesh(mesh) => mesh.hit(ray),
         }
     }
 
@@ -83,6 +89,7 @@ impl Shape {
             Self::Plane(plane) => plane.bounds(),
             Self::Sphere(sphere) => sphere.bounds(),
             Self::Torus(torus) => torus.bounds(),
+            Self::Mesh(mesh) => mesh.bounds(),
         }
     }
 
@@ -96,6 +103,7 @@ impl Shape {
             Self::Plane(plane) => plane.triangles(detail),
             Self::Sphere(sphere) => sphere.triangles(detail),
             Self::Torus(torus) => torus.triangles(detail),
+            Self::Mesh(mesh) => mesh.triangles().clone(),
         }
     }
 }
@@ -107,7 +115,7 @@ struct SurfacePoint {
     normal: DVec3,
     /// Unit, towards growing u.
     tangent: DVec3,
-    uv: glam::DVec2,
+    uv: DVec2,
     dpdu: DVec3,
     dpdv: DVec3,
 }
@@ -126,6 +134,13 @@ impl SurfacePoint {
         };
         facing(hit, ray)
     }
+}
+
+/// Sine and cosine of an angle in turns. A whole turn more gives the same bits, and half a turn a sine of zero: seams close.
+fn sin_cos_turns(turns: f64) -> (f64, f64) {
+    let turns = turns - turns.round();
+    let from_axis = if turns.abs() > 0.25 { turns.signum() * 0.5 - turns } else { turns };
+    ((from_axis * TAU).sin(), (turns * TAU).cos())
 }
 
 /// Reverses the frame of a hit that is seen from behind.

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DVec2, DVec3};
 
-use super::{Bounds, SurfacePoint, TriangleMesh, tessellate};
+use super::{Bounds, SurfacePoint, TriangleMesh, sin_cos_turns, tessellate};
 use crate::{Hit, Ray};
 
 /// The sphere of radius 1 about the origin.
@@ -39,9 +39,9 @@ impl Sphere {
     }
 
     fn point(uv: DVec2) -> SurfacePoint {
-        let (sin_longitude, cos_longitude) = ((uv.x - 0.5) * TAU).sin_cos();
-        // The sine from the nearer pole, so that it is zero on both of them.
-        let (sin_polar, cos_polar) = ((uv.y.min(1.0 - uv.y) * PI).sin(), (uv.y * PI).cos());
+        let (sin_longitude, cos_longitude) = sin_cos_turns(uv.x - 0.5);
+        // Exact at both poles.
+        let (sin_polar, cos_polar) = sin_cos_turns(0.5 * uv.y);
         let position = DVec3::new(sin_polar * sin_longitude, cos_polar, sin_polar * cos_longitude);
         let tangent = DVec3::new(cos_longitude, 0.0, -sin_longitude);
         let down = DVec3::new(cos_polar * sin_longitude, -sin_polar, cos_polar * cos_longitude);

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 
-use super::polynomial::roots;
-use super::{Bounds, ShapeError, SurfacePoint, TriangleMesh, tessellate};
+use super::quartic::roots;
+use super::{Bounds, ShapeError, SurfacePoint, TriangleMesh, sin_cos_turns, tessellate};
 use crate::{Hit, Ray};
 
 /// The torus about the y axis whose tube has its middle on the circle of radius 1 about the origin.
@@ -56,12 +56,13 @@ impl Torus {
             a * a - 4.0 * ring(middle, middle),
             -8.0 * ring(middle, direction),
             2.0 * a - 4.0 * ring(direction, direction),
-            0.0,
-            1.0,
         ];
         let half = half_squared.sqrt();
         let from = (-half).max(-nearest);
-        let t = roots(quartic, from, half).into_iter().find(|t| t + nearest > 0.0)?;
+        if from >= half {
+            return None;
+        }
+        let t = roots(quartic, from, half).find(|t| t + nearest > 0.0)?;
         Some(self.point_at(middle + direction * t).hit(ray, (t + nearest) / length))
     }
 
@@ -74,8 +75,8 @@ impl Torus {
     }
 
     fn point(&self, uv: DVec2) -> SurfacePoint {
-        let (sin_longitude, cos_longitude) = ((uv.x - 0.5) * TAU).sin_cos();
-        let (sin_tube, cos_tube) = ((0.5 - uv.y) * TAU).sin_cos();
+        let (sin_longitude, cos_longitude) = sin_cos_turns(uv.x - 0.5);
+        let (sin_tube, cos_tube) = sin_cos_turns(0.5 - uv.y);
         let outwards = DVec3::new(sin_longitude, 0.0, cos_longitude);
         let tangent = DVec3::new(cos_longitude, 0.0, -sin_longitude);
         let normal = outwards * cos_tube + DVec3::Y * sin_tube;

@@ -31,6 +31,7 @@ mod surface;
 mod toksvig;
 mod variance;
 mod vector;
+pub mod wgsl;
 
 pub use base::{base_covariance, base_to_add};
 pub use beckmann::{beckmann_lobe, beckmann_surface};
@@ -52,6 +53,7 @@ pub use reflectance::{
 pub use surface::{Surface, SurfaceLobe, slope_normal};
 pub use toksvig::{toksvig_lobe, toksvig_normal, toksvig_surface};
 pub use variance::{variance_lobe, variance_surface};
+pub use vector::LEAST_HEIGHT;
 
 use crate::named::named_enum;
 use crate::texture::{Base, Layout, Part, RoughnessStored, TextureInfo};

@@ -5,7 +5,7 @@
 
 use super::LobeOptions;
 use super::facet::{BumpFacet, bump_facet, cosine_lobe};
-use super::vector::{Vector, dot, scaled, sum};
+use super::vector::{Vector, both_above, dot, scaled, sum};
 
 /// The facet of a filtered normal, of any length.
 pub fn phong_surface(normal: Vector, options: &LobeOptions) -> BumpFacet {
@@ -14,7 +14,7 @@ pub fn phong_surface(normal: Vector, options: &LobeOptions) -> BumpFacet {
 
 /// The lobe for unit directions to the viewer and to the light. Normalised about the reflected ray.
 pub fn phong_lobe(surface: &BumpFacet, view: Vector, light: Vector, options: &LobeOptions) -> f32 {
-    if !(view[2] > 0.0 && light[2] > 0.0) {
+    if !both_above(view, light) {
         return 0.0;
     }
     let twice = 2.0 * dot(surface.normal, view);

@@ -58,9 +58,9 @@ pub struct Radiance {
 
 /// Schlick's approximation of Fresnel reflectance, from that at normal incidence and the cosine between half vector and
 /// viewer.
-pub fn schlick(f0: f32, cosine: f32) -> f32 {
+pub fn schlick(specular: f32, cosine: f32) -> f32 {
     let rest = (1.0 - cosine).clamp(0.0, 1.0);
-    f0 + (1.0 - f0) * rest.powi(5)
+    specular + (1.0 - specular) * rest.powi(5)
 }
 
 /// Radiance of ambient light.
@@ -81,11 +81,11 @@ pub fn diffuse_radiance(
     [0, 1, 2].map(|i| albedo[i] / PI * cosine * irradiance[i])
 }
 
-/// Radiance of specular reflection, given a lobe for the same directions and options. `f0` is the reflectance at normal
+/// Radiance of specular reflection, given a lobe for the same directions and options. `specular` is the reflectance at normal
 /// incidence; `view` and `light` are unit vectors.
 pub fn specular_radiance(
     lobe: f32,
-    f0: [f32; 3],
+    specular: [f32; 3],
     view: [f32; 3],
     light: [f32; 3],
     irradiance: [f32; 3],
@@ -97,7 +97,7 @@ pub fn specular_radiance(
         Form::Normalised => 0.25 * light[2],
     };
     let cosine = dot(view, half);
-    [0, 1, 2].map(|i| schlick(f0[i], cosine) * coefficient * lobe * irradiance[i])
+    [0, 1, 2].map(|i| schlick(specular[i], cosine) * coefficient * lobe * irradiance[i])
 }
 
 /// What a surface reflects of one light towards the viewer.

@@ -24,9 +24,16 @@ pub(crate) fn normalize(a: Vector) -> Vector {
     scaled(a, 1.0 / dot(a, a).sqrt())
 }
 
-/// The half vector of two unit directions above the surface; `None` where one of them is not, since nothing is reflected
-/// then.
+/// Directions lower than this above the surface count as in it, since two that are opposite to each other at the horizon
+/// have no half vector: their sum's square must not vanish in an f32.
+pub const LEAST_HEIGHT: f32 = 1e-15;
+
+/// Whether viewer and light are above the surface; nothing is reflected otherwise.
+pub(crate) fn both_above(view: Vector, light: Vector) -> bool {
+    view[2] > LEAST_HEIGHT && light[2] > LEAST_HEIGHT
+}
+
+/// The half vector of two unit directions above the surface; `None` where one of them is not.
 pub(crate) fn half_vector(view: Vector, light: Vector) -> Option<Vector> {
-    let both_above = view[2] > 0.0 && light[2] > 0.0;
-    both_above.then(|| normalize(sum(view, light)))
+    both_above(view, light).then(|| normalize(sum(view, light)))
 }

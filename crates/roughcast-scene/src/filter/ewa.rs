@@ -1,0 +1,99 @@
+//! Elliptical weighted average: P. Heckbert, "Fundamentals of Texture Mapping and Image Warping", 1989, section 3.
+//!
+//! The pixel filter is a Gaussian with a deviation of half a pixel, the one of the truth. Its image in the texture is a
+//! Gaussian with an elliptical contour, which weighs the texels of one level.
+
+use glam::DVec2;
+use roughcast::Wrap;
+
+use super::footprint::Ellipse;
+use crate::Footprint;
+use crate::mipmap::{Level, Mipmap, wrapped};
+
+/// Deviation of the pixel filter, in pixels.
+const PIXEL_DEVIATION: f64 = 0.5;
+/// Deviations at which the Gaussian ends; beyond lies 1 % of its weight, which the texels within get instead.
+const RADIUS: f64 = 3.0;
+/// Variance of a plane Gaussian over that of the same Gaussian ended at [`RADIUS`], `1 / (1 - x / (e^x - 1))` with
+/// `x = RADIUS^2 / 2`. Widened by it, what is left has the variance that was wanted.
+const WIDENING: f64 = 1.053244;
+/// The shorter deviation has at least this many texels of the level, and less than twice as many: enough that a sum over
+/// texels is the integral to a thousandth.
+const TEXELS: f64 = 1.0;
+/// Largest ratio of the axes. Beyond it the shorter is lengthened, so that a sample costs at most some 4000 texels.
+pub(super) const MAX_ECCENTRICITY: f64 = 32.0;
+/// Smallest variance, in texels squared: that of bilinear interpolation, into which a magnified texture fades.
+const INTERPOLATION_VARIANCE: f64 = 1.0 / 6.0;
+/// On the last level deviations grow no further than this many times its longer side: all has long been averaged.
+const LAST_LEVEL_SIDES: f64 = 2.0;
+
+/// The weighted mean over a footprint in texels of level 0.
+pub(super) fn sample(mipmap: &Mipmap, uv: DVec2, texels: &Footprint, wrap: Wrap) -> [f64; 4] {
+    let ellipse = Ellipse::of(texels);
+    let major = PIXEL_DEVIATION * ellipse.major;
+    let minor = (PIXEL_DEVIATION * ellipse.minor).max(major / MAX_ECCENTRICITY);
+    let last = mipmap.levels().len() - 1;
+    let number = ((minor / TEXELS).max(1.0).log2() as usize).min(last);
+    let level = &mipmap.levels()[number];
+
+    let (width, height) = mipmap.size();
+    // Texels of this level in one of level 0; not the same both ways where sizes were odd.
+    let shrink = DVec2::new(level.width() as f64 / width as f64, level.height() as f64 / height as f64);
+    let longest =
+        if number == last { LAST_LEVEL_SIDES * level.width().max(level.height()) as f64 } else { f64::MAX };
+    let axis = |direction: DVec2, deviation: f64| {
+        let axis = direction * deviation * shrink;
+        axis * (longest / axis.length().max(f64::MIN_POSITIVE)).min(1.0)
+    };
+    let (long, short) = (axis(ellipse.direction, major), axis(ellipse.direction.perp(), minor));
+    // The texels of a coarser level are averages over their own area already; that variance is not added twice.
+    let texel_area = (1.0 - 0.25_f64.powi(number as i32)) / 12.0;
+    let variance = |squared: f64| (WIDENING * (squared - texel_area)).max(INTERPOLATION_VARIANCE);
+    let (along, across) = (variance(long.length_squared()), variance(short.length_squared()));
+    let direction = if long == DVec2::ZERO { DVec2::X } else { long.normalize() };
+    Gaussian::new(direction, along, across).average(level, uv, wrap)
+}
+
+/// A Gaussian over the texels of a level.
+struct Gaussian {
+    /// Quadratic form of the exponent: xx, xy (once), yy.
+    inverse: [f64; 3],
+    /// Half the size of the box around its contour.
+    reach: DVec2,
+}
+
+impl Gaussian {
+    fn new(direction: DVec2, along: f64, across: f64) -> Self {
+        let (c, s) = (direction.x, direction.y);
+        let mix = |a: f64, b: f64| [c * c * a + s * s * b, c * s * (a - b), s * s * a + c * c * b];
+        let variance = mix(along, across);
+        Self {
+            inverse: mix(1.0 / along, 1.0 / across),
+            reach: RADIUS * DVec2::new(variance[0].sqrt(), variance[2].sqrt()),
+        }
+    }
+
+    fn average(&self, level: &Level, uv: DVec2, wrap: Wrap) -> [f64; 4] {
+        let centre = uv * DVec2::new(level.width() as f64, level.height() as f64) - 0.5;
+        let (first, last) = ((centre - self.reach).ceil(), (centre + self.reach).floor());
+        let [xx, xy, yy] = self.inverse;
+        let (mut sum, mut weights) = ([0.0; 4], 0.0);
+        for y in first.y as i64..=last.y as i64 {
+            let row = level.row(wrapped(y, level.height(), wrap));
+            let dy = y as f64 - centre.y;
+            // The chord of the ellipse on this row.
+            let middle = -xy * dy / xx;
+            let half = (RADIUS * RADIUS - (yy - xy * xy / xx) * dy * dy).max(0.0) / xx;
+            let (left, right) = (middle - half.sqrt(), middle + half.sqrt());
+            for x in (centre.x + left).ceil() as i64..=(centre.x + right).floor() as i64 {
+                let dx = x as f64 - centre.x;
+                let weight = (-0.5 * (xx * dx * dx + 2.0 * xy * dx * dy + yy * dy * dy)).exp();
+                let texel = row[wrapped(x, row.len(), wrap)];
+                sum.iter_mut().zip(texel).for_each(|(sum, texel)| *sum += weight * f64::from(texel));
+                weights += weight;
+            }
+        }
+        // The smallest contour has a radius of 1.22 texels; it holds at least one centre.
+        sum.map(|sum| sum / weights)
+    }
+}

@@ -1,0 +1,13 @@
+//! Point sampling: the texel that lies nearest, of a single level.
+
+use glam::DVec2;
+use roughcast::Wrap;
+
+use crate::mipmap::{Level, wrapped};
+
+/// The texel whose area holds `uv`.
+pub(super) fn sample(level: &Level, uv: DVec2, wrap: Wrap) -> [f64; 4] {
+    let x = wrapped((uv.x * level.width() as f64).floor() as i64, level.width(), wrap);
+    let y = wrapped((uv.y * level.height() as f64).floor() as i64, level.height(), wrap);
+    level.texel(x, y).map(f64::from)
+}

@@ -1,0 +1,48 @@
+//! Trilinear interpolation between two levels: L. Williams, "Pyramidal Parametrics", 1983.
+
+use glam::DVec2;
+use roughcast::Wrap;
+
+use super::footprint::Ellipse;
+use crate::Footprint;
+use crate::mipmap::{Level, Mipmap, wrapped};
+
+/// The level of detail at which a footprint is about a texel wide: the logarithm of its larger extent, in texels.
+///
+/// Hardware takes the longer of the two derivatives; it is at most the ellipse's longer axis, and that times the root of
+/// two at least.
+pub(super) fn level_of(texels: &Footprint) -> f64 {
+    Ellipse::of(texels).major.max(f64::MIN_POSITIVE).log2()
+}
+
+/// The texture at a level of detail between 0 and the last; others are brought within.
+pub(super) fn sample(mipmap: &Mipmap, uv: DVec2, level: f64, wrap: Wrap) -> [f64; 4] {
+    let levels = mipmap.levels();
+    let last = levels.len() - 1;
+    let level = if level > 0.0 { level.min(last as f64) } else { 0.0 };
+    let finer = level as usize;
+    let blend = level - finer as f64;
+    let a = bilinear(&levels[finer], uv, wrap);
+    if blend == 0.0 {
+        return a;
+    }
+    let b = bilinear(&levels[finer + 1], uv, wrap);
+    std::array::from_fn(|i| (1.0 - blend) * a[i] + blend * b[i])
+}
+
+/// Bilinear interpolation within a level.
+pub(super) fn bilinear(level: &Level, uv: DVec2, wrap: Wrap) -> [f64; 4] {
+    let at = uv * DVec2::new(level.width() as f64, level.height() as f64) - 0.5;
+    let corner = at.floor();
+    let (s, t) = (at.x - corner.x, at.y - corner.y);
+    let column = |step| wrapped(corner.x as i64 + step, level.width(), wrap);
+    let row = |step| wrapped(corner.y as i64 + step, level.height(), wrap);
+    let ([left, right], [top, bottom]) = ([column(0), column(1)], [row(0), row(1)]);
+    let weighted = [
+        (level.texel(left, top), (1.0 - s) * (1.0 - t)),
+        (level.texel(right, top), s * (1.0 - t)),
+        (level.texel(left, bottom), (1.0 - s) * t),
+        (level.texel(right, bottom), s * t),
+    ];
+    std::array::from_fn(|i| weighted.iter().map(|(texel, weight)| weight * f64::from(texel[i])).sum())
+}

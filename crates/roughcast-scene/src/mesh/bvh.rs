@@ -1,0 +1,227 @@
+//! The nearest triangle on a ray.
+//!
+//! The `obvhs` crate's bounding volume hierarchy finds candidates in single floats; each is then intersected in f64. So
+//! that rounding of the former loses none of the latter, the hierarchy is built in units of the mesh's bounding sphere,
+//! rays are started close to it, and boxes are padded.
+
+use glam::{DVec3, Vec3A};
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
+use obvhs::ray::RayHit;
+
+use super::{corners, position};
+use crate::{Bounds, Ray, TriangleMesh};
+
+/// Least padding of boxes, in radii of the mesh. Coordinates of vertices and of the ray's origin, at most 3 in size, are off by
+/// 1.2e-7 after rounding, distances of up to 5 along a rounded direction by 6e-7, and the test of a box rounds thrice.
+const PADDING: f32 = 4e-6;
+
+/// Rays start this many radii before the point nearest to the mesh's middle, if their eye is farther away.
+const START: f64 = 2.0;
+
+/// The hierarchy of a mesh's triangles, one a leaf.
+#[derive(Clone)]
+pub(super) struct TriangleBvh {
+    bvh: Bvh2,
+    bounds: Bounds,
+}
+
+/// A point of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Found {
+    pub triangle: usize,
+    pub distance: f64,
+    /// Barycentric coordinates, one a vertex; they sum to one.
+    pub weights: DVec3,
+}
+
+impl TriangleBvh {
+    pub fn new(mesh: &TriangleMesh, bounds: Bounds) -> Self {
+        let boxes: Vec<Aabb> = (0..mesh.indices.len() / 3)
+            .map(|triangle| {
+                let points = corners(mesh, triangle)
+                    .map(|i| ((position(mesh, i) - bounds.centre) / bounds.radius).as_vec3a());
+                let Aabb { min, max } = Aabb::from_points(&points);
+                let padding = Vec3A::splat(PADDING * (1.0 + unevenness(triangle)));
+                Aabb::new(min - padding, max + padding)
+            })
+            .collect();
+        let triangles = (0..boxes.len() as u32).collect();
+        // No reinsertion of nodes: it may deepen the tree beyond the depth that the traversal's stack is made for.
+        let bvh = PlocBuilder::with_capacity(boxes.len()).build(
+            PlocSearchDistance::Medium,
+            &boxes,
+            triangles,
+            SortPrecision::U64,
+            0,
+        );
+        Self { bvh, bounds }
+    }
+
+    /// The nearest triangle in front of the ray's origin.
+    pub fn nearest(&self, mesh: &TriangleMesh, ray: &Ray) -> Option<Found> {
+        let Bounds { centre, radius } = self.bounds;
+        let to_middle = (centre - ray.origin).dot(ray.direction);
+        let skipped = (to_middle - START * radius).max(0.0);
+        let origin = ((ray.origin + ray.direction * skipped - centre) / radius).as_vec3a();
+        let direction = ray.direction.as_vec3a();
+        if !origin.is_finite()
+            || !direction.is_finite()
+            || origin.length_squared() > 2.0 * (START * START) as f32
+        {
+            return None;
+        }
+        let intersector = Intersector::new(ray);
+        let mut nearest: Option<Found> = None;
+        let probe = obvhs::ray::Ray::new_inf(origin, direction);
+        self.bvh.ray_traverse(probe, &mut RayHit::none(), |_, leaf| {
+            let triangle = self.bvh.primitive_indices[leaf] as usize;
+            let corners = corners(mesh, triangle).map(|i| position(mesh, i));
+            let Some((distance, weights)) = intersector.meet(corners) else { return f32::INFINITY };
+            if nearest.is_none_or(|n| distance < n.distance) {
+                nearest = Some(Found { triangle, distance, weights });
+            }
+            ((distance - skipped) / radius) as f32
+        });
+        nearest
+    }
+}
+
+/// A number in 0 .. 1 that differs from one triangle to the next. The hierarchy joins boxes that are each other's best
+/// partner; among equal boxes hardly any two are, and building it would take time that grows with their square.
+fn unevenness(triangle: usize) -> f32 {
+    // The fractional parts of multiples of the golden ratio, as 32-bit integers.
+    let spread = (triangle as u32).wrapping_mul(0x9e37_79b9);
+    (spread >> 8) as f32 / (1 << 24) as f32
+}
+
+/// A ray made ready to be intersected with triangles.
+///
+/// After Woop, Benthin and Wald, Watertight Ray/Triangle Intersection, 2013: space is sheared so that the ray is its z
+/// axis, and a point is inside where it lies on the same side of three edges. An edge that two triangles share is
+/// computed from the same numbers for both, with the opposite sign, so no ray passes between them.
+pub(super) struct Intersector {
+    origin: DVec3,
+    /// The axes in the order (x, y, z) of the sheared space: z is the one along which the ray is longest.
+    axes: [usize; 3],
+    shear: DVec3,
+}
+
+impl Intersector {
+    pub fn new(ray: &Ray) -> Self {
+        let d = ray.direction;
+        let z = d.abs().max_position();
+        let (mut x, mut y) = ((z + 1) % 3, (z + 2) % 3);
+        if d[z] < 0.0 {
+            std::mem::swap(&mut x, &mut y);
+        }
+        Self { origin: ray.origin, axes: [x, y, z], shear: DVec3::new(d[x], d[y], 1.0) / d[z] }
+    }
+
+    /// Distance along the ray and barycentric coordinates, if the ray meets the triangle in front of its origin.
+    pub fn meet(&self, corners: [DVec3; 3]) -> Option<(f64, DVec3)> {
+        let [x, y, z] = self.axes;
+        let [a, b, c] = corners.map(|p| {
+            let p = p - self.origin;
+            DVec3::new(p[x] - self.shear.x * p[z], p[y] - self.shear.y * p[z], self.shear.z * p[z])
+        });
+        let edge = |p: DVec3, q: DVec3| p.x * q.y - p.y * q.x;
+        let sides = DVec3::new(edge(b, c), edge(c, a), edge(a, b));
+        if sides.min_element() < 0.0 && sides.max_element() > 0.0 {
+            return None;
+        }
+        let sum = sides.x + sides.y + sides.z;
+        let weights = sides / sum;
+        let distance = weights.dot(DVec3::new(a.z, b.z, c.z));
+        // False for NaN: a triangle seen edge on, whose sides are all zero.
+        (distance > 0.0 && distance.is_finite()).then_some((distance, weights))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Shape, Torus};
+
+    /// A torus with 4 thousand triangles, moved and scaled.
+    fn mesh(scale: f32, shift: [f32; 3]) -> TriangleMesh {
+        let mut mesh = Shape::Torus(Torus::default()).triangles(32);
+        for p in &mut mesh.positions {
+            *p = std::array::from_fn(|i| p[i] * scale + shift[i]);
+        }
+        mesh
+    }
+
+    /// Evenly spread unit vectors (Vogel's spiral).
+    fn directions(count: usize) -> impl Iterator<Item = DVec3> {
+        (0..count).map(move |i| {
+            let z = 1.0 - (2 * i + 1) as f64 / count as f64;
+            let angle = 2.399_963_229_728_653 * i as f64;
+            DVec3::new((1.0 - z * z).sqrt() * angle.cos(), (1.0 - z * z).sqrt() * angle.sin(), z)
+        })
+    }
+
+    fn brute_force(mesh: &TriangleMesh, ray: &Ray) -> Option<f64> {
+        let intersector = Intersector::new(ray);
+        (0..mesh.indices.len() / 3)
+            .filter_map(|t| intersector.meet(corners(mesh, t).map(|i| position(mesh, i))))
+            .map(|(distance, _)| distance)
+            .min_by(f64::total_cmp)
+    }
+
+    #[test]
+    fn the_hierarchy_finds_what_all_triangles_have() {
+        for (scale, shift) in
+            [(1.0, [0.0; 3]), (1e-6, [0.0; 3]), (1e6, [3e6, -2e6, 0.0]), (1.0, [500.0, 0.0, 0.0])]
+        {
+            let mesh = mesh(scale, shift);
+            let bounds = super::super::merge::bounds(&mesh).unwrap();
+            let bvh = TriangleBvh::new(&mesh, bounds);
+            let mut hits = 0;
+            for (i, direction) in directions(400).enumerate() {
+                // Eyes inside, near and very far; rays at and past the mesh, some along the axes.
+                let away = [0.0, 0.7, 3.0, 1e5][i % 4] * bounds.radius;
+                let aim = bounds.centre + directions(97).nth(i % 97).unwrap() * bounds.radius * 0.9;
+                let origin = bounds.centre + direction * away;
+                let direction = if i % 5 == 0 { DVec3::AXES[i % 3] } else { (aim - origin).normalize() };
+                let ray = Ray { origin, direction };
+                let found = bvh.nearest(&mesh, &ray).map(|f| f.distance);
+                assert_eq!(found, brute_force(&mesh, &ray), "{scale} {shift:?} {ray:?}");
+                hits += usize::from(found.is_some());
+            }
+            assert!(hits > 100, "{hits}");
+        }
+    }
+
+    #[test]
+    fn no_ray_passes_between_triangles() {
+        let mesh = mesh(1.0, [0.0; 3]);
+        let bounds = super::super::merge::bounds(&mesh).unwrap();
+        let bvh = TriangleBvh::new(&mesh, bounds);
+        // From the middle of the tube every ray must meet it, and hardest at corners and on edges.
+        let origin = DVec3::new(0.0, 0.0, 1.0);
+        for triangle in 0..mesh.indices.len() / 3 {
+            let [a, b, c] = corners(&mesh, triangle).map(|i| position(&mesh, i));
+            for target in [a, (a + b) / 2.0, a * 0.7 + c * 0.3, b * 0.999 + c * 0.001] {
+                let ray = Ray { origin, direction: (target - origin).normalize() };
+                assert!(bvh.nearest(&mesh, &ray).is_some(), "{target}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_triangle_is_met_where_it_is() {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let meet = |x: f64, y: f64, z: f64, d: f64| {
+            Intersector::new(&Ray { origin: DVec3::new(x, y, z), direction: DVec3::Z * d }).meet(corners)
+        };
+        let (distance, weights) = meet(0.25, 0.5, 2.0, -1.0).unwrap();
+        assert_eq!((distance, weights), (2.0, DVec3::new(0.25, 0.25, 0.5)));
+        assert!(meet(0.25, 0.5, -2.0, 1.0).is_some(), "from behind");
+        assert!(meet(0.6, 0.6, 2.0, -1.0).is_none(), "beside it");
+        assert!(meet(0.25, 0.5, 2.0, 1.0).is_none(), "behind the eye");
+        let along = Ray { origin: DVec3::new(-1.0, 0.25, 0.0), direction: DVec3::X };
+        assert!(Intersector::new(&along).meet(corners).is_none(), "edge on");
+    }
+}

@@ -1,0 +1,186 @@
+//! Triangle meshes, from files or from memory.
+
+mod accessor;
+mod bvh;
+mod error;
+mod gltf;
+mod merge;
+mod normals;
+mod obj;
+mod tangents;
+mod uri;
+
+use std::io::Read;
+use std::path::Path;
+
+use glam::{DVec2, DVec3, DVec4, Vec2, Vec3, Vec4};
+
+pub use error::{MeshError, MeshFault};
+
+use crate::shape::facing;
+use crate::{Bounds, Frame, Hit, Ray, TriangleMesh};
+use bvh::TriangleBvh;
+
+/// The largest file that is read, and the most bytes of buffers of a glTF file.
+pub const MAX_FILE_BYTES: usize = 1 << 29;
+/// The most triangles of a mesh. Reading one this large takes about two gigabytes.
+pub const MAX_TRIANGLES: usize = 1 << 22;
+/// The most vertices of a mesh.
+pub const MAX_VERTICES: usize = 3 * MAX_TRIANGLES;
+
+/// Texture coordinates of a triangle whose area is smaller than this part of the product of its sides do not tell where
+/// u and v grow: single floats do not resolve it.
+const MIN_UV_SINE: f64 = 1e-7;
+
+/// A triangle mesh with a frame and, where its file has them, texture coordinates at each vertex.
+#[derive(Clone)]
+pub struct Mesh {
+    triangles: TriangleMesh,
+    has_texture_coordinates: bool,
+    bounds: Bounds,
+    bvh: TriangleBvh,
+}
+
+impl std::fmt::Debug for Mesh {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Mesh")
+            .field("vertices", &self.triangles.positions.len())
+            .field("triangles", &self.triangle_count())
+            .field("has_texture_coordinates", &self.has_texture_coordinates)
+            .field("bounds", &self.bounds)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Reads a mesh: Wavefront OBJ (`.obj`) or glTF 2.0 (`.gltf`, `.glb`).
+///
+/// Of glTF all triangles of the default scene are taken, in the places that its nodes give them, with the first set of
+/// texture coordinates; materials, skins, morph targets and animations are not. Textures are not read. Tangents of a file
+/// are taken as they are. Some exporters write them with the bitangent along growing v, against the convention of this
+/// crate; maps for such a mesh have green down.
+pub fn load_mesh(path: impl AsRef<Path>) -> Result<Mesh, MeshError> {
+    let path = path.as_ref();
+    parts_of_file(path).and_then(Mesh::new).map_err(|fault| MeshError { path: path.to_owned(), fault })
+}
+
+fn parts_of_file(path: &Path) -> Result<Vec<TriangleMesh>, MeshFault> {
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+    match extension.as_str() {
+        "obj" => obj::read(&read_file(path)?),
+        "gltf" | "glb" => gltf::read(&read_file(path)?, path.parent().unwrap_or(Path::new(""))),
+        _ => Err(MeshFault::UnknownExtension),
+    }
+}
+
+/// The bytes of a file, or an error before more than the limit are held.
+fn read_file(path: &Path) -> Result<Vec<u8>, MeshFault> {
+    let too_large = MeshFault::TooLarge { what: "bytes", limit: MAX_FILE_BYTES };
+    let file = std::fs::File::open(path)?;
+    if file.metadata()?.len() > MAX_FILE_BYTES as u64 {
+        return Err(too_large);
+    }
+    // Pipes and devices do not state their length.
+    let mut bytes = Vec::new();
+    file.take(MAX_FILE_BYTES as u64 + 1).read_to_end(&mut bytes)?;
+    if bytes.len() > MAX_FILE_BYTES { Err(too_large) } else { Ok(bytes) }
+}
+
+impl Mesh {
+    /// A mesh of one or more parts.
+    ///
+    /// Each part needs positions and indices; its other arrays may be empty. Missing normals are computed, smooth across
+    /// all triangles that meet at a position and weighed by their areas; missing tangents by MikkTSpace. A triangle that
+    /// turns clockwise seen from the side to which its normals point is turned over. Triangles without an area,
+    /// and those that repeat another, are dropped. Where not all parts have texture coordinates, the mesh counts as having none.
+    pub fn new(parts: Vec<TriangleMesh>) -> Result<Self, MeshFault> {
+        let has_texture_coordinates = parts.iter().all(|part| !part.uvs.is_empty());
+        let mut triangles = merge::merge(parts)?;
+        let bounds = merge::bounds(&triangles)?;
+        normals::turn_towards_normals(&mut triangles);
+        normals::complete(&mut triangles);
+        tangents::complete(&mut triangles);
+        let bvh = TriangleBvh::new(&triangles, bounds);
+        Ok(Self { triangles, has_texture_coordinates, bounds, bvh })
+    }
+
+    /// Whether every part has texture coordinates. Without them hits have `uv`, `dpdu` and `dpdv` zero and a frame whose
+    /// tangent is any one.
+    pub fn has_texture_coordinates(&self) -> bool {
+        self.has_texture_coordinates
+    }
+
+    /// The number of triangles.
+    pub fn triangle_count(&self) -> usize {
+        self.triangles.indices.len() / 3
+    }
+
+    /// The vertices and triangles.
+    pub fn triangles(&self) -> &TriangleMesh {
+        &self.triangles
+    }
+
+    /// A sphere about the middle of the bounding box that holds all vertices of triangles.
+    pub fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    /// See [`crate::Shape::hit`]. The point, the texture coordinates and the geometric normal are those of the flat triangle;
+    /// the frame is interpolated between its vertices.
+    pub fn hit(&self, ray: &Ray) -> Option<Hit> {
+        let found = self.bvh.nearest(&self.triangles, ray)?;
+        Some(facing(self.hit_on_triangle(found.triangle, found.weights, found.distance), ray))
+    }
+
+    /// The point of a triangle with the given barycentric coordinates, seen from its front.
+    fn hit_on_triangle(&self, triangle: usize, weights: DVec3, distance: f64) -> Hit {
+        let mesh = &self.triangles;
+        let k = corners(mesh, triangle);
+        let [p0, p1, p2] = k.map(|i| position(mesh, i));
+        let (e1, e2) = (p1 - p0, p2 - p0);
+        let geometric_normal = e1.cross(e2).normalize();
+        let blend = |[a, b, c]: [DVec3; 3]| a * weights.x + b * weights.y + c * weights.z;
+        let normal = blend(k.map(|i| Vec3::from(mesh.normals[i]).as_dvec3()))
+            .try_normalize()
+            .unwrap_or(geometric_normal);
+        let tangents = k.map(|i| Vec4::from(mesh.tangents[i]).as_dvec4());
+        let tangent = blend(tangents.map(DVec4::truncate));
+        let tangent =
+            tangent.reject_from_normalized(normal).try_normalize().unwrap_or(normal.any_orthonormal_vector());
+        let handedness = blend(tangents.map(|t| DVec3::splat(t.w))).x.signum();
+        let (uv, dpdu, dpdv) = if self.has_texture_coordinates {
+            let [t0, t1, t2] = k.map(|i| Vec2::from(mesh.uvs[i]).as_dvec2());
+            let (dpdu, dpdv) = derivatives([e1, e2], [t1 - t0, t2 - t0]);
+            (t0 * weights.x + t1 * weights.y + t2 * weights.z, dpdu, dpdv)
+        } else {
+            (DVec2::ZERO, DVec3::ZERO, DVec3::ZERO)
+        };
+        Hit {
+            distance,
+            position: p0 * weights.x + p1 * weights.y + p2 * weights.z,
+            geometric_normal,
+            frame: Frame { tangent, bitangent: normal.cross(tangent) * handedness, normal },
+            uv,
+            dpdu,
+            dpdv,
+        }
+    }
+}
+
+/// The three vertices of a triangle.
+fn corners(mesh: &TriangleMesh, triangle: usize) -> [usize; 3] {
+    std::array::from_fn(|i| mesh.indices[3 * triangle + i] as usize)
+}
+
+fn position(mesh: &TriangleMesh, vertex: usize) -> DVec3 {
+    Vec3::from(mesh.positions[vertex]).as_dvec3()
+}
+
+/// dp/du and dp/dv of a triangle with the given edges in space and in texture coordinates; zero where the latter have no
+/// area.
+fn derivatives([e1, e2]: [DVec3; 2], [t1, t2]: [DVec2; 2]) -> (DVec3, DVec3) {
+    let det = t1.perp_dot(t2);
+    if det.abs() <= MIN_UV_SINE * t1.length() * t2.length() {
+        return (DVec3::ZERO, DVec3::ZERO);
+    }
+    ((e1 * t2.y - e2 * t1.y) / det, (e2 * t1.x - e1 * t2.x) / det)
+}

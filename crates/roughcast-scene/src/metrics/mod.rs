@@ -1,0 +1,82 @@
+//! Measures of how far a picture is from the truth, one a file. All take linear radiance, and look only at pixels that a
+//! surface covers fully in both pictures: how a silhouette is antialiased is not what is measured.
+
+mod energy;
+mod flicker;
+mod flip;
+mod flip_filters;
+mod rmse;
+
+pub use energy::energy_error;
+pub use flicker::flicker;
+pub use flip::{DEFAULT_PIXELS_PER_DEGREE, FlipMap, hdr_flip, ldr_flip};
+pub use rmse::rmse;
+
+use crate::Picture;
+
+/// Coverage from which a pixel counts as covered: a sum of equal weights may miss one by a rounding.
+const COVERED: f32 = 1.0 - 1e-5;
+
+/// Why pictures cannot be compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MetricError {
+    /// The pictures differ in size.
+    #[error("the pictures differ in size: {0}x{1} and {2}x{3}; render both at the same size")]
+    Sizes(usize, usize, usize, usize),
+    /// No pixel is covered by the surface in both.
+    #[error("no pixel is covered by the surface in both pictures; move the camera so that it sees it")]
+    NothingCovered,
+    /// The truth has no specular light to compare with.
+    #[error("the truth has no specular radiance; give the scene a light whose highlight the camera sees")]
+    NoHighlight,
+    /// A sequence is too short for a variance.
+    #[error(
+        "{0} frames are too few for a variance; render at least 2 of both, and as many of one as of the other"
+    )]
+    Frames(usize),
+}
+
+/// The indices of the pixels that the surface covers fully in all pictures.
+fn covered<'a>(
+    first: &Picture,
+    others: impl IntoIterator<Item = &'a Picture>,
+) -> Result<Vec<usize>, MetricError> {
+    let mut all: Vec<usize> = (0..first.len()).filter(|i| first.coverage[*i] >= COVERED).collect();
+    for other in others {
+        if (other.width, other.height) != (first.width, first.height) {
+            return Err(MetricError::Sizes(first.width, first.height, other.width, other.height));
+        }
+        all.retain(|i| other.coverage[*i] >= COVERED);
+    }
+    if all.is_empty() { Err(MetricError::NothingCovered) } else { Ok(all) }
+}
+
+/// Pictures for the tests of measures.
+#[cfg(test)]
+mod test_pictures {
+    use super::Picture;
+
+    /// A covered picture with this radiance, all of it specular.
+    pub fn picture(width: usize, height: usize, radiance: impl Fn(usize, usize) -> [f32; 3]) -> Picture {
+        let pixels: Vec<[f32; 3]> = (0..width * height).map(|i| radiance(i % width, i / width)).collect();
+        let coverage = vec![1.0; width * height];
+        Picture { width, height, specular: pixels.clone(), radiance: pixels, coverage }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::test_pictures::picture;
+    use super::*;
+
+    #[test]
+    fn pixels_count_that_both_pictures_cover() {
+        let mut a = picture(3, 1, |_, _| [0.0; 3]);
+        let mut b = a.clone();
+        (a.coverage[0], b.coverage[2]) = (0.99, 0.0);
+        assert_eq!(covered(&a, [&b]), Ok(vec![1]));
+        b.coverage[1] = 0.5;
+        assert_eq!(covered(&a, [&b]), Err(MetricError::NothingCovered));
+        assert_eq!(covered(&a, [&picture(1, 3, |_, _| [0.0; 3])]), Err(MetricError::Sizes(3, 1, 1, 3)));
+    }
+}

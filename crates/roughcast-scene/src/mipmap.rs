@@ -1,0 +1,207 @@
+//! Textures in memory as a renderer samples them: all levels, four channels of floats.
+
+use std::sync::OnceLock;
+
+use rayon::prelude::*;
+use roughcast::texture::Texture;
+use roughcast::{Image, Wrap};
+
+use crate::filter::SummedAreaTable;
+
+/// One level: `height` rows of `width` texels. The centre of texel i of n lies at `(i + 0.5) / n`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Level {
+    width: usize,
+    height: usize,
+    texels: Vec<[f32; 4]>,
+}
+
+/// A texture with its levels, as stored: integer texels as 0 ..= 1, floats as they are. Channels that the texture lacks
+/// are 0, the fourth is 1: what graphics hardware returns.
+///
+/// Four floats a texel are kept, 16 bytes; a summed-area table, made at its first use, takes 32 more for each texel of
+/// level 0.
+#[derive(Clone, Debug)]
+pub struct Mipmap {
+    levels: Vec<Level>,
+    table: OnceLock<SummedAreaTable>,
+}
+
+/// Why a texture cannot be sampled.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MipmapError {
+    /// More channels than a sampler returns.
+    #[error("the texture '{name}' has {channels} channels and a sampler returns four; bake another layout")]
+    Channels {
+        /// The texture.
+        name: String,
+        /// Its channels.
+        channels: usize,
+    },
+    /// No level, or a level whose texels are not as many as its size says.
+    #[error(
+        "level {level} of {width}x{height} has {got} texels; a texture needs at least one level, and every texel of it"
+    )]
+    Size {
+        /// The level.
+        level: usize,
+        /// Its width.
+        width: usize,
+        /// Its height.
+        height: usize,
+        /// Its texels.
+        got: usize,
+    },
+}
+
+impl Level {
+    /// A level of these texels, row by row from the top.
+    ///
+    /// # Errors
+    /// [`MipmapError::Size`] where their number does not fit, or is zero.
+    pub fn new(width: usize, height: usize, texels: Vec<[f32; 4]>) -> Result<Self, MipmapError> {
+        let got = texels.len();
+        if got == 0 || width.checked_mul(height) != Some(got) {
+            return Err(MipmapError::Size { level: 0, width, height, got });
+        }
+        Ok(Self { width, height, texels })
+    }
+
+    fn of(image: &Image) -> Self {
+        let (width, channels) = (image.width(), image.channels().min(4));
+        let mut texels = vec![[0.0, 0.0, 0.0, 1.0]; width * image.height()];
+        texels.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+            for (x, texel) in row.iter_mut().enumerate() {
+                for (channel, value) in texel[..channels].iter_mut().enumerate() {
+                    *value = image.get(x, y, channel);
+                }
+            }
+        });
+        Self { width, height: image.height(), texels }
+    }
+
+    /// Texels in a row.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// A row of texels.
+    pub fn row(&self, y: usize) -> &[[f32; 4]] {
+        &self.texels[y * self.width..(y + 1) * self.width]
+    }
+
+    /// A texel.
+    pub fn texel(&self, x: usize, y: usize) -> [f32; 4] {
+        self.texels[y * self.width + x]
+    }
+}
+
+impl Mipmap {
+    /// A texture as a sampler sees it.
+    ///
+    /// # Errors
+    /// [`MipmapError::Channels`] where it has more than four channels, [`MipmapError::Size`] where it has no level.
+    pub fn of(texture: &Texture) -> Result<Self, MipmapError> {
+        let channels = texture.levels.first().map_or(0, Image::channels);
+        if channels > 4 {
+            return Err(MipmapError::Channels { name: texture.name.to_owned(), channels });
+        }
+        Self::new(texture.levels.iter().map(Level::of).collect())
+    }
+
+    /// A texture of these levels, the finest first. Their sizes need not be halves of each other.
+    ///
+    /// # Errors
+    /// [`MipmapError::Size`] where there is none.
+    pub fn new(levels: Vec<Level>) -> Result<Self, MipmapError> {
+        if levels.is_empty() {
+            return Err(MipmapError::Size { level: 0, width: 0, height: 0, got: 0 });
+        }
+        Ok(Self { levels, table: OnceLock::new() })
+    }
+
+    /// The same texture with another channel in the place of the first.
+    pub(crate) fn with_first_channel(mut self, channel: usize) -> Self {
+        for texel in self.levels.iter_mut().flat_map(|level| &mut level.texels) {
+            texel[0] = texel[channel];
+        }
+        self.table = OnceLock::new();
+        self
+    }
+
+    /// The levels, the finest first; at least one.
+    pub fn levels(&self) -> &[Level] {
+        &self.levels
+    }
+
+    /// Width and height of level 0.
+    pub fn size(&self) -> (usize, usize) {
+        (self.levels[0].width, self.levels[0].height)
+    }
+
+    /// The summed-area table of level 0, made now where it is not there yet.
+    pub fn table(&self) -> &SummedAreaTable {
+        self.table.get_or_init(|| SummedAreaTable::of(&self.levels[0]))
+    }
+}
+
+/// The texel that stands at an index which may lie beyond the edges.
+pub(crate) fn wrapped(index: i64, length: usize, wrap: Wrap) -> usize {
+    let length = length as i64;
+    let inside = match wrap {
+        // Most indices lie inside, and a division is slow.
+        Wrap::Repeat if (0..length).contains(&index) => index,
+        Wrap::Repeat => index.rem_euclid(length),
+        Wrap::Clamp => index.clamp(0, length - 1),
+        Wrap::Mirror => {
+            let index = index.rem_euclid(2 * length);
+            index.min(2 * length - 1 - index)
+        }
+    };
+    inside as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use roughcast::Samples;
+
+    fn texture(channels: usize, samples: Samples) -> Texture {
+        let image = Image::new(2, 1, channels, samples).unwrap();
+        Texture { name: "t", channels: vec!["c"; channels], levels: vec![image] }
+    }
+
+    #[test]
+    fn integers_become_parts_of_one_and_missing_channels_are_as_hardware_has_them() {
+        let mipmap = Mipmap::of(&texture(1, Samples::U8(vec![0, 255]))).unwrap();
+        assert_eq!(mipmap.levels()[0].row(0), [[0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 1.0]]);
+        let mipmap = Mipmap::of(&texture(2, Samples::U16(vec![65535, 0, 13107, 65535]))).unwrap();
+        assert_eq!(mipmap.levels()[0].row(0), [[1.0, 0.0, 0.0, 1.0], [0.2, 1.0, 0.0, 1.0]]);
+        let floats = (0..8).map(|i| i as f32 - 4.0).collect();
+        let mipmap = Mipmap::of(&texture(4, Samples::F32(floats))).unwrap();
+        assert_eq!(mipmap.levels()[0].texel(1, 0), [0.0, 1.0, 2.0, 3.0]);
+    }
+
+    #[test]
+    fn textures_that_no_sampler_can_return_are_refused() {
+        let five = texture(5, Samples::F32(vec![0.0; 10]));
+        assert!(matches!(Mipmap::of(&five), Err(MipmapError::Channels { channels: 5, .. })));
+        assert!(matches!(Mipmap::new(vec![]), Err(MipmapError::Size { .. })));
+        assert!(Level::new(2, 2, vec![[0.0; 4]; 3]).is_err());
+        assert!(Level::new(0, 0, vec![]).is_err());
+    }
+
+    #[test]
+    fn indices_wrap_as_their_mode_says() {
+        let indices = [-5, -4, -3, -2, -1, 0, 1, 2, 3, 4, 5, 6];
+        let all = |wrap| indices.map(|i| wrapped(i, 3, wrap));
+        assert_eq!(all(Wrap::Repeat), [1, 2, 0, 1, 2, 0, 1, 2, 0, 1, 2, 0]);
+        assert_eq!(all(Wrap::Clamp), [0, 0, 0, 0, 0, 0, 1, 2, 2, 2, 2, 2]);
+        assert_eq!(all(Wrap::Mirror), [1, 2, 2, 1, 0, 0, 1, 2, 2, 1, 0, 0]);
+    }
+}

@@ -1,0 +1,126 @@
+//! A shading method as a GPU runs it: one sample a pixel, at its centre, from filtered textures.
+
+use roughcast::Lobe;
+use roughcast::shading::{Input, LobeOptions, Shading};
+use roughcast::texture::{Packing, Part, Texture, TextureArray, TextureInfo};
+
+use super::shade::Shaded;
+use super::{Progress, RenderError, render_rows};
+use crate::{Footprint, Hit, Mipmap, Picture, Sampler, Scene};
+
+/// The green channel of a packed texture: glTF's roughness.
+const ROUGHNESS_CHANNEL: usize = 1;
+/// No model samples more textures.
+const MAX_TEXTURES: usize = 3;
+
+/// The textures that a shading model samples, and what their texels mean.
+#[derive(Clone, Debug)]
+pub struct ShadingTextures {
+    shading: Shading,
+    textures: Vec<Mipmap>,
+    packing: Packing,
+    info: TextureInfo,
+}
+
+impl ShadingTextures {
+    /// The model's textures out of the files of its [layout](Shading::layout). Roughness may be packed with occlusion and
+    /// metalness.
+    ///
+    /// # Errors
+    /// [`RenderError::MissingTexture`] where one is not there.
+    pub fn new(shading: Shading, arrays: &[TextureArray]) -> Result<Self, RenderError> {
+        let has = |part: Part| arrays.iter().any(|array| array.info.part == part);
+        let lobe = if has(Part::Anisotropy) { Lobe::Anisotropic } else { Lobe::Isotropic };
+        let inputs = shading.inputs(lobe);
+        let textures = inputs.iter().map(|input| mipmap(*input, arrays)).collect::<Result<_, _>>()?;
+        let first = array(inputs[0].part, arrays).ok_or_else(|| missing(inputs[0]))?;
+        if first.info.layout != shading.layout() {
+            return Err(missing(inputs[0]));
+        }
+        let packing = Packing::new(&first.info, first.layers[0].sample_type());
+        Ok(Self { shading, textures, packing, info: first.info })
+    }
+
+    /// The model.
+    pub fn shading(&self) -> Shading {
+        self.shading
+    }
+
+    /// Width and height of level 0.
+    pub fn size(&self) -> (usize, usize) {
+        self.textures[0].size()
+    }
+}
+
+fn array(part: Part, arrays: &[TextureArray]) -> Option<&TextureArray> {
+    arrays.iter().find(|array| array.info.part == part)
+}
+
+fn missing(input: Input) -> RenderError {
+    RenderError::MissingTexture { part: input.part, layer: input.layer }
+}
+
+fn mipmap(input: Input, arrays: &[TextureArray]) -> Result<Mipmap, RenderError> {
+    let layer = |texture: &&Texture| texture.name == input.layer;
+    if let Some(texture) = array(input.part, arrays).and_then(|array| array.layers.iter().find(layer)) {
+        return Ok(Mipmap::of(texture)?);
+    }
+    match array(Part::OcclusionRoughnessMetallic, arrays) {
+        Some(packed) if input.part == Part::Roughness => {
+            Ok(Mipmap::of(&packed.layers[0])?.with_first_channel(ROUGHNESS_CHANNEL))
+        }
+        _ => Err(missing(input)),
+    }
+}
+
+/// A method under test: a model, how it samples its textures, and how it evaluates its lobe.
+#[derive(Clone, Copy, Debug)]
+pub struct Method<'a> {
+    /// The model and its textures.
+    pub textures: &'a ShadingTextures,
+    /// The texture filter.
+    pub sampler: Sampler,
+    /// The lobe. What the textures say of themselves (whether the base roughness is in them, how roughness is stored) goes
+    /// before what is said here.
+    pub options: LobeOptions,
+}
+
+impl Method<'_> {
+    /// Renders a picture of `(width, height)` pixels.
+    ///
+    /// # Errors
+    /// [`RenderError::Size`], [`RenderError::Camera`], [`RenderError::Cancelled`].
+    pub fn render(
+        &self,
+        scene: &Scene,
+        size: (u32, u32),
+        progress: Progress<'_>,
+    ) -> Result<Picture, RenderError> {
+        let options = self.options.for_maps(&self.textures.info);
+        let rays = scene.camera.pixel_rays(size.0, size.1);
+        render_rows(scene, size, progress, |x, y| {
+            let (x, y) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
+            let ray = rays.ray(x, y);
+            let Some(hit) = scene.shape.hit(&ray) else { return Shaded::background(scene) };
+            let footprint = hit.footprint(&rays.ray(x + 1.0, y), &rays.ray(x, y + 1.0));
+            let surface = self.surface(&hit, &footprint, scene.repeats, &options);
+            Shaded::lit(scene, &ray, &hit, &surface, &options)
+        })
+    }
+
+    fn surface(
+        &self,
+        hit: &Hit,
+        footprint: &Footprint,
+        repeats: f64,
+        options: &LobeOptions,
+    ) -> roughcast::shading::Surface {
+        let footprint = Footprint { dx: footprint.dx * repeats, dy: footprint.dy * repeats };
+        let mut texels = [[0.0; 4]; MAX_TEXTURES];
+        for (texel, texture) in texels.iter_mut().zip(&self.textures.textures) {
+            *texel = self.sampler.sample(texture, hit.uv * repeats, &footprint);
+        }
+        let count = self.textures.textures.len();
+        self.textures.shading.surface(&texels[..count], &self.textures.packing, options)
+    }
+}

@@ -1,0 +1,99 @@
+//! The CPU renderer: shading methods as a GPU runs them, and the supersampled truth that they are compared with.
+
+mod method;
+mod normal_quantile;
+mod shade;
+mod truth;
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+use roughcast::texture::Part;
+
+pub use method::{Method, ShadingTextures};
+pub use truth::{MAX_SAMPLES, PIXEL_FILTER_DEVIATION, PIXEL_FILTER_RADIUS, Truth};
+
+use crate::{CameraError, MipmapError, Picture, Scene};
+use shade::Shaded;
+
+/// Most pixels of a picture; 2 GB.
+pub const MAX_PIXELS: u64 = 1 << 26;
+
+/// Told how many rows are done, and of how many; called from any thread, once a row. Where it breaks, rendering ends soon
+/// with [`RenderError::Cancelled`].
+pub type Progress<'a> = &'a (dyn Fn(usize, usize) -> ControlFlow<()> + Sync);
+
+/// A [`Progress`] that lets everything go on.
+pub fn unwatched(_done: usize, _rows: usize) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+/// Why nothing was rendered.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RenderError {
+    /// No pixels, or too many.
+    #[error(
+        "a picture of {0}x{1} pixels cannot be rendered; choose at least 1x1 and at most {MAX_PIXELS} pixels"
+    )]
+    Size(u32, u32),
+    /// The camera shows nothing.
+    #[error(transparent)]
+    Camera(#[from] CameraError),
+    /// The textures of a model are not complete.
+    #[error(
+        "the textures lack the layer '{layer}' of the part '{part}'; bake the model's layout, without block compression"
+    )]
+    MissingTexture {
+        /// The part.
+        part: Part,
+        /// The layer.
+        layer: &'static str,
+    },
+    /// A texture cannot be sampled.
+    #[error(transparent)]
+    Texture(#[from] MipmapError),
+    /// A number of samples that is no square, or too large.
+    #[error("{0} samples a pixel cannot be stratified; choose a square number from 1 to {MAX_SAMPLES}")]
+    Samples(u32),
+    /// The caller asked to stop.
+    #[error("rendering was stopped")]
+    Cancelled,
+}
+
+/// Fills a picture row by row, on all threads. The same bits come out for any number of them, since no pixel looks at
+/// another.
+fn render_rows(
+    scene: &Scene,
+    (width, height): (u32, u32),
+    progress: Progress<'_>,
+    pixel: impl Fn(u32, u32) -> Shaded + Sync,
+) -> Result<Picture, RenderError> {
+    if width == 0 || height == 0 || u64::from(width) * u64::from(height) > MAX_PIXELS {
+        return Err(RenderError::Size(width, height));
+    }
+    scene.camera.validate()?;
+    let mut picture = Picture::empty(width as usize, height as usize);
+    let columns = width as usize;
+    let (done, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let rows = picture
+        .radiance
+        .par_chunks_mut(columns)
+        .zip(picture.specular.par_chunks_mut(columns))
+        .zip(picture.coverage.par_chunks_mut(columns))
+        .enumerate();
+    rows.for_each(|(y, ((radiance, specular), coverage))| {
+        if stopped.load(Ordering::Relaxed) {
+            return;
+        }
+        for x in 0..columns {
+            let shaded = pixel(x as u32, y as u32);
+            (radiance[x], specular[x], coverage[x]) = (shaded.radiance, shaded.specular, shaded.coverage);
+        }
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        if progress(done, height as usize).is_break() {
+            stopped.store(true, Ordering::Relaxed);
+        }
+    });
+    if stopped.into_inner() { Err(RenderError::Cancelled) } else { Ok(picture) }
+}

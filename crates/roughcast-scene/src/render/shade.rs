@@ -1,0 +1,44 @@
+//! What one ray sees.
+
+use roughcast::shading::{LightSample, LobeOptions, Surface, ambient_radiance, reflect};
+
+use crate::{Hit, Ray, Scene};
+
+/// A pixel, or a sample of one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Shaded {
+    /// Radiance towards the viewer.
+    pub radiance: [f32; 3],
+    /// The part of it that specular lobes made.
+    pub specular: [f32; 3],
+    /// Whether there was a surface, as a part of the pixel.
+    pub coverage: f32,
+}
+
+impl Shaded {
+    /// Where there is no surface.
+    pub fn background(scene: &Scene) -> Self {
+        Self { radiance: scene.background, ..Self::default() }
+    }
+
+    /// The light of all lights and from everywhere that a surface sends back along a ray.
+    ///
+    /// On a mesh the shading frame may face away from a viewer who sees the triangle: such a point has no highlight.
+    #[inline]
+    pub fn lit(scene: &Scene, ray: &Ray, hit: &Hit, surface: &Surface, options: &LobeOptions) -> Self {
+        let tangent = |v| hit.frame.tangent_from_world(v).as_vec3().to_array();
+        let view = tangent(-ray.direction);
+        let mut radiance = ambient_radiance(scene.material.albedo, scene.material.ambient);
+        let mut specular = [0.0; 3];
+        for light in &scene.lights {
+            let (towards, irradiance) = light.at(hit.position);
+            let light = LightSample { direction: tangent(towards), irradiance };
+            let reflected = reflect(surface, &scene.material, view, &light, options);
+            for channel in 0..3 {
+                radiance[channel] += reflected.diffuse[channel] + reflected.specular[channel];
+                specular[channel] += reflected.specular[channel];
+            }
+        }
+        Self { radiance, specular, coverage: 1.0 }
+    }
+}

@@ -1,0 +1,139 @@
+//! The truth: many rays a pixel, each shaded with the model's base lobe at level 0.
+//!
+//! Source: LEAN mapping, Figure 14: supersampling with a Gaussian pixel filter.
+
+use glam::DVec2;
+use roughcast::Wrap;
+use roughcast::shading::{LobeOptions, Shading};
+
+use super::normal_quantile::normal_quantile;
+use super::shade::Shaded;
+use super::{Progress, RenderError, render_rows};
+use crate::camera::PixelRays;
+use crate::{Picture, Reconstruction, Scene, SlopeMap};
+
+/// Most samples of a pixel.
+pub const MAX_SAMPLES: u32 = 4096;
+/// Deviation of the pixel filter, in pixels.
+pub const PIXEL_FILTER_DEVIATION: f64 = 0.5;
+/// Where the pixel filter ends, in pixels.
+pub const PIXEL_FILTER_RADIUS: f64 = 2.0;
+/// The part of a normal distribution below minus four deviations, where the pixel filter ends.
+const BEYOND: f64 = 3.167_124_183_311_998e-5;
+
+/// The supersampled truth for a base lobe, in one form and with one energy.
+///
+/// Samples are drawn from the pixel filter itself by its inverse distribution, so that all have the same weight: a square
+/// number of them, one in each cell of a square grid of probabilities, jittered by a hash of pixel and sample. The same
+/// scene gives the same bits.
+#[derive(Clone, Copy, Debug)]
+pub struct Truth<'a> {
+    /// The model under test; its [base lobe](Shading::base_lobe) is shaded.
+    pub shading: Shading,
+    /// The slopes of level 0.
+    pub slopes: &'a SlopeMap,
+    /// What the surface is between texels.
+    pub reconstruction: Reconstruction,
+    /// What lies beyond the map's edges.
+    pub wrap: Wrap,
+    /// The lobe. Roughness that maps may hold does not matter here.
+    pub options: LobeOptions,
+    /// Samples a pixel: a square number, 1 ..= [`MAX_SAMPLES`].
+    pub samples: u32,
+}
+
+impl Truth<'_> {
+    /// Renders a picture of `(width, height)` pixels.
+    ///
+    /// # Errors
+    /// [`RenderError::Samples`], [`RenderError::Size`], [`RenderError::Camera`], [`RenderError::Cancelled`].
+    pub fn render(
+        &self,
+        scene: &Scene,
+        size: (u32, u32),
+        progress: Progress<'_>,
+    ) -> Result<Picture, RenderError> {
+        let side = self.samples.isqrt();
+        if side * side != self.samples || !(1..=MAX_SAMPLES).contains(&self.samples) {
+            return Err(RenderError::Samples(self.samples));
+        }
+        let rays = scene.camera.pixel_rays(size.0, size.1);
+        render_rows(scene, size, progress, |x, y| self.pixel(scene, &rays, (x, y), side))
+    }
+
+    /// The mean of a pixel's samples, summed in f64.
+    fn pixel(&self, scene: &Scene, rays: &PixelRays, (x, y): (u32, u32), side: u32) -> Shaded {
+        let centre = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+        let (mut radiance, mut specular, mut coverage) = ([0.0_f64; 3], [0.0_f64; 3], 0.0_f64);
+        for row in 0..side {
+            for column in 0..side {
+                let jitter = jitter(x, y, row * side + column);
+                let cell = (DVec2::new(f64::from(column), f64::from(row)) + jitter) / f64::from(side);
+                let at = centre + DVec2::new(filter_quantile(cell.x), filter_quantile(cell.y));
+                let sample = self.sample(scene, rays, at);
+                for channel in 0..3 {
+                    radiance[channel] += f64::from(sample.radiance[channel]);
+                    specular[channel] += f64::from(sample.specular[channel]);
+                }
+                coverage += f64::from(sample.coverage);
+            }
+        }
+        let mean = |sum: f64| (sum / f64::from(side * side)) as f32;
+        Shaded { radiance: radiance.map(mean), specular: specular.map(mean), coverage: mean(coverage) }
+    }
+
+    #[inline]
+    fn sample(&self, scene: &Scene, rays: &PixelRays, at: DVec2) -> Shaded {
+        let ray = rays.ray(at.x, at.y);
+        let Some(hit) = scene.shape.hit(&ray) else { return Shaded::background(scene) };
+        let slope = self.slopes.at(hit.uv * scene.repeats, self.wrap, self.reconstruction);
+        let surface = self.shading.surface_of_slope(slope, &self.options);
+        Shaded::lit(scene, &ray, &hit, &surface, &self.options)
+    }
+}
+
+/// The place, in pixels from the centre, that the pixel filter stays below with this probability.
+fn filter_quantile(probability: f64) -> f64 {
+    PIXEL_FILTER_DEVIATION * normal_quantile(BEYOND + probability * (1.0 - 2.0 * BEYOND))
+}
+
+/// Two numbers in 0 .. 1 of a pixel and a sample (SplitMix64, by S. Vigna).
+fn jitter(x: u32, y: u32, sample: u32) -> DVec2 {
+    const UNIT: f64 = 1.0 / (1_u64 << 32) as f64;
+    // Pixels are fewer than 2^26 and samples at most 2^12 = 4096; 26 bits for x and for y leave none of them alike.
+    let index = (u64::from(y) << 38) ^ (u64::from(x) << 12) ^ u64::from(sample);
+    let mut z = index.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^= z >> 31;
+    DVec2::new((z >> 32) as f64 + 0.5, (z & 0xffff_ffff) as f64 + 0.5) * UNIT
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_are_drawn_from_the_truncated_filter() {
+        assert!((filter_quantile(0.0) + PIXEL_FILTER_RADIUS).abs() < 1e-6);
+        assert!((filter_quantile(1.0) - PIXEL_FILTER_RADIUS).abs() < 1e-6);
+        assert_eq!(filter_quantile(0.5), 0.0);
+        let count = 100_000;
+        let variance = (0..count).map(|i| filter_quantile((f64::from(i) + 0.5) / f64::from(count)).powi(2));
+        let variance = variance.sum::<f64>() / f64::from(count);
+        // What lies beyond four deviations is missing: a thousandth of the variance.
+        assert!((variance / PIXEL_FILTER_DEVIATION.powi(2) - 1.0).abs() < 2e-3, "{variance}");
+    }
+
+    #[test]
+    fn jitter_fills_the_unit_square_evenly_and_differs_from_pixel_to_pixel() {
+        let count = 64 * 64;
+        let all: Vec<DVec2> = (0..64).flat_map(|x| (0..64).map(move |s| jitter(x, 7, s))).collect();
+        let mean = all.iter().copied().sum::<DVec2>() / f64::from(count);
+        let product = all.iter().map(|j| (j.x - 0.5) * (j.y - 0.5)).sum::<f64>() / f64::from(count);
+        // Deviations of these means: 1 / sqrt(12 * 4096) = 0.0045, and 1 / 12 / 64 = 0.0013.
+        assert!((mean - 0.5).abs().max_element() < 0.02 && product.abs() < 0.005, "{mean} {product}");
+        assert!(all.iter().all(|j| j.min_element() > 0.0 && j.max_element() < 1.0));
+        assert_ne!(jitter(0, 1, 0), jitter(1, 0, 0));
+    }
+}

@@ -1,0 +1,121 @@
+//! A map's slopes at level 0, between whose texels the truth interpolates.
+
+use glam::DVec2;
+use roughcast::texture::{Layout, MomentLevel, decode};
+use roughcast::{BakeError, BakeOptions, Bits, Image, Slope, SourceOptions, Wrap, bake};
+
+use crate::mipmap::wrapped;
+
+roughcast::named_enum! {
+    /// What the surface is between the texels of its map.
+    pub enum Reconstruction: "reconstruction" {
+        /// Slopes are interpolated bilinearly: a surface without creases, what one sees of a texture from near. Where
+        /// slopes change from texel to texel, it is a little smoother than the map's own moments say.
+        Linear = "linear",
+        /// A facet a texel: creased, and its moments over whole texels are exactly the map's.
+        Facets = "facets",
+    }
+}
+
+/// Slopes, row by row from the top, in single floats and before any packing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SlopeMap {
+    width: usize,
+    height: usize,
+    slopes: Vec<[f32; 2]>,
+}
+
+impl SlopeMap {
+    /// The slopes of a map, as the library reads them.
+    ///
+    /// # Errors
+    /// [`BakeError`] where the map cannot be read.
+    pub fn of(map: &Image, options: &SourceOptions) -> Result<Self, BakeError> {
+        let floats = BakeOptions { layout: Layout::Moments, bits: Bits::Float, ..BakeOptions::default() };
+        let baked = bake(map, options, None, &floats)?;
+        let levels = decode(&baked.arrays).expect("a bake of this layout is complete");
+        Ok(Self::of_level(&levels[0]))
+    }
+
+    /// The mean slopes of a level.
+    pub fn of_level(level: &MomentLevel) -> Self {
+        let slopes = level.moments.iter().map(|m| [m.mean.x, m.mean.y]).collect();
+        Self { width: level.width, height: level.height, slopes }
+    }
+
+    /// Width and height, in texels.
+    pub fn size(&self) -> (usize, usize) {
+        (self.width, self.height)
+    }
+
+    /// The slope at texture coordinates.
+    #[inline]
+    pub fn at(&self, uv: DVec2, wrap: Wrap, reconstruction: Reconstruction) -> Slope {
+        let at = uv * DVec2::new(self.width as f64, self.height as f64);
+        match reconstruction {
+            Reconstruction::Linear => self.interpolated(at - 0.5, wrap),
+            Reconstruction::Facets => {
+                let x = wrapped(at.x.floor() as i64, self.width, wrap);
+                let y = wrapped(at.y.floor() as i64, self.height, wrap);
+                let [x, y] = self.slopes[y * self.width + x];
+                Slope { x, y }
+            }
+        }
+    }
+
+    #[inline]
+    fn interpolated(&self, at: DVec2, wrap: Wrap) -> Slope {
+        let corner = at.floor();
+        let (s, t) = ((at.x - corner.x) as f32, (at.y - corner.y) as f32);
+        let (left, top) = (corner.x as i64, corner.y as i64);
+        let (left, right) =
+            (wrapped(left, self.width, wrap), wrapped(left.saturating_add(1), self.width, wrap));
+        let (top, bottom) =
+            (wrapped(top, self.height, wrap), wrapped(top.saturating_add(1), self.height, wrap));
+        let texel = |x: usize, y: usize| self.slopes[y * self.width + x];
+        let (a, b, c, d) = (texel(left, top), texel(right, top), texel(left, bottom), texel(right, bottom));
+        let mix = |i: usize| (1.0 - t) * ((1.0 - s) * a[i] + s * b[i]) + t * ((1.0 - s) * c[i] + s * d[i]);
+        Slope { x: mix(0), y: mix(1) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use roughcast::Moments;
+
+    use super::*;
+
+    fn map(width: usize, slopes: &[f32]) -> SlopeMap {
+        let moments = slopes.iter().map(|x| Moments::of_slope(Slope { x: *x, y: -x })).collect();
+        SlopeMap::of_level(&MomentLevel { width, height: slopes.len() / width, moments })
+    }
+
+    #[test]
+    fn slopes_are_those_of_the_texels_at_their_centres_and_linear_between() {
+        let map = map(2, &[0.0, 1.0, 2.0, 3.0]);
+        let at = |x: f64, y: f64, how| map.at(DVec2::new(x, y), Wrap::Repeat, how).x;
+        assert_eq!(at(0.25, 0.25, Reconstruction::Linear), 0.0);
+        assert_eq!(at(0.75, 0.25, Reconstruction::Linear), 1.0);
+        assert_eq!(at(0.5, 0.5, Reconstruction::Linear), 1.5);
+        assert_eq!(at(0.0, 0.25, Reconstruction::Linear), 0.5);
+        assert_eq!(at(0.49, 0.51, Reconstruction::Facets), 2.0);
+        assert_eq!(at(-0.01, 1.49, Reconstruction::Facets), 1.0);
+        assert_eq!(
+            map.at(DVec2::new(0.25, 0.75), Wrap::Repeat, Reconstruction::Linear),
+            Slope { x: 2.0, y: -2.0 }
+        );
+    }
+
+    #[test]
+    fn odd_coordinates_give_some_slope_of_the_map() {
+        let map = map(2, &[0.0, 1.0, 2.0, 3.0]);
+        for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300] {
+            for how in Reconstruction::ALL {
+                for wrap in Wrap::ALL {
+                    // Nothing sensible can be between texels at infinity; it must only not panic.
+                    let _ = map.at(DVec2::new(odd, 0.3), *wrap, *how);
+                }
+            }
+        }
+    }
+}

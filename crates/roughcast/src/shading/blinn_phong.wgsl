@@ -1,0 +1,12 @@
+// Blinn-Phong: a cosine lobe about the filtered bump normal, in the half vector.
+
+fn blinn_phong_surface(normal: vec3f, options: LobeOptions) -> BumpFacet {
+    return bump_facet(normal, options.specular_power);
+}
+
+fn blinn_phong_lobe(surface: BumpFacet, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {
+    if !both_above(view, light) {
+        return 0.0;
+    }
+    return cosine_lobe(surface.normal, normalize(view + light), surface.specular_power, options.form);
+}

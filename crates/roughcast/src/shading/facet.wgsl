@@ -1,0 +1,53 @@
+// A facet of the filtered bump map: what the models in the frame of the bump have in common.
+
+// Filtered normals are not flatter than this.
+const LEAST_NORMAL_Z: f32 = 0.001953125;
+
+// Cosines below this count as none: its square can still be divided by.
+const LEAST_COSINE: f32 = 1e-18;
+
+struct BumpFacet {
+    normal: vec3f,          // unit bump normal
+    specular_power: f32,    // Blinn-Phong exponent
+}
+
+// The direction of a filtered normal of any length. A zero vector counts as flat, a normal into the surface as steep.
+fn unit_normal(normal: vec3f) -> vec3f {
+    return normalize(vec3f(normal.xy, max(normal.z, LEAST_NORMAL_Z)));
+}
+
+// The facet with a filtered normal of any length.
+fn bump_facet(normal: vec3f, specular_power: f32) -> BumpFacet {
+    return BumpFacet(unit_normal(normal), specular_power);
+}
+
+// The filtered normal that LEAN's first texture holds; its length is what averaging has left of it. For diffuse light.
+fn bump_normal(lean1: vec4f, packing: Packing) -> vec3f {
+    return vec3f(lean1.xy * packing.unit.x + packing.unit.y, lean1.z);
+}
+
+// log(1 + x) for x >= 0, also where 1 + x would round x away: 2 artanh(x / (2 + x)), as a series for small x.
+fn log_one_plus(x: f32) -> f32 {
+    let z = x / (2.0 + x);
+    let square = z * z;
+    let series = 1.0 + square * (1.0 / 3.0 + square * (0.2 + square * (1.0 / 7.0 + square / 9.0)));
+    return select(log(1.0 + x), 2.0 * z * series, x < 0.5);
+}
+
+// cos^exponent of the angle between two directions of any length, zero from a right angle on. From the tangent, since a
+// rounded cosine near one is useless for exponents in the thousands.
+fn cosine_power(axis: vec3f, direction: vec3f, exponent: f32) -> f32 {
+    let cosine = dot(axis, direction);
+    if cosine < LEAST_COSINE {
+        return 0.0;
+    }
+    let sine = cross(axis, direction);
+    let tangent_squared = dot(sine, sine) / (cosine * cosine);
+    return exp(-0.5 * exponent * log_one_plus(tangent_squared));
+}
+
+// The cosine lobe about an axis. Normalised it integrates to 1 over the projected solid angle of that axis.
+fn cosine_lobe(axis: vec3f, direction: vec3f, exponent: f32, form: u32) -> f32 {
+    let peak = select(exponent, (exponent + 2.0) / TWO_PI, form == FORM_NORMALISED);
+    return peak * cosine_power(axis, direction, exponent);
+}

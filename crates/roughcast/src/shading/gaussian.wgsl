@@ -1,0 +1,56 @@
+// A Gaussian of slopes in the surface frame: the off-centre Beckmann lobe of four models. LEAN mapping, Eq. 1.
+
+// The smallest variance along any direction that REPAIR_CLAMP leaves.
+const LEAST_VARIANCE: f32 = 1e-7;
+
+// Exponents beyond this leave nothing: exp(-87) is the smallest normal single float.
+const LARGEST_EXPONENT: f32 = 87.0;
+
+struct SlopeGaussian {
+    mean: vec2f,        // mean slope B
+    variance: vec2f,    // along x and y, base roughness included
+    covariance: f32,    // mixed term
+    det: f32,           // of the covariance matrix; no highlight where it is not positive
+}
+
+// The nearest covariance by rule: variances below zero become zero, the mixed term is cut to sqrt(xx yy).
+fn positive_semidefinite(sigma: vec3f) -> vec3f {
+    let variances = max(sigma.xy, vec2f(0.0));
+    let limit = sqrt(variances.x) * sqrt(variances.y);
+    return vec3f(variances, clamp(sigma.z, -limit, limit));
+}
+
+// The Gaussian with this mean and covariance (xx, yy, xy), which has its base roughness in it.
+fn slope_gaussian(mean: vec2f, sigma: vec3f, options: LobeOptions) -> SlopeGaussian {
+    let trace = sigma.x + sigma.y;
+    // Where fma rounds once, the rounding of the square is made good (Kahan); elsewhere this is the plain difference.
+    let square = sigma.z * sigma.z;
+    let rounding = fma(-sigma.z, sigma.z, square);
+    let difference = fma(sigma.x, sigma.y, -square) + rounding;
+    // Of two negative variances, too, the determinant is positive, and the lobe would grow with the distance.
+    let det = select(0.0, difference, trace > 0.0);
+    // The quotient is at most the smaller eigenvalue and at least half of it. What is added raises both.
+    let least = select(0.0, det / max(trace, LEAST_VARIANCE), trace > LEAST_VARIANCE);
+    let missing = max(LEAST_VARIANCE - least, 0.0);
+    let added = select(missing, 0.0, options.repair == REPAIR_PUBLISHED);
+    return SlopeGaussian(mean, sigma.xy + added, sigma.z, det + added * (trace + added));
+}
+
+// The lobe for unit directions to the viewer and to the light.
+fn gaussian_lobe(surface: SlopeGaussian, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {
+    if !both_above(view, light) {
+        return 0.0;
+    }
+    let h = normalize(view + light);
+    // Both sides of the quotient times h.z^2, so that grazing half vectors divide nothing by zero.
+    let d = h.xy - surface.mean * h.z;
+    let squares = surface.variance.y * d.x * d.x + surface.variance.x * d.y * d.y;
+    let squared_distance = max(squares - 2.0 * surface.covariance * d.x * d.y, 0.0);
+    let scale = 2.0 * surface.det * h.z * h.z;
+    if !((scale > 0.0) & (squared_distance < LARGEST_EXPONENT * scale)) {
+        return 0.0;
+    }
+    let density = exp(-squared_distance / scale) / sqrt(surface.det);
+    let squared = h.z * h.z;
+    return select(density, density / (TWO_PI * squared * squared), options.form == FORM_NORMALISED);
+}

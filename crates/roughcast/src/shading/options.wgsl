@@ -1,0 +1,28 @@
+// How lobes are evaluated. Uploaded: 24 bytes, in uniform buffers filled up with zeros to 32.
+
+struct LobeOptions {
+    specular_power: f32,    // Blinn-Phong exponent s of the base roughness, 1 to 100000; its slope variance is 1 / s
+    form: u32,              // FORM_...
+    base: u32,              // BASE_...
+    repair: u32,            // REPAIR_...
+    base_in_maps: u32,      // MAPS_...
+    roughness_stored: u32,  // STORED_...
+}
+
+const FORM_PAPER: u32 = 0u;         // 2 pi p of the slope density p; cosine lobes s cos^s
+const FORM_NORMALISED: u32 = 1u;    // p / h.z^4: a microfacet distribution; cosine lobes (s + 2) / (2 pi) cos^s
+
+const BASE_PLANE: u32 = 0u;         // variance 1 / s in the plane of the surface
+const BASE_FACET: u32 = 1u;         // the lobe of a facet of slope B, seen there
+
+const REPAIR_CLAMP: u32 = 0u;       // impossible covariances are made positive semidefinite
+const REPAIR_PUBLISHED: u32 = 1u;   // no highlight where the determinant is not positive
+
+const MAPS_WITHOUT_BASE: u32 = 0u;  // the base roughness is added at shading
+const MAPS_WITH_BASE: u32 = 1u;     // it is in the maps
+
+const STORED_PERCEPTUAL: u32 = 0u;      // sqrt(alpha)
+const STORED_ALPHA: u32 = 1u;           // alpha
+const STORED_ALPHA_SQUARED: u32 = 2u;   // alpha^2
+const STORED_GLOSS: u32 = 3u;           // 1 - sqrt(alpha)
+const STORED_SPECULAR_POWER: u32 = 4u;  // 2 / alpha^2

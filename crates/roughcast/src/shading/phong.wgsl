@@ -1,0 +1,13 @@
+// Phong: a cosine lobe about the reflected ray, with Phong's own exponent.
+
+fn phong_surface(normal: vec3f, options: LobeOptions) -> BumpFacet {
+    return bump_facet(normal, options.specular_power);
+}
+
+fn phong_lobe(surface: BumpFacet, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {
+    if !both_above(view, light) {
+        return 0.0;
+    }
+    let reflected = 2.0 * dot(surface.normal, view) * surface.normal - view;
+    return cosine_lobe(reflected, light, surface.specular_power, options.form);
+}

@@ -1,0 +1,42 @@
+// From lobes to light, in linear RGB. Irradiance is that of a surface which faces the light.
+
+// The unit normal of a slope: for diffuse light where the layout holds no normal.
+fn slope_normal(slope: vec2f) -> vec3f {
+    return normalize(vec3f(slope, 1.0));
+}
+
+// Schlick's approximation of Fresnel reflectance, from that at normal incidence.
+fn schlick(specular: f32, cosine: f32) -> f32 {
+    let rest = clamp(1.0 - cosine, 0.0, 1.0);
+    let square = rest * rest;
+    return specular + (1.0 - specular) * square * square * rest;
+}
+
+fn ambient_radiance(albedo: vec3f, ambient: vec3f) -> vec3f {
+    return albedo * ambient;
+}
+
+// The normal has the length that filtering has left.
+fn diffuse_radiance(normal: vec3f, albedo: vec3f, light: vec3f, irradiance: vec3f) -> vec3f {
+    let cosine = select(0.0, max(dot(normal, light), 0.0), light.z > 0.0);
+    return albedo / PI * cosine * irradiance;
+}
+
+// The lobe must be of the same directions and options; specular is the reflectance at normal incidence.
+fn specular_radiance(
+    lobe: f32,
+    specular: vec3f,
+    view: vec3f,
+    light: vec3f,
+    irradiance: vec3f,
+    options: LobeOptions,
+) -> vec3f {
+    if !both_above(view, light) {
+        return vec3f(0.0);
+    }
+    // 1 / (8 pi) in the paper's form, where the lobe is 2 pi p.
+    let coefficient = select(0.125 / PI, 0.25 * light.z, options.form == FORM_NORMALISED);
+    let cosine = dot(view, normalize(view + light));
+    let fresnel = vec3f(schlick(specular.x, cosine), schlick(specular.y, cosine), schlick(specular.z, cosine));
+    return fresnel * coefficient * lobe * irradiance;
+}

@@ -1,0 +1,13 @@
+// Directions in the tangent frame of the surface: x right, y up, z out.
+
+const PI: f32 = 3.14159265;
+const TWO_PI: f32 = 6.28318531;
+
+// Directions lower than this above the surface count as in it: two that are opposite to each other at the horizon have no
+// half vector.
+const LEAST_HEIGHT: f32 = 1e-15;
+
+// Whether viewer and light are above the surface; nothing is reflected otherwise.
+fn both_above(view: vec3f, light: vec3f) -> bool {
+    return min(view.z, light.z) > LEAST_HEIGHT;
+}

@@ -1,0 +1,179 @@
+//! No lobe is NaN, infinite or negative, whatever the texels, the options and the directions.
+
+use roughcast::shading::{
+    BaseLobe, Form, LobeOptions, Repair, Shading, blinn_phong_surface, ggx_surface_of_normal,
+};
+use roughcast::texture::{Base, Packing, RoughnessStored};
+use roughcast::{Lobe, Slope};
+
+use super::support::{Frame, Random, narrow};
+
+const POWERS: [f32; 4] = [1.0, 100.0, 16_384.0, 1e5];
+
+fn all_options() -> Vec<LobeOptions> {
+    let mut all = Vec::new();
+    for specular_power in POWERS {
+        for form in Form::ALL.iter().copied() {
+            for base in BaseLobe::ALL.iter().copied() {
+                for repair in Repair::ALL.iter().copied() {
+                    for base_in_maps in Base::ALL.iter().copied() {
+                        for roughness_stored in RoughnessStored::ALL.iter().copied() {
+                            all.push(LobeOptions {
+                                specular_power,
+                                form,
+                                base,
+                                repair,
+                                base_in_maps,
+                                roughness_stored,
+                            });
+                        }
+                    }
+                }
+            }
+        }
+    }
+    all
+}
+
+/// Directions of half vectors: straight up, towards the bump, and as good as horizontal.
+fn directions() -> Vec<[f32; 3]> {
+    let mut all = vec![[0.0, 0.0, 1.0], [1.0, 0.0, 1e-6], [0.0, -1.0, 1e-20], [-1.0, 0.0, f32::MIN_POSITIVE]];
+    all.push([1.0, 0.0, 1e-42]);
+    all.extend([[0.3, 0.2], [-40.0, 90.0], [1e3, 1e4]].map(|slope| narrow(Frame::SURFACE.direction(slope))));
+    all
+}
+
+fn check(shading: Shading, texels: &[[f32; 4]], packing: &Packing, options: &LobeOptions) {
+    let surface = shading.surface(texels, packing, options);
+    assert!(surface.normal.iter().all(|v| v.is_finite()), "{shading} {texels:?}: {surface:?}");
+    let directions = directions();
+    for view in &directions {
+        for light in &directions {
+            let lobe = surface.lobe(*view, *light, options);
+            let fine = lobe.is_finite() && lobe >= 0.0;
+            assert!(fine, "{shading} {texels:?} {options:?}, {view:?} {light:?}: {lobe} of {surface:?}");
+        }
+    }
+}
+
+#[test]
+fn extreme_texels_of_unsigned_textures() {
+    let packing = Packing {
+        slope: [256.0, -128.0],
+        second: [16_384.0, 0.0],
+        mixed: [32_768.0, -16_384.0],
+        trace: [32_768.0, 0.0],
+        variance: [16_384.0, 0.0],
+        unit: [2.0, -1.0],
+    };
+    let ends = [0.0_f32, 0.5, 1.0];
+    let mut random = Random(11);
+    let options = all_options();
+    for shading in Shading::ALL.iter().copied() {
+        for _ in 0..400 {
+            let inputs = shading.inputs(Lobe::Anisotropic).len();
+            let pick = |random: &mut Random| {
+                if random.unit() < 0.7 { ends[(3.0 * random.unit()) as usize] } else { random.unit() as f32 }
+            };
+            let texels = (0..inputs).map(|_| [0; 4].map(|_| pick(&mut random))).collect::<Vec<_>>();
+            let options = options[(random.unit() * options.len() as f64) as usize];
+            check(shading, &texels, &packing, &options);
+        }
+    }
+}
+
+#[test]
+fn a_mirror_with_its_base_baked_in_is_finite() {
+    for shading in [Shading::Lean, Shading::Clean, Shading::Variance, Shading::Ggx] {
+        for options in all_options().into_iter().filter(|options| options.base_in_maps == Base::Baked) {
+            let texels = match shading {
+                Shading::Lean => vec![[0.1, 0.0, 0.9, 0.0], [0.25, 0.0, 0.0625, 0.0]],
+                Shading::Clean => vec![[0.25, 0.0, 0.0625, 1.0]],
+                Shading::Variance => vec![[0.25, 0.0, 0.0, 0.0]],
+                _ => vec![[0.0, 0.0, 1.0, 1.0], [0.0; 4], [0.0; 4]],
+            };
+            check(shading, &texels, &Packing::IDENTITY, &options);
+        }
+    }
+    // Mended it still shows a highlight, by the text's rule it shows none.
+    let h = narrow(Frame::SURFACE.direction([0.25, 0.0]));
+    let lobe = |repair| {
+        let options = LobeOptions { base_in_maps: Base::Baked, repair, ..LobeOptions::default() };
+        let texels = [[0.1, 0.0, 0.9, 0.0], [0.25, 0.0, 0.0625, 0.0]];
+        Shading::Lean.surface(&texels, &Packing::IDENTITY, &options).lobe(h, h, &options)
+    };
+    assert!(lobe(Repair::Clamp) > 0.0);
+    assert_eq!(lobe(Repair::Published), 0.0);
+}
+
+#[test]
+fn a_covariance_that_is_none_is_mended_or_shows_nothing() {
+    // M.xx below B.x²: a variance of -0.01, not made good by a base of 1 / 256.
+    let texels = [[0.1, 0.0, 0.9, 0.0], [0.25, 0.0, 0.0525, 0.01]];
+    let h = narrow(Frame::SURFACE.direction([0.25, 0.0]));
+    let lobe = |repair| {
+        let options = LobeOptions { repair, ..LobeOptions::default() };
+        Shading::Lean.surface(&texels, &Packing::IDENTITY, &options).lobe(h, h, &options)
+    };
+    assert!(lobe(Repair::Clamp) > 0.0);
+    assert_eq!(lobe(Repair::Published), 0.0);
+}
+
+#[test]
+fn the_repair_leaves_sound_covariances_alone() {
+    let texels = [[0.1, 0.0, 0.9, 0.03], [0.25, 0.1, 0.1, 0.05]];
+    let h = narrow(Frame::SURFACE.direction([0.3, 0.05]));
+    let lobe = |repair| {
+        let options = LobeOptions { repair, specular_power: 1e5, ..LobeOptions::default() };
+        Shading::Lean.surface(&texels, &Packing::IDENTITY, &options).lobe(h, h, &options)
+    };
+    assert_eq!(lobe(Repair::Clamp), lobe(Repair::Published));
+}
+
+#[test]
+fn steep_bumps_of_the_truth_are_finite() {
+    for shading in Shading::ALL.iter().copied() {
+        for options in all_options() {
+            for slope in [Slope { x: 128.0, y: 0.0 }, Slope { x: -90.0, y: 90.0 }, Slope::default()] {
+                let surface = shading.surface_of_slope(slope, &options);
+                for h in directions() {
+                    let lobe = surface.lobe(h, h, &options);
+                    assert!(lobe.is_finite() && lobe >= 0.0, "{shading} {slope:?} {options:?}: {lobe}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn nothing_is_reflected_below_the_surface() {
+    let options = LobeOptions::default();
+    let up = [0.0, 0.0, 1.0];
+    for shading in Shading::ALL.iter().copied() {
+        let surface = shading.surface_of_slope(Slope::default(), &options);
+        assert!(surface.lobe(up, up, &options) > 0.0, "{shading}");
+        for below in [[0.0, 0.6, -0.8], [1.0, 0.0, 0.0]] {
+            assert_eq!(surface.lobe(below, up, &options), 0.0, "{shading}");
+            assert_eq!(surface.lobe(up, below, &options), 0.0, "{shading}");
+        }
+    }
+}
+
+#[test]
+fn a_normal_without_direction_is_flat() {
+    let options = LobeOptions::default();
+    assert_eq!(blinn_phong_surface([0.0; 3], &options).normal, [0.0, 0.0, 1.0]);
+    let ggx = ggx_surface_of_normal([0.0; 3], &options);
+    assert_eq!((ggx.normal, ggx.tangent), ([0.0, 0.0, 1.0], [1.0, 0.0, 0.0]));
+}
+
+#[test]
+fn a_two_channel_normal_gets_its_z_back() {
+    let packing = Packing { unit: [2.0, -1.0], ..Packing::IDENTITY };
+    let options = LobeOptions::default();
+    let normal = |texel| Shading::Ggx.surface(&[texel, [0.5; 4]], &packing, &options).normal;
+    let (two, three) = (normal([0.8, 0.5, 0.0, 1.0]), normal([0.8, 0.5, 0.9, 1.0]));
+    for (a, b) in two.iter().zip(three) {
+        assert!((a - b).abs() < 1e-6, "{two:?} {three:?}");
+    }
+}
