@@ -65,6 +65,8 @@ pub struct Gpu {
     pub features: wgpu::Features,
     /// Limits that hold.
     pub limits: wgpu::Limits,
+    /// Tells what formats can do beyond what WebGPU promises; unknown for a device of the caller.
+    adapter: Option<wgpu::Adapter>,
 }
 
 impl Gpu {
@@ -73,8 +75,7 @@ impl Gpu {
     /// # Errors
     /// [`GpuError::NoAdapter`] and [`GpuError::NoDevice`].
     pub async fn new(options: &GpuOptions) -> Result<Self, GpuError> {
-        // OpenGL only where there is nothing better: asking it opens connections to displays, which print complaints where
-        // there are none.
+        // OpenGL only where there is nothing better: it lacks compute shaders on many devices.
         let (first, second) = (options.backends & wgpu::Backends::PRIMARY, options.backends);
         let adapter = match request_adapter(first, options.adapter).await {
             Ok(adapter) => adapter,
@@ -102,13 +103,13 @@ impl Gpu {
         let (device, queue) = adapter.request_device(&descriptor).await.map_err(|error| {
             GpuError::NoDevice { adapter: adapter.get_info().name, reason: one_line(&error) }
         })?;
-        Ok(Self::from_device(device, queue))
+        Ok(Self { adapter: Some(adapter.clone()), ..Self::from_device(device, queue) })
     }
 
     /// Takes a device that the caller has: an engine's, a browser's, a window's.
     pub fn from_device(device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let (info, features, limits) = (device.adapter_info(), device.features(), device.limits());
-        Self { device, queue, info, features, limits }
+        Self { device, queue, info, features, limits, adapter: None }
     }
 
     /// Whether the adapter is a program on the CPU: its timings say nothing about graphics hardware.
@@ -142,7 +143,13 @@ impl Gpu {
         if !self.features.contains(format.required_features()) {
             return Err(GpuError::Format { wanted: "use", format, instead });
         }
-        let allowed = format.guaranteed_format_features(self.features).allowed_usages;
+        // With adapter-specific formats, what a device of the caller can do is only known by trying.
+        let specific = wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES;
+        let allowed = match (&self.adapter, self.features.contains(specific)) {
+            (_, false) => format.guaranteed_format_features(self.features).allowed_usages,
+            (Some(adapter), true) => adapter.get_texture_format_features(format).allowed_usages,
+            (None, true) => usages,
+        };
         for (usage, wanted) in [
             (wgpu::TextureUsages::STORAGE_BINDING, "store to"),
             (wgpu::TextureUsages::RENDER_ATTACHMENT, "render to"),

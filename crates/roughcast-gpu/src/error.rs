@@ -1,6 +1,6 @@
 //! What can go wrong on a GPU. One line each, with the mend.
 
-use roughcast::SourceError;
+use roughcast::BakeError;
 
 /// Why something could not be done on the GPU.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -95,12 +95,15 @@ pub enum GpuError {
         /// What wgpu says.
         reason: String,
     },
-    /// The map cannot be read as slopes.
+    /// The map cannot be read as slopes, or options do not go together.
     #[error(transparent)]
-    Source(#[from] SourceError),
-    /// The options do not go together, or not on a GPU.
+    Bake(#[from] BakeError),
+    /// A texture or an image is not of the kind that is needed.
     #[error("{0}")]
-    Options(String),
+    Shape(String),
+    /// What the CPU can do and the GPU cannot.
+    #[error("{0}")]
+    OnlyOnCpu(String),
 }
 
 /// The words of a longer message on one line.

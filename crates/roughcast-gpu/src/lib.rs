@@ -5,10 +5,13 @@
 
 #![forbid(unsafe_code)]
 
+pub mod bake;
 mod device;
 mod error;
 pub mod read_back;
+mod timestamps;
 
 pub use device::{AdapterChoice, Gpu, GpuOptions, LimitChoice};
 pub use error::GpuError;
+pub use timestamps::{Measured, Span, Timestamps};
 pub use wgpu;

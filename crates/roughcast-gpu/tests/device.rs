@@ -31,7 +31,7 @@ fn without_an_adapter_the_error_names_the_package() {
 
 #[test]
 fn a_device_of_the_caller_is_taken_as_it_is() {
-    let Gpu { device, queue, info, features, limits } = gpu();
+    let Gpu { device, queue, info, features, limits, .. } = gpu();
     let taken = Gpu::from_device(device, queue);
     assert_eq!((taken.info, taken.features, taken.limits), (info, features, limits));
     assert!(gpu().has_compute(), "lavapipe and every GPU have compute shaders");

@@ -76,8 +76,11 @@ mod source;
 mod survey;
 pub mod texture;
 mod vectorised;
+pub mod wgsl;
 
-pub use bake::{BakeError, BakeReport, Baked, ScaleAdvice, bake, bake_reusing, refuse_filter};
+pub use bake::{
+    BakeError, BakePlan, BakeReport, Baked, ScaleAdvice, bake, bake_reusing, plan_bake, refuse_filter,
+};
 pub use image::{Image, ImageError, SampleType, Samples};
 pub use moments::{Covariance, Moments};
 pub use named::{Named, UnknownName};
@@ -85,6 +88,6 @@ pub use options::{
     BakeOptions, Bits, Blocks, Gradient, Green, HeightSense, Kind, Lobe, NormalChannels, NormalRange,
     PyramidFilter, RoughnessTexture, ScaleChoice, SourceOptions, Wrap,
 };
-pub use pyramid::{LevelStats, level_sizes};
+pub use pyramid::{LevelStats, level_sizes, levels_of_four};
 pub use slope::{Normal, Slope, SourceCounts, mended_slope, normal_from_slope, slope_from_normal};
 pub use source::{BaseRoughness, RoughnessMap, SourceError, stored_from_variance, variance_from_stored};

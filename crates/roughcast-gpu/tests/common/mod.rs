@@ -2,6 +2,9 @@
 
 #![allow(dead_code)] // each test program uses a part
 
+pub mod compare;
+pub mod maps;
+
 use roughcast_gpu::{Gpu, GpuOptions, LimitChoice};
 
 /// A device with all that the adapter has. Without an adapter every test fails: none is skipped in silence.

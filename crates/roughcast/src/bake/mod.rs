@@ -2,19 +2,20 @@
 
 mod allocate;
 mod check;
+mod plan;
 mod scales;
 
 pub use check::refuse_filter;
+pub use plan::{BakePlan, plan_bake};
 
 use crate::moments::Moments;
 use crate::options::{BakeOptions, Blocks, ScaleChoice, SourceOptions};
 use crate::pyramid::{self, LevelStats, PyramidOptions, level_sizes};
 use crate::source::{BaseRoughness, BaseSource, MapSource, SourceError, UseOfBase};
 use crate::survey::survey;
-use crate::texture::{self, Base, Bounds, EncoderShape, Layout, Part, Peaks, TextureArray, TextureInfo};
+use crate::texture::{self, Base, Bounds, EncoderShape, Layout, Part, Peaks, TextureArray};
 use crate::{Image, SourceCounts};
 use allocate::{allocate, level_outs};
-use check::{check_options, limit_slopes};
 use scales::{advice, largest_variance, set_scales, stores_variance};
 
 /// Why a map could not be baked. One line, with the mend.
@@ -101,18 +102,9 @@ pub fn bake_reusing(
     roughness: Option<BaseRoughness<'_>>,
     options: &BakeOptions,
 ) -> Result<Baked, BakeError> {
-    check_options(options, roughness.is_some())?;
-    let mut source_options = *source_options;
-    limit_slopes(&mut source_options, roughness, options)?;
+    let BakePlan { source: source_options, mut info } = plan_bake(source_options, roughness, options)?;
     let source = source_of(image, source_options, roughness, options)?;
     let pyramid_options = PyramidOptions { filter: options.filter, wrap: source_options.wrap };
-    let mut info = TextureInfo {
-        base: base_of(options, roughness.is_some()),
-        base_variance: base_variance(roughness),
-        brdf: options.brdf,
-        roughness_stored: options.roughness_stored,
-        ..TextureInfo::new(options.layout, first_part(options))
-    };
     let sample_type = options.bits.sample_type();
     // A scale that is to be found needs a look at every slope first; otherwise one pass does it all.
     let looked_at = (!sample_type.is_float() && options.scale == ScaleChoice::Auto)

@@ -31,6 +31,13 @@ pub fn level_sizes(width: usize, height: usize) -> Vec<(usize, usize)> {
     sizes
 }
 
+/// How many levels of the box filter are made by equal averages of four, rows first: as long as both sides are even, but at
+/// most six. The levels after them are made with the weights of any size. Both are exact; they differ in the order of
+/// additions, which whoever wants the same bits by other means, such as a GPU, has to keep.
+pub fn levels_of_four(width: usize, height: usize) -> usize {
+    cascade::depth(width, height)
+}
+
 /// What a level holds, measured while it was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LevelStats {

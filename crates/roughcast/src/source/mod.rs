@@ -84,7 +84,8 @@ impl MapSource<'_> {
     }
 }
 
-fn check_numbers(options: &SourceOptions) -> Result<(), SourceError> {
+/// Numbers that no map can be read with.
+pub(crate) fn check_numbers(options: &SourceOptions) -> Result<(), SourceError> {
     if !(options.max_slope.is_finite() && options.max_slope > 0.0) {
         return Err(SourceError::Option(format!(
             "the largest slope must be above zero, not {}",

@@ -1,0 +1,35 @@
+// What every pass of a bake is told.
+
+struct Params {
+    // Of the level that is read.
+    size: vec2u,
+    zero: u32,
+    unused: u32,
+    max_slope: f32,
+    // What a stored height is multiplied by to give texels.
+    height_scale: f32,
+    // Slope variance of a base roughness that is folded in (LEAN Eq. 6), else zero.
+    base_variance: f32,
+    also_unused: f32,
+}
+
+// `Stores` and the scale behind them.
+struct PackedStores {
+    slope_second: vec4f,
+    mixed_trace: vec4f,
+    unit_scale: vec4f,
+}
+
+fn unpacked_stores(packed: PackedStores) -> Stores {
+    return Stores(
+        packed.slope_second.xy,
+        packed.slope_second.zw,
+        packed.mixed_trace.xy,
+        packed.mixed_trace.zw,
+        packed.unit_scale.xy,
+    );
+}
+
+fn level_size(halvings: u32) -> vec2u {
+    return max(params.size >> vec2u(halvings), vec2u(1u));
+}

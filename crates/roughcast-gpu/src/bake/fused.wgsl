@@ -1,0 +1,94 @@
+// Several levels in one dispatch, each a quarter of the one before: a thread averages 4x4 texels in its registers, then
+// the 16x16 threads of a workgroup average what they have in workgroup memory.
+//
+// Defined elsewhere: HALVINGS, params, input_footprint(at), average_of_quad(...), store_0(at, footprint) ... store_6, each of
+// which knows its level's size and lets pass what lies outside or is not wanted.
+
+// 256 footprints of 32 bytes: 8 KiB.
+var<workgroup> held_low: array<vec4f, 256>;
+var<workgroup> held_high: array<vec4f, 256>;
+
+fn hold(index: u32, footprint: Footprint) {
+    held_low[index] = vec4f(footprint.mean, footprint.covariance.xy);
+    held_high[index] = vec4f(footprint.covariance.z, footprint.normal);
+}
+
+fn held(index: u32) -> Footprint {
+    let low = held_low[index];
+    let high = held_high[index];
+    return Footprint(low.xy, vec3f(low.zw, high.x), high.yzw);
+}
+
+fn finest(at: vec2u) -> Footprint {
+    if any(at >= params.size) {
+        return Footprint();
+    }
+    let footprint = input_footprint(at);
+    store_0(at, footprint);
+    return footprint;
+}
+
+fn quad(at: vec2u) -> Footprint {
+    let first = 2u * at;
+    let footprint = average_of_quad(
+        finest(first),
+        finest(first + vec2u(1u, 0u)),
+        finest(first + vec2u(0u, 1u)),
+        finest(first + vec2u(1u, 1u)),
+    );
+    store_1(at, footprint);
+    return footprint;
+}
+
+// The average of four held footprints that lie `stride` threads apart, held in the place of the first.
+fn average_of_held(at: vec2u, stride: u32) -> Footprint {
+    let first = 2u * stride * (16u * at.y + at.x);
+    let footprint = average_of_quad(
+        held(first),
+        held(first + stride),
+        held(first + 16u * stride),
+        held(first + 17u * stride),
+    );
+    hold(first, footprint);
+    return footprint;
+}
+
+@compute @workgroup_size(16, 16)
+fn fused(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(local_invocation_id) local: vec3u,
+    @builtin(local_invocation_index) index: u32,
+) {
+    opaque_zero = params.zero;
+    let at = 16u * group.xy + local.xy;
+    let footprint = average_of_quad(
+        quad(2u * at),
+        quad(2u * at + vec2u(1u, 0u)),
+        quad(2u * at + vec2u(0u, 1u)),
+        quad(2u * at + vec2u(1u, 1u)),
+    );
+    store_2(at, footprint);
+    if HALVINGS <= 2u {
+        return;
+    }
+    hold(index, footprint);
+    workgroupBarrier();
+    if index < 64u {
+        let inner = vec2u(index % 8u, index / 8u);
+        store_3(8u * group.xy + inner, average_of_held(inner, 1u));
+    }
+    workgroupBarrier();
+    if index < 16u {
+        let inner = vec2u(index % 4u, index / 4u);
+        store_4(4u * group.xy + inner, average_of_held(inner, 2u));
+    }
+    workgroupBarrier();
+    if index < 4u {
+        let inner = vec2u(index % 2u, index / 2u);
+        store_5(2u * group.xy + inner, average_of_held(inner, 4u));
+    }
+    workgroupBarrier();
+    if index == 0u {
+        store_6(group.xy, average_of_held(vec2u(0u), 8u));
+    }
+}

@@ -1,0 +1,393 @@
+//! LEAN and CLEAN maps made on the GPU, fast enough for bumps that move every frame.
+//!
+//! The result is that of [`roughcast::bake`] to within one step of the format on every texel of every level: the same
+//! options, the same order of additions, quotients and roots rounded as the CPU rounds them.
+
+mod bindings;
+mod compute;
+mod plan;
+mod raster;
+mod scale;
+mod source;
+mod target;
+
+use std::sync::LazyLock;
+
+use roughcast::texture::{TextureArray, TextureInfo};
+use roughcast::{
+    BakeOptions, BakePlan, BaseRoughness, Image, ScaleChoice, SourceCounts, SourceOptions, plan_bake,
+};
+use wgpu::util::DeviceExt;
+
+use crate::read_back::read_buffer;
+use crate::{Gpu, GpuError, Span};
+use bindings::Bindings;
+use compute::ComputeBake;
+use raster::RasterBake;
+use scale::AutoScale;
+use source::MapFormat;
+use target::{Target, base_variance_of, level_count, level_view};
+
+/// The library's rules in WGSL.
+static LIBRARY: LazyLock<String> = LazyLock::new(|| roughcast::wgsl::ALL.join("\n"));
+
+/// How a map is baked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BakePath {
+    /// Compute shaders where the device has them, else render passes.
+    #[default]
+    Fastest,
+    /// Compute shaders.
+    Compute,
+    /// Render passes, the LEAN text's own way.
+    Raster,
+}
+
+/// Bakes a map of one size and format, again and again: pipelines, bindings and textures are made once.
+pub struct GpuBaker {
+    gpu: Gpu,
+    job: Job,
+    work: Work,
+    auto_scale: Option<AutoScale>,
+}
+
+enum Work {
+    Compute(ComputeBake),
+    Raster(RasterBake),
+}
+
+/// What all passes of a bake share.
+struct Job {
+    map: wgpu::Texture,
+    map_view: wgpu::TextureView,
+    map_format: MapFormat,
+    size: wgpu::Extent3d,
+    plan: BakePlan,
+    base_variance: f32,
+    target: Target,
+    textures: Vec<wgpu::Texture>,
+    /// WGSL's `PackedStores`.
+    stores: wgpu::Buffer,
+    /// Mended texels, in the order of [`SourceCounts`].
+    counts: wgpu::Buffer,
+}
+
+/// Bytes of WGSL's `PackedStores`, and the place of the scale in it.
+const STORES_FLOATS: usize = 12;
+const SCALE_AT: usize = 10;
+
+impl GpuBaker {
+    /// For images like this one, which is uploaded as the first. Nothing is baked yet.
+    ///
+    /// # Errors
+    /// [`GpuError`] where options do not go together or not on a GPU, the map is too large, or a format is not there.
+    pub async fn for_image(
+        gpu: &Gpu,
+        image: &Image,
+        source: &SourceOptions,
+        roughness: Option<BaseRoughness<'_>>,
+        options: &BakeOptions,
+        path: BakePath,
+    ) -> Result<Self, GpuError> {
+        let format = MapFormat::of_image(image)?;
+        let side = |texels: usize| u32::try_from(texels).unwrap_or(u32::MAX);
+        let size = wgpu::Extent3d {
+            width: side(image.width()),
+            height: side(image.height()),
+            depth_or_array_layers: 1,
+        };
+        let descriptor = wgpu::TextureDescriptor {
+            label: Some("map"),
+            size,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: format.texture_format(),
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        };
+        let map = gpu.create_texture("the map", &descriptor).await?;
+        source::upload(gpu, image, &map);
+        Self::for_texture(gpu, &map, source, roughness, options, path).await
+    }
+
+    /// For a texture that is on the GPU already, such as bumps drawn every frame; its level 0 is read whenever the bake
+    /// runs. It needs the usage `TEXTURE_BINDING`.
+    ///
+    /// # Errors
+    /// As [`GpuBaker::for_image`].
+    pub async fn for_texture(
+        gpu: &Gpu,
+        map: &wgpu::Texture,
+        source: &SourceOptions,
+        roughness: Option<BaseRoughness<'_>>,
+        options: &BakeOptions,
+        path: BakePath,
+    ) -> Result<Self, GpuError> {
+        let path = match path {
+            BakePath::Fastest if gpu.has_compute() => BakePath::Compute,
+            BakePath::Fastest => BakePath::Raster,
+            chosen => chosen,
+        };
+        let job = Job::new(gpu, map, source, roughness, options, path).await?;
+        let finds_scale = !job.target.is_float() && options.scale == ScaleChoice::Auto;
+        let auto_scale = if finds_scale { Some(AutoScale::new(gpu, &job).await?) } else { None };
+        let work = match path {
+            BakePath::Raster => Work::Raster(RasterBake::new(gpu, &job).await?),
+            BakePath::Compute | BakePath::Fastest => Work::Compute(ComputeBake::new(gpu, &job).await?),
+        };
+        Ok(Self { gpu: gpu.clone(), job, work, auto_scale })
+    }
+
+    /// Replaces the map by another image of the same size, channels and sample type.
+    ///
+    /// # Errors
+    /// [`GpuError::Shape`] where the image is of another kind.
+    pub fn upload(&self, image: &Image) -> Result<(), GpuError> {
+        let size = self.job.size;
+        let same_size = (image.width(), image.height()) == (size.width as usize, size.height as usize);
+        if !same_size || MapFormat::of_image(image)? != self.job.map_format {
+            return Err(GpuError::Shape(format!(
+                "this bake was made for {}x{} texels in {:?}, not for {}x{} of {} channels in {:?}: make another",
+                size.width,
+                size.height,
+                self.job.map.format(),
+                image.width(),
+                image.height(),
+                image.channels(),
+                image.samples().sample_type(),
+            )));
+        }
+        if !self.job.map.usage().contains(wgpu::TextureUsages::COPY_DST) {
+            return Err(GpuError::Shape("the map's texture cannot be copied to: add COPY_DST".to_owned()));
+        }
+        source::upload(&self.gpu, image, &self.job.map);
+        Ok(())
+    }
+
+    /// Encodes the bake of what the map's texture will hold by then. Nothing new is made on the GPU.
+    ///
+    /// `span` measures it: a compute bake as a whole; of one by render passes all but the search for a scale.
+    pub fn encode(&self, encoder: &mut wgpu::CommandEncoder, span: Option<&Span>) {
+        encoder.clear_buffer(&self.job.counts, 0, None);
+        if let Some(auto_scale) = &self.auto_scale {
+            auto_scale.encode_reset(encoder);
+        }
+        match &self.work {
+            Work::Compute(compute) => {
+                let mut pass = compute::begin_pass(encoder, span);
+                if let Some(auto_scale) = &self.auto_scale {
+                    auto_scale.encode(&mut pass);
+                }
+                compute.encode(&mut pass);
+            }
+            Work::Raster(raster) => {
+                if let Some(auto_scale) = &self.auto_scale {
+                    auto_scale.encode(&mut compute::begin_pass(encoder, None));
+                }
+                raster.encode(encoder, span);
+            }
+        }
+    }
+
+    /// Encodes and submits one bake.
+    pub fn run(&self) {
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        self.encode(&mut encoder, None);
+        self.gpu.queue.submit([encoder.finish()]);
+    }
+
+    /// The baked textures, in the order of the layout's layers: `lean1` and `lean2`, or `clean`. They stay the same.
+    pub fn textures(&self) -> &[wgpu::Texture] {
+        &self.job.textures
+    }
+
+    /// Dispatches that a bake takes, without those that find a scale; none where it takes render passes.
+    pub fn dispatch_count(&self) -> usize {
+        match &self.work {
+            Work::Compute(compute) => compute.dispatch_count(),
+            Work::Raster(_) => 0,
+        }
+    }
+
+    /// A buffer of which the eleventh float is the scale, for shaders: see `bake/common.wgsl`, `PackedStores`.
+    pub fn scale_buffer(&self) -> &wgpu::Buffer {
+        &self.job.stores
+    }
+
+    /// What the texels mean. An automatic scale is read back from the GPU.
+    ///
+    /// # Errors
+    /// [`GpuError::ReadBack`] where the device was lost.
+    pub async fn info(&self) -> Result<TextureInfo, GpuError> {
+        let mut info = self.job.plan.info;
+        if !self.job.target.is_float() {
+            let floats: Vec<f32> =
+                bytemuck::pod_collect_to_vec(&read_buffer(&self.gpu, &self.job.stores).await?);
+            info.scale = floats[SCALE_AT];
+        }
+        Ok(info)
+    }
+
+    /// Texels that the last bake had to mend; nothing where it was made by render passes, which do not count.
+    ///
+    /// # Errors
+    /// [`GpuError::ReadBack`] where the device was lost.
+    pub async fn counts(&self) -> Result<Option<SourceCounts>, GpuError> {
+        if matches!(self.work, Work::Raster(_)) {
+            return Ok(None);
+        }
+        let counts: Vec<u32> = bytemuck::pod_collect_to_vec(&read_buffer(&self.gpu, &self.job.counts).await?);
+        let [clamped, behind, invalid, non_finite] = std::array::from_fn(|i| u64::from(counts[i]));
+        Ok(Some(SourceCounts { clamped, behind, invalid, non_finite }))
+    }
+
+    /// The baked textures in memory, to be written to files.
+    ///
+    /// # Errors
+    /// [`GpuError`] where they do not fit into memory or the device was lost.
+    pub async fn read_back(&self) -> Result<TextureArray, GpuError> {
+        let info = self.info().await?;
+        self.job.target.read_back(&self.gpu, &self.job.textures, info).await
+    }
+}
+
+impl Job {
+    async fn new(
+        gpu: &Gpu,
+        map: &wgpu::Texture,
+        source: &SourceOptions,
+        roughness: Option<BaseRoughness<'_>>,
+        options: &BakeOptions,
+        path: BakePath,
+    ) -> Result<Self, GpuError> {
+        let plan = plan_bake(source, roughness, options)?;
+        let target = Target::new(options)?;
+        let base_variance = base_variance_of(&plan.info, roughness)?;
+        let map_format = MapFormat::of_texture(map.format())?;
+        map_format.check_channels(&plan.source)?;
+        if map.dimension() != wgpu::TextureDimension::D2 || map.sample_count() != 1 {
+            return Err(GpuError::Shape(
+                "a map is a two-dimensional texture of one sample a texel".to_owned(),
+            ));
+        }
+        if !map.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
+            return Err(GpuError::Shape("the map's texture cannot be read: add TEXTURE_BINDING".to_owned()));
+        }
+        let usage = match path {
+            BakePath::Raster => wgpu::TextureUsages::RENDER_ATTACHMENT,
+            BakePath::Compute | BakePath::Fastest => wgpu::TextureUsages::STORAGE_BINDING,
+        };
+        let size = wgpu::Extent3d { depth_or_array_layers: 1, ..map.size() };
+        let textures = target.textures(gpu, size, usage).await?;
+        let scale = match options.scale {
+            ScaleChoice::Fixed(scale) if !target.is_float() => Some(scale),
+            ScaleChoice::Fixed(_) | ScaleChoice::Auto => None,
+        };
+        Ok(Self {
+            map: map.clone(),
+            map_view: level_view(map, 0),
+            map_format,
+            size,
+            plan,
+            base_variance,
+            target,
+            textures,
+            stores: stores_buffer(gpu, scale),
+            counts: counts_buffer(gpu).await?,
+        })
+    }
+
+    fn last_level(&self) -> u32 {
+        level_count(self.size) - 1
+    }
+
+    fn level_size(&self, level: u32) -> (u32, u32) {
+        ((self.size.width >> level).max(1), (self.size.height >> level).max(1))
+    }
+
+    fn texels(&self, level: u32) -> u64 {
+        let (width, height) = self.level_size(level);
+        u64::from(width) * u64::from(height)
+    }
+
+    /// A view of one level of each texture.
+    fn level_views(&self, level: u32) -> Vec<wgpu::TextureView> {
+        self.textures.iter().map(|texture| level_view(texture, level)).collect()
+    }
+
+    /// Declares the map and `map_slope`.
+    fn bind_map<'a>(&'a self, bindings: &mut Bindings<'a>) {
+        let wgsl = self.map_format.wgsl(&self.plan.source, bindings.next());
+        bindings.declared_texture(&wgsl, self.map_format.sample_type(), &self.map_view);
+    }
+
+    /// WGSL's `Params` for a pass that reads this level.
+    fn params(&self, device: &wgpu::Device, level: u32) -> wgpu::Buffer {
+        let (width, height) = self.level_size(level);
+        let source = &self.plan.source;
+        let words = [
+            width,
+            height,
+            0,
+            0,
+            source.max_slope.to_bits(),
+            source::texels_from_height(source, self.size.width).to_bits(),
+            self.base_variance.to_bits(),
+            0,
+        ];
+        device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("bake"),
+            contents: bytemuck::cast_slice(&words),
+            usage: wgpu::BufferUsages::UNIFORM,
+        })
+    }
+}
+
+/// WGSL's `PackedStores`: for a scale, or for floats and until a scale is found the identity.
+fn stores_buffer(gpu: &Gpu, scale: Option<f32>) -> wgpu::Buffer {
+    let floats: [f32; STORES_FLOATS] = match scale {
+        None => [1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0],
+        Some(scale) => {
+            let square = scale * scale;
+            let (slope, second, mixed, trace) =
+                (0.5 / scale, 1.0 / square, 0.5 / square, 1.0 / (2.0 * square));
+            [slope, 0.5, second, 0.0, mixed, 0.5, trace, 0.0, 0.5, 0.5, scale, 0.0]
+        }
+    };
+    let mut usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_SRC;
+    if gpu.has_compute() {
+        usage |= wgpu::BufferUsages::STORAGE;
+    }
+    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some("scale"),
+        contents: bytemuck::cast_slice(&floats),
+        usage,
+    })
+}
+
+async fn counts_buffer(gpu: &Gpu) -> Result<wgpu::Buffer, GpuError> {
+    let mut usage = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+    if gpu.has_compute() {
+        usage |= wgpu::BufferUsages::STORAGE;
+    }
+    let descriptor =
+        wgpu::BufferDescriptor { label: Some("mended texels"), size: 16, usage, mapped_at_creation: false };
+    gpu.create_buffer("counts", &descriptor).await
+}
+
+/// Bakes one image and waits for nothing: the textures are there as soon as anything that reads them runs.
+///
+/// # Errors
+/// As [`GpuBaker::for_image`].
+pub async fn bake(
+    gpu: &Gpu,
+    image: &Image,
+    source: &SourceOptions,
+    roughness: Option<BaseRoughness<'_>>,
+    options: &BakeOptions,
+) -> Result<GpuBaker, GpuError> {
+    let baker = GpuBaker::for_image(gpu, image, source, roughness, options, BakePath::default()).await?;
+    baker.run();
+    Ok(baker)
+}

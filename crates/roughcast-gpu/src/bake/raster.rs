@@ -1,0 +1,242 @@
+//! The text's own way, for devices without compute shaders: one render pass from the map into level 0 of both textures,
+//! further render passes for the mips.
+//!
+//! Every level after the first is averaged into textures of single floats and rounded from there, so that rounding does
+//! not pile up from level to level.
+
+use roughcast::levels_of_four;
+
+use super::bindings::Bindings;
+use super::target::level_view;
+use super::{Job, LIBRARY};
+use crate::{Gpu, GpuError, Span};
+
+const COMMON: &str = include_str!("common.wgsl");
+const WEIGHTED: &str = include_str!("weighted.wgsl");
+const RASTER: &str = include_str!("raster.wgsl");
+
+const STATE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+
+/// Pipelines, bindings and targets of every render pass, in order.
+pub(super) struct RasterBake {
+    passes: Vec<Pass>,
+}
+
+struct Pass {
+    pipeline: wgpu::RenderPipeline,
+    bindings: wgpu::BindGroup,
+    targets: Vec<wgpu::TextureView>,
+    size: (u32, u32),
+}
+
+/// What a pass reads.
+#[derive(Clone, Copy)]
+enum Input<'a> {
+    Map,
+    State(&'a [wgpu::TextureView; 2]),
+}
+
+/// What a pass makes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Output {
+    /// Texels of the level that is read.
+    Texels,
+    /// The next level as floats, of equal averages of four.
+    AverageOfFour,
+    /// The next level as floats, by coverage.
+    WeightedAverage,
+}
+
+impl RasterBake {
+    pub async fn new(gpu: &Gpu, job: &Job) -> Result<Self, GpuError> {
+        gpu.require_format(STATE_FORMAT, wgpu::TextureUsages::RENDER_ATTACHMENT)?;
+        let mut passes = vec![pass(gpu, job, 0, Input::Map, Output::Texels, job.level_views(0)).await?];
+        // Odd levels live in the first, even ones in the second: a pass never reads what it writes.
+        let states = [state(gpu, job, 1).await?, state(gpu, job, 2).await?];
+        let (width, height) = job.level_size(0);
+        let of_four = levels_of_four(width as usize, height as usize) as u32;
+        for level in 1..=job.last_level() {
+            let average = if level <= of_four { Output::AverageOfFour } else { Output::WeightedAverage };
+            let of_level = |level: u32| &states[(level as usize + 1) % 2];
+            let input = if level == 1 { Input::Map } else { Input::State(of_level(level - 1)) };
+            let floats = of_level(level).to_vec();
+            passes.push(pass(gpu, job, level - 1, input, average, floats).await?);
+            let input = Input::State(of_level(level));
+            passes.push(pass(gpu, job, level, input, Output::Texels, job.level_views(level)).await?);
+        }
+        Ok(Self { passes })
+    }
+
+    pub fn encode(&self, encoder: &mut wgpu::CommandEncoder, span: Option<&Span>) {
+        let last = self.passes.len() - 1;
+        for (index, pass) in self.passes.iter().enumerate() {
+            let timestamp_writes = span.and_then(|span| match (index == 0, index == last) {
+                (true, true) => Some(span.of_render_pass()),
+                (true, false) => Some(span.from_render_pass()),
+                (false, true) => Some(span.to_render_pass()),
+                (false, false) => None,
+            });
+            pass.encode(encoder, timestamp_writes);
+        }
+    }
+}
+
+impl Pass {
+    fn encode(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    ) {
+        let attachment = |view| {
+            // Every texel that is read later is drawn, so what was there before does not matter.
+            let ops = wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store };
+            wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
+        };
+        let attachments = [self.targets.first().map(attachment), self.targets.get(1).map(attachment)];
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("bake"),
+            color_attachments: &attachments[..self.targets.len()],
+            timestamp_writes,
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.bindings, &[]);
+        pass.set_viewport(0.0, 0.0, self.size.0 as f32, self.size.1 as f32, 0.0, 1.0);
+        pass.draw(0..3, 0..1);
+    }
+}
+
+/// Two textures of floats as large as a level.
+async fn state(gpu: &Gpu, job: &Job, level: u32) -> Result<[wgpu::TextureView; 2], GpuError> {
+    let (width, height) = job.level_size(level);
+    let descriptor = wgpu::TextureDescriptor {
+        label: Some("level as floats"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: STATE_FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    };
+    let what = "a level as floats";
+    let (low, high) =
+        (gpu.create_texture(what, &descriptor).await?, gpu.create_texture(what, &descriptor).await?);
+    Ok([level_view(&low, 0), level_view(&high, 0)])
+}
+
+async fn pass(
+    gpu: &Gpu,
+    job: &Job,
+    input_level: u32,
+    input: Input<'_>,
+    output: Output,
+    targets: Vec<wgpu::TextureView>,
+) -> Result<Pass, GpuError> {
+    let params = job.params(&gpu.device, input_level);
+    let mut bindings = Bindings::new(wgpu::ShaderStages::FRAGMENT);
+    bindings.uniform("params", "Params", &params);
+    bindings.uniform("packed_stores", "PackedStores", &job.stores);
+    let wgsl = [input_wgsl(job, input, &mut bindings), output_wgsl(job, output)].concat();
+    let source = [LIBRARY.as_str(), COMMON, bindings.wgsl(), &wgsl, RASTER].concat();
+    let (size, format) = match output {
+        Output::Texels => (job.level_size(input_level), job.target.format),
+        Output::AverageOfFour | Output::WeightedAverage => (job.level_size(input_level + 1), STATE_FORMAT),
+    };
+    let count = targets.len();
+    let (pipeline, bindings) = gpu
+        .checked("a bake's render pipeline", |device| {
+            let (layout, group) = bindings.make(device);
+            (render_pipeline(device, &layout, source, &vec![Some(format.into()); count]), group)
+        })
+        .await?;
+    Ok(Pass { pipeline, bindings, targets, size })
+}
+
+fn input_wgsl<'a>(job: &'a Job, input: Input<'a>, bindings: &mut Bindings<'a>) -> String {
+    match input {
+        Input::Map => {
+            job.bind_map(bindings);
+            format!(
+                "{}fn input_footprint(at: vec2u) -> Footprint {{ return footprint_of_slope(map_slope(at).slope); }}\n",
+                job.target.footprint_wgsl()
+            )
+        }
+        Input::State([low, high]) => {
+            bindings.texture("state_low", low);
+            bindings.texture("state_high", high);
+            "fn input_footprint(at: vec2u) -> Footprint {\n    \
+             let low = textureLoad(state_low, at, 0);\n    \
+             let high = textureLoad(state_high, at, 0);\n    \
+             return Footprint(low.xy, vec3f(low.zw, high.x), high.yzw);\n}\n"
+                .to_owned()
+        }
+    }
+}
+
+fn output_wgsl(job: &Job, output: Output) -> String {
+    let begin = "@fragment\nfn fragment(corner: Corner) -> Output {\n    opaque_zero = params.zero;\n    \
+                 let at = vec2u(corner.position.xy);\n";
+    let state = "struct Output { @location(0) low: vec4f, @location(1) high: vec4f }\n";
+    let end = "    return Output(\n        \
+               vec4f(footprint.mean, footprint.covariance.xy),\n        \
+               vec4f(footprint.covariance.z, footprint.normal),\n    );\n}\n";
+    match output {
+        Output::Texels => {
+            let texels = job.target.texels_wgsl();
+            let texels = &texels[..job.textures.len()];
+            let fields = (0..texels.len()).map(|i| format!("@location({i}) texel_{i}: vec4f"));
+            let values = texels.iter().map(|texel| format!("nearest({texel}(footprint, stores))"));
+            format!(
+                "struct Output {{ {} }}\n{}{begin}    let footprint = input_footprint(at);\n    \
+                 let stores = unpacked_stores(packed_stores);\n    return Output({});\n}}\n",
+                fields.collect::<Vec<_>>().join(", "),
+                job.target.nearest_wgsl(),
+                values.collect::<Vec<_>>().join(", "),
+            )
+        }
+        Output::AverageOfFour => format!(
+            "{state}{begin}    let first = 2u * at;\n    let footprint = average_of_four(\n        \
+             input_footprint(first),\n        \
+             input_footprint(first + vec2u(1u, 0u)),\n        \
+             input_footprint(first + vec2u(0u, 1u)),\n        \
+             input_footprint(first + vec2u(1u, 1u)),\n    );\n{end}"
+        ),
+        Output::WeightedAverage => {
+            format!("{WEIGHTED}{state}{begin}    let footprint = weighted_footprint(at);\n{end}")
+        }
+    }
+}
+
+fn render_pipeline(
+    device: &wgpu::Device,
+    layout: &wgpu::PipelineLayout,
+    source: String,
+    targets: &[Option<wgpu::ColorTargetState>],
+) -> wgpu::RenderPipeline {
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("bake"),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("bake"),
+        layout: Some(layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("cover"),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: Default::default(),
+        depth_stencil: None,
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("fragment"),
+            compilation_options: Default::default(),
+            targets,
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}

@@ -1,0 +1,73 @@
+//! The scale of unsigned texels: chosen by the caller, or found on the GPU by one more pass over the map, and kept there.
+
+use super::bindings::{Access, Bindings};
+use super::compute::{Dispatch, compute_pipeline};
+use super::{Job, LIBRARY};
+use crate::{Gpu, GpuError};
+
+const COMMON: &str = include_str!("common.wgsl");
+const SCALE: &str = include_str!("scale.wgsl");
+
+/// Texels along each side of what a workgroup looks at.
+const TILE: u32 = 64;
+
+/// Finds the smallest scale that holds every slope.
+pub(super) struct AutoScale {
+    peak: wgpu::Buffer,
+    find_peak: Dispatch,
+    set_scale: Dispatch,
+}
+
+impl AutoScale {
+    pub async fn new(gpu: &Gpu, job: &Job) -> Result<Self, GpuError> {
+        if !gpu.has_compute() {
+            let instead = "choose the scale yourself (--scale), or store half floats (--bits half)";
+            return Err(GpuError::Feature { feature: "compute shaders, which find a scale", instead });
+        }
+        let descriptor = wgpu::BufferDescriptor {
+            label: Some("largest slope"),
+            size: 4,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        };
+        let peak = gpu.create_buffer("the largest slope", &descriptor).await?;
+        let (width, height) = job.level_size(0);
+        let groups = (width.div_ceil(TILE), height.div_ceil(TILE));
+        let find_peak = dispatch(gpu, job, &peak, "find_peak", groups).await?;
+        let set_scale = dispatch(gpu, job, &peak, "set_scale", (1, 1)).await?;
+        Ok(Self { peak, find_peak, set_scale })
+    }
+
+    /// Forgets the largest slope of the frame before.
+    pub fn encode_reset(&self, encoder: &mut wgpu::CommandEncoder) {
+        encoder.clear_buffer(&self.peak, 0, None);
+    }
+
+    pub fn encode(&self, pass: &mut wgpu::ComputePass<'_>) {
+        self.find_peak.encode(pass);
+        self.set_scale.encode(pass);
+    }
+}
+
+async fn dispatch(
+    gpu: &Gpu,
+    job: &Job,
+    peak: &wgpu::Buffer,
+    entry_point: &str,
+    groups: (u32, u32),
+) -> Result<Dispatch, GpuError> {
+    let params = job.params(&gpu.device, 0);
+    let mut bindings = Bindings::new(wgpu::ShaderStages::COMPUTE);
+    bindings.uniform("params", "Params", &params);
+    bindings.storage("peak", "atomic<u32>", Access::ReadWrite, peak);
+    bindings.storage("packed_stores", "PackedStores", Access::ReadWrite, &job.stores);
+    job.bind_map(&mut bindings);
+    let source = [LIBRARY.as_str(), COMMON, bindings.wgsl(), SCALE].concat();
+    let (pipeline, bindings) = gpu
+        .checked("the pipeline that finds a scale", |device| {
+            let (layout, group) = bindings.make(device);
+            (compute_pipeline(device, &layout, source, entry_point), group)
+        })
+        .await?;
+    Ok(Dispatch { pipeline, bindings, groups })
+}

@@ -1,0 +1,194 @@
+//! What is baked: a layout's textures with all their levels, and the WGSL that turns a footprint into their texels.
+
+use roughcast::texture::{self, Layout, Texture, TextureArray, TextureInfo};
+use roughcast::{
+    BakeError, BakeOptions, Bits, Blocks, Image, PyramidFilter, SampleType, Samples, level_sizes,
+};
+
+use crate::read_back::{Staged, stage_texture};
+use crate::{Gpu, GpuError};
+
+/// Layout and format of the textures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Target {
+    pub layout: Layout,
+    pub format: wgpu::TextureFormat,
+    sample_type: SampleType,
+}
+
+impl Target {
+    pub fn new(options: &BakeOptions) -> Result<Self, GpuError> {
+        let refuse = |line: String| Err(GpuError::OnlyOnCpu(line));
+        if !matches!(options.layout, Layout::Lean | Layout::Clean) {
+            return refuse(format!(
+                "the GPU bakes the layouts 'lean' and 'clean', not '{}': bake that one on the CPU",
+                options.layout
+            ));
+        }
+        if options.blocks != Blocks::None {
+            return refuse("the GPU bakes plain texels: compress blocks on the CPU".to_owned());
+        }
+        if options.filter != PyramidFilter::Box {
+            return refuse(format!(
+                "the GPU filters with 'box', since wider kernels need neighbours of every tile: bake with '{}' on the CPU",
+                options.filter
+            ));
+        }
+        let format = match options.bits {
+            Bits::Eight => wgpu::TextureFormat::Rgba8Unorm,
+            Bits::Sixteen => wgpu::TextureFormat::Rgba16Unorm,
+            Bits::Half => wgpu::TextureFormat::Rgba16Float,
+            Bits::Float => {
+                return refuse(
+                    "the GPU bakes 8 bits, 16 bits and half floats: single floats cannot be filtered everywhere; \
+                     say --bits half, or bake on the CPU"
+                        .to_owned(),
+                );
+            }
+        };
+        Ok(Self { layout: options.layout, format, sample_type: options.bits.sample_type() })
+    }
+
+    /// Textures of the layout.
+    pub fn layers(self) -> u32 {
+        if self.layout == Layout::Lean { 2 } else { 1 }
+    }
+
+    pub fn is_float(self) -> bool {
+        self.sample_type.is_float()
+    }
+
+    /// Makes the textures with all their levels.
+    pub async fn textures(
+        self,
+        gpu: &Gpu,
+        size: wgpu::Extent3d,
+        usage: wgpu::TextureUsages,
+    ) -> Result<Vec<wgpu::Texture>, GpuError> {
+        let usage = usage | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
+        gpu.require_format(self.format, usage)?;
+        let info = TextureInfo::new(self.layout, texture::Part::Whole);
+        let mut textures = Vec::new();
+        for layer in texture::layers_of(&info) {
+            let descriptor = wgpu::TextureDescriptor {
+                label: Some(layer.name),
+                size,
+                mip_level_count: level_count(size),
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: self.format,
+                usage,
+                view_formats: &[],
+            };
+            textures.push(gpu.create_texture("a baked texture", &descriptor).await?);
+        }
+        Ok(textures)
+    }
+
+    /// WGSL that makes each texture's texel of a footprint, as the format holds it.
+    pub fn texels_wgsl(self) -> [&'static str; 2] {
+        match self.layout {
+            Layout::Lean => ["lean1_from_footprint", "lean2_from_footprint"],
+            _ => ["clean_from_footprint", ""],
+        }
+    }
+
+    /// WGSL of `nearest(value)`, which rounds as the CPU does.
+    pub fn nearest_wgsl(self) -> &'static str {
+        match self.sample_type {
+            SampleType::U8 => "fn nearest(value: vec4f) -> vec4f { return unorm_nearest(value, 255.0); }\n",
+            SampleType::U16 => {
+                "fn nearest(value: vec4f) -> vec4f { return unorm_nearest(value, 65535.0); }\n"
+            }
+            _ => "fn nearest(value: vec4f) -> vec4f { return half_nearest(value); }\n",
+        }
+    }
+
+    /// WGSL of `footprint_of_slope(slope)`, a texel of level 0.
+    pub fn footprint_wgsl(self) -> String {
+        let normal = if self.layout == Layout::Lean { "normal_from_slope(slope)" } else { "vec3f(0.0)" };
+        format!(
+            "fn footprint_of_slope(slope: vec2f) -> Footprint {{\n    \
+             let base = params.base_variance;\n    \
+             return Footprint(slope, vec3f(base, base, 0.0), {normal});\n}}\n"
+        )
+    }
+
+    /// Copies the textures into memory.
+    pub async fn read_back(
+        self,
+        gpu: &Gpu,
+        textures: &[wgpu::Texture],
+        info: TextureInfo,
+    ) -> Result<TextureArray, GpuError> {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let mut staged: Vec<Vec<Staged>> = Vec::new();
+        for texture in textures {
+            let mut levels = Vec::new();
+            for level in 0..texture.mip_level_count() {
+                levels.push(stage_texture(gpu, &mut encoder, texture, level).await?);
+            }
+            staged.push(levels);
+        }
+        gpu.queue.submit([encoder.finish()]);
+        let mut layers = Vec::new();
+        for ((texture, levels), spec) in textures.iter().zip(staged).zip(texture::layers_of(&info)) {
+            let sizes = level_sizes(texture.width() as usize, texture.height() as usize);
+            let mut images = Vec::new();
+            for (level, (width, height)) in levels.into_iter().zip(sizes) {
+                let samples = self.samples(&level.read(gpu).await?);
+                let image = Image::new(width, height, 4, samples);
+                images.push(image.map_err(|error| GpuError::ReadBack { reason: error.to_string() })?);
+            }
+            layers.push(Texture { name: spec.name, channels: spec.channels.to_vec(), levels: images });
+        }
+        Ok(TextureArray { info, layers })
+    }
+
+    fn samples(self, bytes: &[u8]) -> Samples {
+        match self.sample_type {
+            SampleType::U8 => Samples::U8(bytes.to_vec()),
+            SampleType::U16 => Samples::U16(bytemuck::pod_collect_to_vec(bytes)),
+            SampleType::F16 => Samples::F16(bytemuck::pod_collect_to_vec(bytes)),
+            SampleType::F32 => Samples::F32(bytemuck::pod_collect_to_vec(bytes)),
+        }
+    }
+}
+
+/// Number of levels down to 1x1.
+pub(super) fn level_count(size: wgpu::Extent3d) -> u32 {
+    size.width.max(size.height).ilog2() + 1
+}
+
+/// A view of one level.
+pub(super) fn level_view(texture: &wgpu::Texture, level: u32) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor {
+        base_mip_level: level,
+        mip_level_count: Some(1),
+        dimension: Some(wgpu::TextureViewDimension::D2),
+        array_layer_count: Some(1),
+        ..Default::default()
+    })
+}
+
+/// Roughness that the GPU can fold in: none, or the same everywhere.
+pub(super) fn base_variance_of(
+    info: &TextureInfo,
+    roughness: Option<roughcast::BaseRoughness<'_>>,
+) -> Result<f32, GpuError> {
+    match (info.base, roughness) {
+        (texture::Base::None, _) | (_, None) => Ok(0.0),
+        (_, Some(roughcast::BaseRoughness::Variance(variance)))
+            if variance.is_finite() && variance >= 0.0 =>
+        {
+            Ok(variance)
+        }
+        (_, Some(roughcast::BaseRoughness::Variance(variance))) => Err(BakeError::Options(format!(
+            "the base roughness gives a slope variance of {variance}: it must be finite and not negative"
+        ))
+        .into()),
+        (_, Some(roughcast::BaseRoughness::Map(_))) => Err(GpuError::OnlyOnCpu(
+            "the GPU folds in one roughness for the whole map, not a map of it: bake on the CPU".to_owned(),
+        )),
+    }
+}

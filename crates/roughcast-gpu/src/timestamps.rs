@@ -1,0 +1,169 @@
+//! How long passes take on the GPU itself, by its own clock.
+
+use crate::read_back::read_buffer;
+use crate::{Gpu, GpuError};
+
+/// Room for the begin and the end of so many spans in one set of queries (WebGPU's limit is 4096 queries).
+const MOST_SPANS: u32 = 2048;
+const QUERY_BYTES: u64 = 8;
+
+/// Spans of passes, which are measured as the encoder's commands run.
+///
+/// ```text
+/// let mut timestamps = Timestamps::new(&gpu, 2).await?;
+/// let span = timestamps.span("reduce").ok_or(...)?;
+/// encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { timestamp_writes: Some(span.of_compute_pass()), .. });
+/// timestamps.resolve(&mut encoder);       // after the last pass
+/// gpu.queue.submit([encoder.finish()]);
+/// let measured = timestamps.read(&gpu).await?;
+/// ```
+#[derive(Debug)]
+pub struct Timestamps {
+    queries: wgpu::QuerySet,
+    results: wgpu::Buffer,
+    capacity: u32,
+    names: Vec<String>,
+    nanoseconds_a_tick: f32,
+}
+
+/// A measured span.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// Its name.
+    pub name: String,
+    /// How long it took. None where the clock did not tell: it was reset, or too coarse to tell the end from the begin.
+    pub nanoseconds: Option<f64>,
+}
+
+/// Where one span's begin and end are written.
+#[derive(Clone, Debug)]
+pub struct Span {
+    queries: wgpu::QuerySet,
+    begin: u32,
+}
+
+impl Timestamps {
+    /// Room for `capacity` spans, 1 to 2048.
+    ///
+    /// # Errors
+    /// [`GpuError::Feature`] where the device has no timestamps.
+    pub async fn new(gpu: &Gpu, capacity: u32) -> Result<Self, GpuError> {
+        if !gpu.has_timestamps() {
+            let instead = "measure whole frames with a clock of the CPU instead";
+            return Err(GpuError::Feature { feature: "timestamp queries", instead });
+        }
+        let capacity = capacity.clamp(1, MOST_SPANS);
+        let queries = gpu
+            .checked("timestamp queries", |device| {
+                device.create_query_set(&wgpu::QuerySetDescriptor {
+                    label: Some("timestamps"),
+                    ty: wgpu::QueryType::Timestamp,
+                    count: 2 * capacity,
+                })
+            })
+            .await?;
+        let descriptor = wgpu::BufferDescriptor {
+            label: Some("timestamps"),
+            size: 2 * u64::from(capacity) * QUERY_BYTES,
+            usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        };
+        let results = gpu.create_buffer("timestamps", &descriptor).await?;
+        let nanoseconds_a_tick = gpu.queue.get_timestamp_period();
+        Ok(Self { queries, results, capacity, names: Vec::new(), nanoseconds_a_tick })
+    }
+
+    /// A new span, or nothing where all are in use.
+    pub fn span(&mut self, name: &str) -> Option<Span> {
+        let index = self.names.len() as u32;
+        if index == self.capacity {
+            return None;
+        }
+        self.names.push(name.to_owned());
+        Some(Span { queries: self.queries.clone(), begin: 2 * index })
+    }
+
+    /// Encodes the collection of all spans. Call it after the last of their passes.
+    pub fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
+        let used = 2 * self.names.len() as u32;
+        if used > 0 {
+            encoder.resolve_query_set(&self.queries, 0..used, &self.results, 0);
+        }
+    }
+
+    /// Waits for the submitted commands and returns the spans, of which none is left in use.
+    ///
+    /// # Errors
+    /// [`GpuError::ReadBack`] where the device was lost.
+    pub async fn read(&mut self, gpu: &Gpu) -> Result<Vec<Measured>, GpuError> {
+        let bytes = read_buffer(gpu, &self.results).await?;
+        let ticks: Vec<u64> = bytemuck::pod_collect_to_vec(&bytes);
+        let period = f64::from(self.nanoseconds_a_tick);
+        let spans = std::mem::take(&mut self.names).into_iter().zip(ticks.chunks_exact(2));
+        Ok(spans
+            .map(|(name, ticks)| {
+                let elapsed = ticks[1].checked_sub(ticks[0]).filter(|ticks| *ticks > 0 && period > 0.0);
+                Measured { name, nanoseconds: elapsed.map(|ticks| ticks as f64 * period) }
+            })
+            .collect())
+    }
+}
+
+impl Span {
+    /// Of one compute pass.
+    pub fn of_compute_pass(&self) -> wgpu::ComputePassTimestampWrites<'_> {
+        wgpu::ComputePassTimestampWrites {
+            query_set: &self.queries,
+            beginning_of_pass_write_index: Some(self.begin),
+            end_of_pass_write_index: Some(self.begin + 1),
+        }
+    }
+
+    /// Of one render pass.
+    pub fn of_render_pass(&self) -> wgpu::RenderPassTimestampWrites<'_> {
+        wgpu::RenderPassTimestampWrites {
+            query_set: &self.queries,
+            beginning_of_pass_write_index: Some(self.begin),
+            end_of_pass_write_index: Some(self.begin + 1),
+        }
+    }
+
+    /// From the begin of this render pass on; another pass has to end it.
+    pub fn from_render_pass(&self) -> wgpu::RenderPassTimestampWrites<'_> {
+        wgpu::RenderPassTimestampWrites { end_of_pass_write_index: None, ..self.of_render_pass() }
+    }
+
+    /// Up to the end of this render pass; another pass has begun it.
+    pub fn to_render_pass(&self) -> wgpu::RenderPassTimestampWrites<'_> {
+        wgpu::RenderPassTimestampWrites { beginning_of_pass_write_index: None, ..self.of_render_pass() }
+    }
+
+    /// Around commands outside of passes, such as copies.
+    ///
+    /// # Errors
+    /// [`GpuError::Feature`] where the device cannot.
+    pub fn begin_outside_passes(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        self.write(gpu, encoder, self.begin)
+    }
+
+    /// The end of [`Span::begin_outside_passes`].
+    ///
+    /// # Errors
+    /// [`GpuError::Feature`] where the device cannot.
+    pub fn end_outside_passes(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) -> Result<(), GpuError> {
+        self.write(gpu, encoder, self.begin + 1)
+    }
+
+    fn write(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, query: u32) -> Result<(), GpuError> {
+        if !gpu.features.contains(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS) {
+            let instead = "measure a pass instead";
+            return Err(GpuError::Feature { feature: "timestamps outside of passes", instead });
+        }
+        encoder.write_timestamp(&self.queries, query);
+        Ok(())
+    }
+}

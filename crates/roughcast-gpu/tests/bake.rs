@@ -1,0 +1,304 @@
+//! The GPU's bake against the CPU's.
+
+mod common;
+
+use common::compare::difference;
+use common::maps::{heights, normals, real};
+use common::{gpu, gpu_of_the_web};
+use pollster::block_on;
+use roughcast::texture::{Base, Layout, TextureArray};
+use roughcast::{
+    BakeOptions, BaseRoughness, Bits, Gradient, Green, HeightSense, Image, Kind, NormalChannels, NormalRange,
+    PyramidFilter, SampleType, Samples, ScaleChoice, SourceOptions, Wrap,
+};
+use roughcast_gpu::bake::{BakePath, GpuBaker};
+use roughcast_gpu::{Gpu, GpuError};
+
+/// One step of the format, which the issue allows: where the CPU's value lies next to the middle between two codes, the
+/// last bit of a float decides, and a GPU may fuse or round that bit in another way.
+const ALLOWED_STEPS: u32 = 1;
+
+/// Largest relative difference of an automatic scale: a root, a square and a sum in f32.
+const SCALE_ROUNDING: f32 = 4.0 * f32::EPSILON;
+
+const SIZES: [(usize, usize); 7] = [(1, 1), (1, 7), (64, 64), (256, 128), (100, 60), (127, 33), (513, 511)];
+const FORMATS: [Bits; 3] = [Bits::Half, Bits::Sixteen, Bits::Eight];
+const LAYOUTS: [Layout; 2] = [Layout::Lean, Layout::Clean];
+
+/// A bake of the same map on both sides.
+struct Case<'a> {
+    image: &'a Image,
+    source: SourceOptions,
+    roughness: Option<BaseRoughness<'a>>,
+    options: BakeOptions,
+    path: BakePath,
+}
+
+impl<'a> Case<'a> {
+    fn new(image: &'a Image, source: SourceOptions, layout: Layout, bits: Bits) -> Self {
+        let options = BakeOptions { layout, bits, ..Default::default() };
+        Self { image, source, roughness: None, options, path: BakePath::Compute }
+    }
+
+    fn on_gpu(&self, gpu: &Gpu) -> (GpuBaker, TextureArray) {
+        let Self { image, source, roughness, options, path } = self;
+        let baker = block_on(GpuBaker::for_image(gpu, image, source, *roughness, options, *path))
+            .unwrap_or_else(|error| panic!("{self}: {error}"));
+        baker.run();
+        let array = block_on(baker.read_back()).unwrap_or_else(|error| panic!("{self}: {error}"));
+        (baker, array)
+    }
+
+    fn check(&self, gpu: &Gpu) {
+        let mut cpu = roughcast::bake(self.image, &self.source, self.roughness, &self.options)
+            .unwrap_or_else(|error| panic!("{self}: {error}"));
+        let (baker, array) = self.on_gpu(gpu);
+        let expected = cpu.arrays.remove(0);
+        let (got, wanted) = (array.info.scale, expected.info.scale);
+        assert!((got / wanted - 1.0).abs() <= SCALE_ROUNDING, "{self}: a scale of {got}, not {wanted}");
+        let mut info = array.info;
+        info.scale = wanted;
+        assert_eq!(info.to_pairs(), expected.info.to_pairs(), "{self}");
+        let found = difference(&array, &expected).unwrap_or_else(|error| panic!("{self}: {error}"));
+        assert!(found.steps <= ALLOWED_STEPS, "{self}: {found:?}");
+        if self.path == BakePath::Compute {
+            assert_eq!(block_on(baker.counts()), Ok(Some(cpu.report.counts)), "{self}");
+        }
+    }
+}
+
+impl std::fmt::Display for Case<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let image = self.image;
+        write!(
+            f,
+            "{}x{}x{} {:?} by {:?}: {:?}, {:?}",
+            image.width(),
+            image.height(),
+            image.channels(),
+            image.samples().sample_type(),
+            self.path,
+            self.source,
+            self.options
+        )
+    }
+}
+
+fn normal_source() -> SourceOptions {
+    SourceOptions::default()
+}
+
+fn height_source() -> SourceOptions {
+    SourceOptions { kind: Kind::Height, height_scale: 0.1, ..Default::default() }
+}
+
+const PATHS: [BakePath; 2] = [BakePath::Compute, BakePath::Raster];
+
+#[test]
+fn every_size_of_normals_is_the_cpus_bake() {
+    let gpu = gpu();
+    for (width, height) in SIZES {
+        for (sample_type, bits) in [(SampleType::U8, Bits::Half), (SampleType::U16, Bits::Sixteen)] {
+            let image = normals(width, height, 3, sample_type);
+            for layout in LAYOUTS {
+                for path in PATHS {
+                    Case { path, ..Case::new(&image, normal_source(), layout, bits) }.check(&gpu);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn every_size_of_heights_is_the_cpus_bake() {
+    let gpu = gpu();
+    for (width, height) in SIZES {
+        for (sample_type, bits) in
+            [(SampleType::U8, Bits::Eight), (SampleType::U16, Bits::Half), (SampleType::F32, Bits::Sixteen)]
+        {
+            let image = heights(width, height, sample_type);
+            for path in PATHS {
+                Case { path, ..Case::new(&image, height_source(), Layout::Lean, bits) }.check(&gpu);
+            }
+        }
+    }
+}
+
+#[test]
+fn every_format_layout_and_path_is_the_cpus_bake() {
+    let gpu = gpu();
+    let image = normals(96, 40, 3, SampleType::U8);
+    for bits in FORMATS {
+        for layout in LAYOUTS {
+            for path in PATHS {
+                Case { path, ..Case::new(&image, normal_source(), layout, bits) }.check(&gpu);
+            }
+        }
+    }
+}
+
+#[test]
+fn every_gradient_wrap_and_sense_is_the_cpus_bake() {
+    let gpu = gpu();
+    let image = heights(45, 34, SampleType::U16);
+    for gradient in Gradient::ALL {
+        for wrap in Wrap::ALL {
+            let source = SourceOptions { gradient: *gradient, wrap: *wrap, ..height_source() };
+            for path in PATHS {
+                Case { path, ..Case::new(&image, source, Layout::Lean, Bits::Half) }.check(&gpu);
+            }
+        }
+    }
+    let source = SourceOptions { height_sense: HeightSense::WhiteDeep, ..height_source() };
+    Case::new(&image, source, Layout::Lean, Bits::Half).check(&gpu);
+}
+
+#[test]
+fn every_way_to_store_normals_is_the_cpus_bake() {
+    let gpu = gpu();
+    for order in NormalChannels::ALL {
+        for green in Green::ALL {
+            for sample_type in [SampleType::U8, SampleType::U16, SampleType::F16, SampleType::F32] {
+                let image = normals(40, 24, 4, sample_type);
+                let source = SourceOptions { normal_channels: *order, green: *green, ..normal_source() };
+                Case::new(&image, source, Layout::Lean, Bits::Half).check(&gpu);
+            }
+        }
+    }
+    let unsigned = normals(40, 24, 3, SampleType::F32);
+    let Samples::F32(values) = unsigned.samples() else { unreachable!("asked for") };
+    let signed = values.iter().map(|v| 2.0 * v - 1.0).collect();
+    let image = Image::new(40, 24, 3, Samples::F32(signed)).expect("as many");
+    let source = SourceOptions { range: NormalRange::Signed, ..normal_source() };
+    Case::new(&image, source, Layout::Lean, Bits::Half).check(&gpu);
+}
+
+#[test]
+fn bad_texels_are_mended_and_counted_as_on_the_cpu() {
+    let gpu = gpu();
+    let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, -1.0, 1e-30, 1e30];
+    let values: Vec<f32> = (0..16 * 16 * 3).map(|i| if i % 5 == 0 { bad[i / 5 % 7] } else { 0.7 }).collect();
+    let image = Image::new(16, 16, 3, Samples::F32(values)).expect("as many");
+    let source = SourceOptions { range: NormalRange::Signed, max_slope: 4.0, ..normal_source() };
+    Case::new(&image, source, Layout::Lean, Bits::Half).check(&gpu);
+    // Two channels that say nothing at all.
+    let image = Image::new(8, 8, 2, Samples::U8(vec![0; 128])).expect("as many");
+    let source = SourceOptions { normal_channels: NormalChannels::Xy, ..normal_source() };
+    Case::new(&image, source, Layout::Lean, Bits::Half).check(&gpu);
+}
+
+#[test]
+fn base_roughness_and_fixed_scales_are_the_cpus_bake() {
+    let gpu = gpu();
+    let image = normals(64, 48, 3, SampleType::U8);
+    let roughness = Some(BaseRoughness::Variance(1.0 / 64.0));
+    for bits in FORMATS {
+        for base in [Base::None, Base::Baked] {
+            for layout in LAYOUTS {
+                let mut case = Case::new(&image, normal_source(), layout, bits);
+                case.roughness = roughness;
+                case.options.base = base;
+                case.check(&gpu);
+                if bits != Bits::Half {
+                    case.options.scale = ScaleChoice::Fixed(1.25);
+                    case.check(&gpu);
+                    case.path = BakePath::Raster;
+                    case.check(&gpu);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn real_maps_are_the_cpus_bake() {
+    let gpu = gpu();
+    for (path, kind) in REAL_MAPS {
+        let image = real(path, 300, 256);
+        let source = SourceOptions { kind: *kind, ..Default::default() };
+        for bits in FORMATS {
+            for path in PATHS {
+                Case { path, ..Case::new(&image, source, Layout::Lean, bits) }.check(&gpu);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_webs_limits_take_more_dispatches_to_the_same_result() {
+    let (native, web) = (gpu(), gpu_of_the_web());
+    let image = normals(256, 128, 3, SampleType::U8);
+    for layout in LAYOUTS {
+        let case = Case::new(&image, normal_source(), layout, Bits::Half);
+        let ((many, expected), (few, got)) = (case.on_gpu(&native), case.on_gpu(&web));
+        assert_eq!(web.limits.max_storage_textures_per_shader_stage, 4);
+        assert!(few.dispatch_count() > many.dispatch_count(), "the limit was felt");
+        assert_eq!(difference(&got, &expected).expect("one shape").steps, 0);
+        case.check(&web);
+    }
+}
+
+#[test]
+fn moving_bumps_reuse_textures_and_differ_as_their_inputs_do() {
+    let gpu = gpu();
+    let frames = [normals(64, 32, 3, SampleType::U8), normals(64, 32, 3, SampleType::U8).flipped()];
+    let options = BakeOptions { bits: Bits::Sixteen, ..Default::default() };
+    for path in PATHS {
+        let first = &frames[0];
+        let baker = block_on(GpuBaker::for_image(&gpu, first, &normal_source(), None, &options, path)).expect("made");
+        let textures = baker.textures().to_vec();
+        let mut read = Vec::new();
+        for frame in &frames {
+            baker.upload(frame).expect("of the same kind");
+            baker.run();
+            let array = block_on(baker.read_back()).expect("read back");
+            let cpu = roughcast::bake(frame, &normal_source(), None, &options).expect("baked");
+            let found = difference(&array, &cpu.arrays[0]).expect("one shape");
+            assert!(found.steps <= ALLOWED_STEPS, "{path:?}: {found:?}");
+            assert_eq!(baker.textures(), textures);
+            read.push(array);
+        }
+        assert!(difference(&read[0], &read[1]).expect("one shape").steps > 1000, "another frame, other texels");
+        let other = normals(32, 32, 3, SampleType::U8);
+        assert!(matches!(baker.upload(&other), Err(GpuError::Shape(_))));
+    }
+}
+
+/// A picture with its rows in reverse.
+trait Flipped {
+    fn flipped(&self) -> Image;
+}
+
+impl Flipped for Image {
+    fn flipped(&self) -> Image {
+        let Samples::U8(samples) = self.samples() else { unreachable!("these frames have 8 bits") };
+        let rows = samples.chunks(self.width() * self.channels()).rev();
+        let samples = Samples::U8(rows.flatten().copied().collect());
+        Image::new(self.width(), self.height(), self.channels(), samples).expect("as many")
+    }
+}
+
+#[test]
+fn what_the_gpu_cannot_do_is_refused_with_the_reason() {
+    let gpu = gpu();
+    let image = normals(8, 8, 3, SampleType::U8);
+    let refused = |options: BakeOptions, word: &str| {
+        let error = block_on(GpuBaker::for_image(&gpu, &image, &normal_source(), None, &options, BakePath::Fastest));
+        let line = error.err().expect("refused").to_string();
+        assert!(line.contains(word) && !line.contains('\n'), "{line}");
+    };
+    refused(BakeOptions { filter: PyramidFilter::Gaussian, bits: Bits::Half, ..Default::default() }, "gaussian");
+    refused(BakeOptions { bits: Bits::Float, ..Default::default() }, "half");
+    refused(BakeOptions { layout: Layout::Schilling, ..Default::default() }, "schilling");
+    refused(BakeOptions { base: Base::Baked, ..Default::default() }, "--base baked");
+    let narrow = normals(8, 8, 2, SampleType::U8);
+    let error = block_on(GpuBaker::for_image(
+        &gpu,
+        &narrow,
+        &normal_source(),
+        None,
+        &BakeOptions::default(),
+        BakePath::Fastest,
+    ));
+    assert!(error.err().expect("refused").to_string().contains("channels"));
+}

@@ -1,0 +1,39 @@
+//! What a bake comes down to once its options are checked.
+
+use super::check::{check_options, limit_slopes};
+use super::{BakeError, base_of, base_variance, first_part};
+use crate::options::{BakeOptions, SourceOptions};
+use crate::source::{BaseRoughness, check_numbers};
+use crate::texture::TextureInfo;
+
+/// Checked options and what follows from them, for those who bake by other means than [`crate::bake`], such as a GPU.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BakePlan {
+    /// How the map is read. The largest slope is lowered to what the texels can hold.
+    pub source: SourceOptions,
+    /// What the texels mean. Scales that depend on the map are still 1.
+    pub info: TextureInfo,
+}
+
+/// Checks options against each other.
+///
+/// # Errors
+/// [`BakeError`] where they do not go together.
+pub fn plan_bake(
+    source_options: &SourceOptions,
+    roughness: Option<BaseRoughness<'_>>,
+    options: &BakeOptions,
+) -> Result<BakePlan, BakeError> {
+    check_options(options, roughness.is_some())?;
+    let mut source = *source_options;
+    limit_slopes(&mut source, roughness, options)?;
+    check_numbers(&source)?;
+    let info = TextureInfo {
+        base: base_of(options, roughness.is_some()),
+        base_variance: base_variance(roughness),
+        brdf: options.brdf,
+        roughness_stored: options.roughness_stored,
+        ..TextureInfo::new(options.layout, first_part(options))
+    };
+    Ok(BakePlan { source, info })
+}

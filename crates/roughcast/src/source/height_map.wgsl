@@ -1,0 +1,43 @@
+// Slopes from height maps. Twin of height_map.rs.
+//
+// A slope is minus the gradient; rows grow downwards and y points up, hence the signs. `scale` turns a stored height into
+// texels. Neighbours are given row by row, each from left to right.
+
+// The other wrap modes keep an index that is one step outside at the edge.
+const WRAP_REPEAT: u32 = 0u;
+
+// The 8-tap Sobel filter divided by 8.
+fn sobel(above: vec3f, here: vec3f, below: vec3f, scale: f32) -> vec2f {
+    let x_sides = (above.x - above.z) + (below.x - below.z);
+    let y_sides = (below.x - above.x) + (below.z - above.z);
+    let eighth = scale / 8.0;
+    return vec2f(eighth * (x_sides + 2.0 * (here.x - here.z)), eighth * (y_sides + 2.0 * (below.y - above.y)));
+}
+
+// Central differences divided by 2.
+fn central(above: vec3f, here: vec3f, below: vec3f, scale: f32) -> vec2f {
+    return scale / 2.0 * vec2f(here.x - here.z, below.y - above.y);
+}
+
+// Differences to the next texel, right and up.
+fn forward(above: vec3f, here: vec3f, scale: f32) -> vec2f {
+    return scale * vec2f(here.y - here.z, here.y - above.y);
+}
+
+// A slope that is not too steep, as it is; others mended.
+fn slope_from_gradient(slope: vec2f, max_slope: f32) -> MendedSlope {
+    let squares = rounded2(slope * slope);
+    if (squares.x + squares.y) <= max_slope * max_slope {
+        return MendedSlope(slope, FAULT_NONE);
+    }
+    return mended_slope(vec3f(slope, 1.0), max_slope);
+}
+
+// The index of a neighbour that may be one step outside 0 .. size.
+fn neighbour(index: i32, size: i32, wrap: u32) -> i32 {
+    // Mirrored about the edge itself, so the edge texel comes twice, as where the edge goes on.
+    let kept = clamp(index, 0, size - 1);
+    let repeated = (index + size) % size;
+    return select(kept, repeated, wrap == WRAP_REPEAT);
+}
+

@@ -1,0 +1,37 @@
+// Slopes from normal maps. Twin of normal_map.rs.
+
+// Two-channel normals further outside the unit disc than this (squared) are an empty background.
+const INVALID_XY_SQUARED: f32 = 1.2;
+
+// A component stored as an integer code in 0 ..= steps, which stand for -1 ..= 1.
+fn component_from_code(code: f32, steps: f32) -> f32 {
+    return quotient(2.0 * code - steps, steps);
+}
+
+// z of a two-channel normal.
+fn z_from_xy(normal_xy: vec2f) -> f32 {
+    let squares = rounded2(normal_xy * normal_xy);
+    return square_root(max(1.0 - squares.x - squares.y, 0.0));
+}
+
+// The slope of a normal of any length.
+fn slope_from_normal(normal: vec3f, max_slope: f32) -> MendedSlope {
+    if (normal.z > 0.0) & is_finite(normal.z) {
+        let slope = normal.xy * quotient(1.0, normal.z);
+        let squares = rounded2(slope * slope);
+        if (squares.x + squares.y) <= max_slope * max_slope {
+            return MendedSlope(slope, FAULT_NONE);
+        }
+    }
+    return mended_slope(normal, max_slope);
+}
+
+// The slope of a two-channel normal.
+fn slope_from_normal_xy(normal_xy: vec2f, max_slope: f32) -> MendedSlope {
+    let squares = rounded2(normal_xy * normal_xy);
+    let finite = is_finite(normal_xy.x) & is_finite(normal_xy.y);
+    if finite & (squares.x + squares.y > INVALID_XY_SQUARED) {
+        return MendedSlope(vec2f(0.0), FAULT_INVALID);
+    }
+    return slope_from_normal(vec3f(normal_xy, z_from_xy(normal_xy)), max_slope);
+}
