@@ -245,7 +245,8 @@ fn moving_bumps_reuse_textures_and_differ_as_their_inputs_do() {
     let options = BakeOptions { bits: Bits::Sixteen, ..Default::default() };
     for path in PATHS {
         let first = &frames[0];
-        let baker = block_on(GpuBaker::for_image(&gpu, first, &normal_source(), None, &options, path)).expect("made");
+        let baker =
+            block_on(GpuBaker::for_image(&gpu, first, &normal_source(), None, &options, path)).expect("made");
         let textures = baker.textures().to_vec();
         let mut read = Vec::new();
         for frame in &frames {
@@ -258,7 +259,10 @@ fn moving_bumps_reuse_textures_and_differ_as_their_inputs_do() {
             assert_eq!(baker.textures(), textures);
             read.push(array);
         }
-        assert!(difference(&read[0], &read[1]).expect("one shape").steps > 1000, "another frame, other texels");
+        assert!(
+            difference(&read[0], &read[1]).expect("one shape").steps > 1000,
+            "another frame, other texels"
+        );
         let other = normals(32, 32, 3, SampleType::U8);
         assert!(matches!(baker.upload(&other), Err(GpuError::Shape(_))));
     }
@@ -283,11 +287,15 @@ fn what_the_gpu_cannot_do_is_refused_with_the_reason() {
     let gpu = gpu();
     let image = normals(8, 8, 3, SampleType::U8);
     let refused = |options: BakeOptions, word: &str| {
-        let error = block_on(GpuBaker::for_image(&gpu, &image, &normal_source(), None, &options, BakePath::Fastest));
+        let error =
+            block_on(GpuBaker::for_image(&gpu, &image, &normal_source(), None, &options, BakePath::Fastest));
         let line = error.err().expect("refused").to_string();
         assert!(line.contains(word) && !line.contains('\n'), "{line}");
     };
-    refused(BakeOptions { filter: PyramidFilter::Gaussian, bits: Bits::Half, ..Default::default() }, "gaussian");
+    refused(
+        BakeOptions { filter: PyramidFilter::Gaussian, bits: Bits::Half, ..Default::default() },
+        "gaussian",
+    );
     refused(BakeOptions { bits: Bits::Float, ..Default::default() }, "half");
     refused(BakeOptions { layout: Layout::Schilling, ..Default::default() }, "schilling");
     refused(BakeOptions { base: Base::Baked, ..Default::default() }, "--base baked");

@@ -24,7 +24,13 @@ pub fn difference(a: &TextureArray, b: &TextureArray) -> Result<Difference, Stri
     }
     for (a, b) in a.layers.iter().zip(&b.layers) {
         if (a.name, &a.channels, a.levels.len()) != (b.name, &b.channels, b.levels.len()) {
-            return Err(format!("{} of {} levels and {} of {}", a.name, a.levels.len(), b.name, b.levels.len()));
+            return Err(format!(
+                "{} of {} levels and {} of {}",
+                a.name,
+                a.levels.len(),
+                b.name,
+                b.levels.len()
+            ));
         }
         for (level, (image_a, image_b)) in a.levels.iter().zip(&b.levels).enumerate() {
             let shape = |image: &roughcast::Image| (image.width(), image.height(), image.channels());
@@ -40,7 +46,10 @@ pub fn difference(a: &TextureArray, b: &TextureArray) -> Result<Difference, Stri
                     let (x, y) = (texel % image_a.width(), texel / image_a.width());
                     let (va, vb) = (image_a.samples().get(index), image_b.samples().get(index));
                     found.steps = steps;
-                    found.place = format!("{} level {level} ({x}, {y}) {}: {va:e} and {vb:e}", a.name, a.channels[channel]);
+                    found.place = format!(
+                        "{} level {level} ({x}, {y}) {}: {va:e} and {vb:e}",
+                        a.name, a.channels[channel]
+                    );
                 }
             }
         }
