@@ -39,9 +39,9 @@ impl Sampling {
             }
         };
         let (detail, value) = match level {
-            // Not a number becomes the finest.
-            Some(level) => (Detail::Fixed, level.max(0.0).min(LAST_LEVEL)),
-            None => (Detail::Derivatives, mip_bias.max(BIASES.0).min(BIASES.1)),
+            // As on the CPU, what is not a number is the finest level.
+            Some(level) => (Detail::Fixed, if level > 0.0 { level.min(LAST_LEVEL) } else { 0.0 }),
+            None => (Detail::Derivatives, mip_bias.clamp(BIASES.0, BIASES.1)),
         };
         Ok(Self { detail, value: value as f32, filter, wrap })
     }

@@ -53,7 +53,8 @@ pub fn shader_source(key: ShaderKey) -> Result<String, UnknownName> {
         let _ = writeln!(textures, "@group(1) @binding({binding}) var map{index}: texture_2d<f32>;");
     }
     let model = model(key.shading, key.lobe);
-    Ok([&library, include_str!("common.wgsl"), &textures, &sampled, &model].map(String::as_str).join("\n"))
+    let parts: [&str; 5] = [&library, include_str!("common.wgsl"), &textures, &sampled, &model];
+    Ok(parts.join("\n"))
 }
 
 /// From texels to a surface and from a surface to its lobe, in the model's own functions.
