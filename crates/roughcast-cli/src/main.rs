@@ -6,13 +6,20 @@
 mod args;
 mod bake;
 mod batch;
+mod display;
+mod figures;
+mod html;
 mod info;
 mod input;
+mod method;
 mod output;
 mod precision;
 mod progress;
+mod render;
 mod report;
 mod roughness;
+mod scene_args;
+mod shader;
 mod textures;
 mod unpack;
 
@@ -38,6 +45,9 @@ enum Command {
     Info(info::Args),
     Unpack(unpack::Args),
     Precision(precision::Args),
+    Render(render::Args),
+    Figures(figures::Args),
+    Shader(shader::Args),
 }
 
 fn main() -> ExitCode {
@@ -50,6 +60,9 @@ fn main() -> ExitCode {
         Command::Info(args) => info::run(&args),
         Command::Unpack(args) => unpack::run(&args),
         Command::Precision(args) => precision::run(&args),
+        Command::Render(args) => render::run(&args),
+        Command::Figures(args) => figures::run(&args),
+        Command::Shader(args) => shader::run(&args),
     };
     match result {
         Ok(code) => code,

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{gpu, gpu_of_the_web};
+use common::{gpu, gpu_of_the_web, gpu_without_features};
 use pollster::block_on;
 use roughcast_gpu::{Gpu, GpuError, GpuOptions, read_back};
 use wgpu::util::DeviceExt;
@@ -83,15 +83,6 @@ fn a_format_that_is_not_there_is_named_with_its_stand_in() {
     assert!(line.contains("Rgba16Unorm") && line.contains("half"), "{line}");
     gpu.require_format(wgpu::TextureFormat::Rgba16Float, wgpu::TextureUsages::STORAGE_BINDING)
         .expect("half floats are everywhere");
-}
-
-fn gpu_without_features() -> Gpu {
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    descriptor.backends = wgpu::Backends::PRIMARY;
-    let instance = wgpu::Instance::new(descriptor);
-    let adapter = block_on(instance.request_adapter(&Default::default())).expect("an adapter");
-    let (device, queue) = block_on(adapter.request_device(&Default::default())).expect("a plain device");
-    Gpu::from_device(device, queue)
 }
 
 #[test]

@@ -22,8 +22,10 @@ pub mod pattern;
 mod picture;
 pub mod render;
 mod scene;
+mod sequence;
 mod shape;
 mod slope_map;
+mod views;
 
 pub use camera::{Camera, CameraError, PixelRays};
 pub use filter::{Filter, Sampler, SummedAreaTable};
@@ -33,5 +35,7 @@ pub use mesh::{MAX_FILE_BYTES, MAX_TRIANGLES, MAX_VERTICES, Mesh, MeshError, Mes
 pub use mipmap::{Level, Mipmap, MipmapError};
 pub use picture::{Picture, luminance};
 pub use scene::Scene;
+pub use sequence::slow_move;
 pub use shape::{Bounds, MAX_DETAIL, Plane, Shape, ShapeError, Sphere, Torus, TriangleMesh};
 pub use slope_map::{Reconstruction, SlopeMap};
+pub use views::{View, default_light, repeats};

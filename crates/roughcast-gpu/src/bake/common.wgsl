@@ -4,13 +4,15 @@ struct Params {
     // Of the level that is read.
     size: vec2u,
     zero: u32,
-    unused: u32,
+    // 0: what lies beyond the edge is the other side of the map; else the edge goes on.
+    wrap: u32,
     max_slope: f32,
     // What a stored height is multiplied by to give texels.
     height_scale: f32,
     // Slope variance of a base roughness that is folded in (LEAN Eq. 6), else zero.
     base_variance: f32,
-    also_unused: f32,
+    // Of a normal map's green: 1 up, -1 down.
+    green: f32,
 }
 
 // `Stores` and the scale behind them.

@@ -1,6 +1,7 @@
 //! The compute path: all levels in two dispatches where sides stay even and the device binds enough storage textures.
 
 use super::bindings::{Access, Bindings};
+use super::pipelines::Pipelines;
 use super::plan::{Average, Step, steps};
 use super::target::level_view;
 use super::{Job, LIBRARY};
@@ -47,9 +48,10 @@ impl ComputeBake {
         }
         let steps = steps(job.size.width, job.size.height, levels_a_step);
         let states = states(gpu, job, &steps).await?;
+        let mut pipelines = Pipelines::new();
         let mut dispatches = Vec::new();
         for (index, step) in steps.iter().enumerate() {
-            dispatches.push(dispatch(gpu, job, step, index, &states).await?);
+            dispatches.push(dispatch(gpu, job, step, index, &states, &mut pipelines).await?);
         }
         Ok(Self { dispatches })
     }
@@ -99,6 +101,7 @@ async fn dispatch(
     step: &Step,
     index: usize,
     states: &[wgpu::Buffer; 2],
+    pipelines: &mut Pipelines<wgpu::ComputePipeline>,
 ) -> Result<Dispatch, GpuError> {
     let params = job.params(&gpu.device, step.input);
     let views: Vec<Vec<wgpu::TextureView>> = step
@@ -134,7 +137,7 @@ async fn dispatch(
     let (pipeline, bindings) = gpu
         .checked("a bake's compute pipeline", |device| {
             let (layout, group) = bindings.make(device);
-            (compute_pipeline(device, &layout, source, entry_point), group)
+            (pipelines.of(source, |source| compute_pipeline(device, &layout, source, entry_point)), group)
         })
         .await?;
     Ok(Dispatch { pipeline, bindings, groups })
@@ -143,7 +146,7 @@ async fn dispatch(
 pub(super) fn compute_pipeline(
     device: &wgpu::Device,
     layout: &wgpu::PipelineLayout,
-    source: String,
+    source: &str,
     entry_point: &str,
 ) -> wgpu::ComputePipeline {
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {

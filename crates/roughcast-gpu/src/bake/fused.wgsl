@@ -29,13 +29,11 @@ fn finest(at: vec2u) -> Footprint {
 }
 
 fn quad(at: vec2u) -> Footprint {
-    let first = 2u * at;
-    let footprint = average_of_quad(
-        finest(first),
-        finest(first + vec2u(1u, 0u)),
-        finest(first + vec2u(0u, 1u)),
-        finest(first + vec2u(1u, 1u)),
-    );
+    var four: array<Footprint, 4>;
+    for (var i = 0u; i < 4u; i++) {
+        four[i] = finest(2u * at + vec2u(i & 1u, i >> 1u));
+    }
+    let footprint = average_of_quad(four[0], four[1], four[2], four[3]);
     store_1(at, footprint);
     return footprint;
 }
@@ -61,12 +59,11 @@ fn fused(
 ) {
     opaque_zero = params.zero;
     let at = 16u * group.xy + local.xy;
-    let footprint = average_of_quad(
-        quad(2u * at),
-        quad(2u * at + vec2u(1u, 0u)),
-        quad(2u * at + vec2u(0u, 1u)),
-        quad(2u * at + vec2u(1u, 1u)),
-    );
+    var four: array<Footprint, 4>;
+    for (var i = 0u; i < 4u; i++) {
+        four[i] = quad(2u * at + vec2u(i & 1u, i >> 1u));
+    }
+    let footprint = average_of_quad(four[0], four[1], four[2], four[3]);
     store_2(at, footprint);
     if HALVINGS <= 2u {
         return;

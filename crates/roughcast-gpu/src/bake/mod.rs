@@ -3,8 +3,10 @@
 //! The result is that of [`roughcast::bake`] to within one step of the format on every texel of every level: the same
 //! options, the same order of additions, quotients and roots rounded as the CPU rounds them.
 
+mod bandwidth;
 mod bindings;
 mod compute;
+mod pipelines;
 mod plan;
 mod raster;
 mod scale;
@@ -21,6 +23,7 @@ use wgpu::util::DeviceExt;
 
 use crate::read_back::read_buffer;
 use crate::{Gpu, GpuError, Span};
+pub use bandwidth::{Bandwidth, bake_bandwidth, copy_bandwidth};
 use bindings::Bindings;
 use compute::ComputeBake;
 use raster::RasterBake;
@@ -330,11 +333,11 @@ impl Job {
             width,
             height,
             0,
-            0,
+            source::code_of_wrap(source.wrap),
             source.max_slope.to_bits(),
             source::texels_from_height(source, self.size.width).to_bits(),
             self.base_variance.to_bits(),
-            0,
+            source::sign_of_green(source.green).to_bits(),
         ];
         device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("bake"),

@@ -7,6 +7,7 @@
 use roughcast::levels_of_four;
 
 use super::bindings::Bindings;
+use super::pipelines::Pipelines;
 use super::target::level_view;
 use super::{Job, LIBRARY};
 use crate::{Gpu, GpuError, Span};
@@ -50,7 +51,9 @@ enum Output {
 impl RasterBake {
     pub async fn new(gpu: &Gpu, job: &Job) -> Result<Self, GpuError> {
         gpu.require_format(STATE_FORMAT, wgpu::TextureUsages::RENDER_ATTACHMENT)?;
-        let mut passes = vec![pass(gpu, job, 0, Input::Map, Output::Texels, job.level_views(0)).await?];
+        let mut pipelines = Pipelines::new();
+        let mut passes =
+            vec![pass(gpu, job, 0, Input::Map, Output::Texels, job.level_views(0), &mut pipelines).await?];
         // Odd levels live in the first, even ones in the second: a pass never reads what it writes.
         let states = [state(gpu, job, 1).await?, state(gpu, job, 2).await?];
         let (width, height) = job.level_size(0);
@@ -60,9 +63,11 @@ impl RasterBake {
             let of_level = |level: u32| &states[(level as usize + 1) % 2];
             let input = if level == 1 { Input::Map } else { Input::State(of_level(level - 1)) };
             let floats = of_level(level).to_vec();
-            passes.push(pass(gpu, job, level - 1, input, average, floats).await?);
+            passes.push(pass(gpu, job, level - 1, input, average, floats, &mut pipelines).await?);
             let input = Input::State(of_level(level));
-            passes.push(pass(gpu, job, level, input, Output::Texels, job.level_views(level)).await?);
+            passes.push(
+                pass(gpu, job, level, input, Output::Texels, job.level_views(level), &mut pipelines).await?,
+            );
         }
         Ok(Self { passes })
     }
@@ -132,6 +137,7 @@ async fn pass(
     input: Input<'_>,
     output: Output,
     targets: Vec<wgpu::TextureView>,
+    pipelines: &mut Pipelines<wgpu::RenderPipeline>,
 ) -> Result<Pass, GpuError> {
     let params = job.params(&gpu.device, input_level);
     let mut bindings = Bindings::new(wgpu::ShaderStages::FRAGMENT);
@@ -147,7 +153,8 @@ async fn pass(
     let (pipeline, bindings) = gpu
         .checked("a bake's render pipeline", |device| {
             let (layout, group) = bindings.make(device);
-            (render_pipeline(device, &layout, source, &vec![Some(format.into()); count]), group)
+            let formats = vec![Some(format.into()); count];
+            (pipelines.of(source, |source| render_pipeline(device, &layout, source, &formats)), group)
         })
         .await?;
     Ok(Pass { pipeline, bindings, targets, size })
@@ -211,7 +218,7 @@ fn output_wgsl(job: &Job, output: Output) -> String {
 fn render_pipeline(
     device: &wgpu::Device,
     layout: &wgpu::PipelineLayout,
-    source: String,
+    source: &str,
     targets: &[Option<wgpu::ColorTargetState>],
 ) -> wgpu::RenderPipeline {
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {

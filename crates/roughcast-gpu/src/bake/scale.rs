@@ -66,7 +66,7 @@ async fn dispatch(
     let (pipeline, bindings) = gpu
         .checked("the pipeline that finds a scale", |device| {
             let (layout, group) = bindings.make(device);
-            (compute_pipeline(device, &layout, source, entry_point), group)
+            (compute_pipeline(device, &layout, &source, entry_point), group)
         })
         .await?;
     Ok(Dispatch { pipeline, bindings, groups })

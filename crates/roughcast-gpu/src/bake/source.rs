@@ -128,10 +128,6 @@ impl MapFormat {
             (Texel::Value, NormalRange::Unorm) => "2.0 * stored - 1.0".to_owned(),
             (Texel::Value, NormalRange::Signed) => "stored".to_owned(),
         };
-        let sign = match options.green {
-            Green::Up => "",
-            Green::Down => "-",
-        };
         let slope = match options.normal_channels {
             NormalChannels::Xyz => {
                 "slope_from_normal(vec3f(map_component(texel.x), y, map_component(texel.z)), "
@@ -143,7 +139,7 @@ impl MapFormat {
             "fn map_component(stored: f32) -> f32 {{ return {component}; }}\n\
              fn map_slope(at: vec2u) -> MendedSlope {{\n    \
                  let texel = map_texel(vec2i(at));\n    \
-                 let y = {sign}map_component(texel.y);\n    \
+                 let y = params.green * map_component(texel.y);\n    \
                  return {slope}params.max_slope);\n}}\n"
         )
     }
@@ -152,11 +148,6 @@ impl MapFormat {
         let height = match self.texel {
             Texel::Unorm(steps) | Texel::Code(steps) => format!("quotient(stored, {steps}.0)"),
             Texel::Value => "stored".to_owned(),
-        };
-        let wrap = match options.wrap {
-            Wrap::Repeat => 0,
-            Wrap::Clamp => 1,
-            Wrap::Mirror => 2,
         };
         let gradient = match options.gradient {
             Gradient::Sobel => {
@@ -176,11 +167,28 @@ impl MapFormat {
              fn map_slope(unsigned_at: vec2u) -> MendedSlope {{\n    \
                  let at = vec2i(unsigned_at);\n    \
                  let size = vec2i(params.size);\n    \
-                 let xs = vec3i(neighbour(at.x - 1, size.x, {wrap}u), at.x, neighbour(at.x + 1, size.x, {wrap}u));\n    \
-                 let above = neighbour(at.y - 1, size.y, {wrap}u);\n    \
-                 let below = neighbour(at.y + 1, size.y, {wrap}u);\n    \
+                 let xs = vec3i(neighbour(at.x - 1, size.x, params.wrap), at.x, neighbour(at.x + 1, size.x, params.wrap));\n    \
+                 let above = neighbour(at.y - 1, size.y, params.wrap);\n    \
+                 let below = neighbour(at.y + 1, size.y, params.wrap);\n    \
                  return slope_from_gradient({gradient}, params.max_slope);\n}}\n"
         )
+    }
+}
+
+/// The sign of green, as `Params` has it.
+pub(super) fn sign_of_green(green: Green) -> f32 {
+    match green {
+        Green::Up => 1.0,
+        Green::Down => -1.0,
+    }
+}
+
+/// The wrap mode, as `Params` has it.
+pub(super) fn code_of_wrap(wrap: Wrap) -> u32 {
+    match wrap {
+        Wrap::Repeat => 0,
+        Wrap::Clamp => 1,
+        Wrap::Mirror => 2,
     }
 }
 

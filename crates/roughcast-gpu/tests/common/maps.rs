@@ -23,7 +23,7 @@ pub fn normals(width: usize, height: usize, channels: usize, sample_type: Sample
         let slope_y = (0.2 * y + 0.1 * x).cos() + random.next() - 0.5;
         let z = 1.0 / (1.0 + slope_x * slope_x + slope_y * slope_y).sqrt();
         let mut normal = [slope_x * z, slope_y * z, z, 1.0];
-        match (i * 2_654_435_761_usize >> 8) % 97 {
+        match (i.wrapping_mul(2_654_435_761) >> 8) % 97 {
             0 => normal[2] = -normal[2],
             1 => normal[2] = 1e-3,
             2 => normal = [0.0, 0.0, -1.0, 1.0],
@@ -39,7 +39,7 @@ pub fn heights(width: usize, height: usize, sample_type: SampleType) -> Image {
     let mut random = Random((width * 31 + height) as u64);
     let value = |i: usize| {
         let (x, y) = ((i % width) as f32, (i / width) as f32);
-        let step = if (i % width) / 9 % 2 == 0 { 0.1 } else { 0.0 };
+        let step = if ((i % width) / 9).is_multiple_of(2) { 0.1 } else { 0.0 };
         0.4 + 0.2 * (0.4 * x + 0.1 * y).sin() + 0.1 * (0.3 * y).cos() + step + 0.05 * random.next()
     };
     let values: Vec<f32> = (0..width * height).map(value).collect();
@@ -61,7 +61,8 @@ pub fn real(path: &str, width: usize, height: usize) -> Image {
     let full = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")).join(path);
     let bytes = std::fs::read(&full)
         .unwrap_or_else(|error| panic!("the shared test data is not there: {}: {error}", full.display()));
-    let whole = roughcast_io::read_image(&bytes, &Default::default())
+    let extension = full.extension().and_then(|extension| extension.to_str());
+    let whole = roughcast_io::read_image(&bytes, extension, &Default::default())
         .unwrap_or_else(|error| panic!("{}: {error}", full.display()))
         .image;
     let (width, height) = (width.min(whole.width()), height.min(whole.height()));

@@ -24,3 +24,13 @@ fn gpu_with(options: &GpuOptions) -> Gpu {
         panic!("these tests need a GPU adapter, real or software (Debian: mesa-vulkan-drivers): {error}")
     })
 }
+
+/// A device that has nothing but what WebGPU promises.
+pub fn gpu_without_features() -> Gpu {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = gpu().info.backend.into();
+    let instance = wgpu::Instance::new(descriptor);
+    let adapter = pollster::block_on(instance.request_adapter(&Default::default())).expect("an adapter");
+    let device = pollster::block_on(adapter.request_device(&Default::default())).expect("a plain device");
+    Gpu::from_device(device.0, device.1)
+}

@@ -16,13 +16,13 @@ pub(super) const MAX_TAPS: f64 = 16.0;
 /// What a ratio of axes may exceed a whole number by, through rounding, without another tap.
 const RATIO_ROUNDING: f64 = 1e-9;
 
-/// The mean of equal taps over a footprint in texels of level 0. Their level is that of the shorter axis.
-pub(super) fn sample(mipmap: &Mipmap, uv: DVec2, texels: &Footprint, wrap: Wrap) -> [f64; 4] {
+/// The mean of equal taps over a footprint in texels of level 0. Their level is that of the shorter axis, plus a bias.
+pub(super) fn sample(mipmap: &Mipmap, uv: DVec2, texels: &Footprint, bias: f64, wrap: Wrap) -> [f64; 4] {
     let ellipse = Ellipse::of(texels);
     // Below a texel interpolation smooths as it is; taps closer than that would add nothing.
     let minor = ellipse.minor.max(ellipse.major / MAX_TAPS).max(1.0);
     let taps = (ellipse.major / minor - RATIO_ROUNDING).ceil().clamp(1.0, MAX_TAPS);
-    let level = minor.log2();
+    let level = minor.log2() + bias;
     let (width, height) = mipmap.size();
     let axis = ellipse.direction * ellipse.major / DVec2::new(width as f64, height as f64);
     let mut sum = [0.0; 4];

@@ -10,9 +10,9 @@ const HUGE: f64 = 1e9;
 /// Distance in textures beyond which a clamped coordinate is not told apart: its texel is the edge's.
 const FAR: f64 = 1e6;
 
-/// The footprint in texels of level 0, scaled by `2^bias`. What is not finite is as large as footprints get.
-pub(super) fn in_texels(footprint: &Footprint, (width, height): (usize, usize), bias: f64) -> Footprint {
-    let size = DVec2::new(width as f64, height as f64) * finite(bias, 0.0).clamp(-32.0, 32.0).exp2();
+/// The footprint in texels of level 0. What is not finite is as large as footprints get.
+pub(super) fn in_texels(footprint: &Footprint, (width, height): (usize, usize)) -> Footprint {
+    let size = DVec2::new(width as f64, height as f64);
     let texels = |axis: DVec2| {
         let axis = axis * size;
         DVec2::new(finite(axis.x, HUGE), finite(axis.y, HUGE)).clamp(DVec2::splat(-HUGE), DVec2::splat(HUGE))
@@ -88,7 +88,7 @@ mod tests {
         for bad in [0.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, f64::MIN_POSITIVE] {
             for other in [0.0, bad, 1.0] {
                 let raw = Footprint { dx: DVec2::new(bad, other), dy: DVec2::new(other, bad) };
-                let ellipse = Ellipse::of(&in_texels(&raw, (4096, 1), 0.0));
+                let ellipse = Ellipse::of(&in_texels(&raw, (4096, 1)));
                 assert!(ellipse.major.is_finite() && ellipse.minor.is_finite(), "{raw:?}: {ellipse:?}");
                 assert!(ellipse.major >= ellipse.minor && ellipse.direction.is_finite());
             }

@@ -34,6 +34,9 @@ roughcast::named_enum! {
     }
 }
 
+/// Levels that no texture has: beyond them nothing changes.
+const MAX_LEVEL: f64 = 32.0;
+
 /// How textures are sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampler {
@@ -42,8 +45,8 @@ pub struct Sampler {
     /// A level of detail, 0 the finest, instead of the footprint's: a footprint of `2^level` texels each way. The bias
     /// does not apply to it.
     pub level: Option<f64>,
-    /// Levels that are added to the footprint's: it is taken `2^bias` times as large. Without a meaning for
-    /// [`Filter::Nearest`], which has no footprint.
+    /// Added to the footprint's level of detail. As in graphics hardware the taps of [`Filter::Anisotropic`] stay where
+    /// they are. Filters that know no levels take the footprint `2^bias` times as large; [`Filter::Nearest`] has none.
     pub mip_bias: f64,
     /// What lies beyond the edges.
     pub wrap: Wrap,
@@ -64,14 +67,17 @@ impl Sampler {
     pub fn sample(&self, texture: &Mipmap, uv: DVec2, footprint: &Footprint) -> [f32; 4] {
         let (width, height) = texture.size();
         let uv = footprint::reduced(uv, self.wrap);
+        let bias = if self.mip_bias.is_finite() { self.mip_bias.clamp(-MAX_LEVEL, MAX_LEVEL) } else { 0.0 };
         let (texels, fixed) = match self.level {
-            None => (footprint::in_texels(footprint, (width, height), self.mip_bias), None),
+            None => (footprint::in_texels(footprint, (width, height)), None),
             Some(level) => {
-                let level = if level > 0.0 { level.min(f64::from(usize::BITS)) } else { 0.0 };
+                let level = if level > 0.0 { level.min(MAX_LEVEL) } else { 0.0 };
                 let side = level.exp2();
                 (Footprint { dx: DVec2::new(side, 0.0), dy: DVec2::new(0.0, side) }, Some(level))
             }
         };
+        let scale = if fixed.is_none() { bias.exp2() } else { 1.0 };
+        let scaled = Footprint { dx: texels.dx * scale, dy: texels.dy * scale };
         let mean = match (self.filter, fixed) {
             (Filter::Nearest, fixed) => {
                 let last = texture.levels().len() - 1;
@@ -82,11 +88,11 @@ impl Sampler {
                 trilinear::sample(texture, uv, level, self.wrap)
             }
             (Filter::Trilinear, None) => {
-                trilinear::sample(texture, uv, trilinear::level_of(&texels), self.wrap)
+                trilinear::sample(texture, uv, trilinear::level_of(&texels) + bias, self.wrap)
             }
-            (Filter::Anisotropic, None) => anisotropic::sample(texture, uv, &texels, self.wrap),
-            (Filter::Ewa, _) => ewa::sample(texture, uv, &texels, self.wrap),
-            (Filter::SummedArea, _) => texture.table().sample(uv, &texels, self.wrap),
+            (Filter::Anisotropic, None) => anisotropic::sample(texture, uv, &texels, bias, self.wrap),
+            (Filter::Ewa, _) => ewa::sample(texture, uv, &scaled, self.wrap),
+            (Filter::SummedArea, _) => texture.table().sample(uv, &scaled, self.wrap),
         };
         mean.map(|value| value as f32)
     }

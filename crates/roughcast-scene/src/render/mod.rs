@@ -99,6 +99,3 @@ fn render_rows(
     });
     if stopped.into_inner() { Err(RenderError::Cancelled) } else { Ok(picture) }
 }
-
-#[cfg(test)]
-mod tests;

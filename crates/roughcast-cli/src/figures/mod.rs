@@ -1,0 +1,199 @@
+//! `roughcast figures`: the figures of the texts, made anew, each with the claim that it must show and the numbers that
+//! prove it.
+
+mod lean_13;
+mod lean_14;
+mod lean_2;
+mod lean_4;
+mod lean_5;
+mod scene;
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Context, Result, anyhow};
+use clap::ValueHint;
+use roughcast::Named;
+use roughcast_io::picture::{Srgb8Picture, write_png};
+use roughcast_io::{AtomicFile, AtomicSet};
+use serde_json::{Map, Value, json};
+
+use crate::args::one_of;
+use crate::html::{Chart, Page, Verdict};
+use crate::progress;
+
+/// Make the figures of the texts anew, each with its claim and the numbers that prove it.
+///
+/// Writes index.html, which needs no other file; results.json, with claim, numbers and "holds" of each figure; and the
+/// pictures as NAME.png. Exits with 1 where a claim does not hold.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Figures:
+  lean-2   far away bumps become roughness, and ridges a highlight with a direction
+  lean-4   Blinn-Phong and Beckmann approach each other as the exponent grows
+  lean-5   four models that look the same where nothing is filtered
+  lean-13  bumps with a direction, as the object moves away
+  lean-14  a raised checkerboard: ordinary bump maps alias, LEAN does not")]
+pub struct Args {
+    /// Which figures [default: all]
+    #[arg(value_name = "NAME", value_parser = one_of::<Name>())]
+    names: Vec<Name>,
+
+    /// The folder to write to; it is made where it is missing
+    #[arg(short, long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    output: PathBuf,
+}
+
+/// The figures that can be made, by text and number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Name {
+    Lean2,
+    Lean4,
+    Lean5,
+    Lean13,
+    Lean14,
+}
+
+impl Named for Name {
+    fn all() -> &'static [Self] {
+        &[Self::Lean2, Self::Lean4, Self::Lean5, Self::Lean13, Self::Lean14]
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Lean2 => "lean-2",
+            Self::Lean4 => "lean-4",
+            Self::Lean5 => "lean-5",
+            Self::Lean13 => "lean-13",
+            Self::Lean14 => "lean-14",
+        }
+    }
+}
+
+impl Name {
+    fn make(self) -> Result<Figure> {
+        match self {
+            Self::Lean2 => lean_2::make(),
+            Self::Lean4 => Ok(lean_4::make()),
+            Self::Lean5 => lean_5::make(),
+            Self::Lean13 => lean_13::make(),
+            Self::Lean14 => lean_14::make(),
+        }
+    }
+}
+
+/// A figure with its claim.
+struct Figure {
+    title: &'static str,
+    /// What the text's figure claims, made exact.
+    claim: String,
+    /// The numbers by which the claim is judged, with the limits that they are held against.
+    numbers: Map<String, Value>,
+    /// Whether they bear it out.
+    holds: bool,
+    /// How it was made: maps, their bits, exponent, sizes.
+    making: String,
+    panels: Vec<Panel>,
+    charts: Vec<Chart>,
+    table: Option<Table>,
+}
+
+/// One picture of a figure.
+struct Panel {
+    picture: Srgb8Picture,
+    caption: String,
+}
+
+/// Numbers that are more than a sentence holds.
+struct Table {
+    header: Vec<&'static str>,
+    rows: Vec<Vec<String>>,
+}
+
+/// Makes the figures, and says which claims hold.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let names = if args.names.is_empty() { Name::all().to_vec() } else { args.names.clone() };
+    let folder = || args.output.display().to_string();
+    fs::create_dir_all(&args.output).with_context(folder)?;
+    let bar = progress::bar(names.len() as u64);
+    let mut figures = Vec::new();
+    for name in names {
+        bar.set_message(name.name());
+        figures.push((name.name(), name.make().with_context(|| name.name())?));
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    write(&args.output, &figures)?;
+    for (name, figure) in &figures {
+        let verdict = if figure.holds { "holds" } else { "DOES NOT HOLD" };
+        crate::say(&format!("{name}: {verdict}: {}", figure.claim))?;
+    }
+    Ok(ExitCode::from(u8::from(figures.iter().any(|(_, figure)| !figure.holds))))
+}
+
+/// All files, or none.
+fn write(folder: &Path, figures: &[(&str, Figure)]) -> Result<()> {
+    let mut set = AtomicSet::new();
+    let mut add = |name: &str, write: &dyn Fn(&mut AtomicFile) -> Result<()>| -> Result<()> {
+        let path = folder.join(name);
+        let named = || path.display().to_string();
+        let mut file = AtomicFile::create(&path).with_context(named)?;
+        write(&mut file).with_context(named)?;
+        set.push(file).with_context(named)
+    };
+    for (name, figure) in figures {
+        if let Some(picture) = side_by_side(&figure.panels) {
+            add(&format!("{name}.png"), &|file| Ok(write_png(&picture, file)?))?;
+        }
+    }
+    let results = serde_json::to_string_pretty(&results(figures)).expect("plain data");
+    add("results.json", &|file| Ok(writeln!(file, "{results}")?))?;
+    let page = page(figures);
+    add("index.html", &|file| Ok(file.write_all(page.as_bytes())?))?;
+    set.commit().map_err(|error| anyhow!("{}: {error}", folder.display()))
+}
+
+fn results(figures: &[(&str, Figure)]) -> Value {
+    let entry = |(name, figure): &(&str, Figure)| {
+        let value = json!({ "claim": figure.claim, "numbers": figure.numbers, "holds": figure.holds });
+        ((*name).to_owned(), value)
+    };
+    Value::Object(figures.iter().map(entry).collect())
+}
+
+fn page(figures: &[(&str, Figure)]) -> String {
+    let mut page = Page::new("roughcast: the figures of the texts, made anew");
+    for (name, figure) in figures {
+        page.heading(2, &format!("{name}: {}", figure.title));
+        page.verdict(Verdict::from(figure.holds), &figure.claim);
+        page.paragraph(&figure.making);
+        page.begin_row();
+        figure.panels.iter().for_each(|panel| page.picture(&panel.picture, &panel.caption));
+        figure.charts.iter().for_each(|chart| page.chart(chart));
+        page.end_row();
+        let numbers = figure.numbers.iter().map(|(name, value)| vec![name.clone(), value.to_string()]);
+        page.table(&["number", "value"], &numbers.collect::<Vec<_>>());
+        if let Some(table) = &figure.table {
+            page.table(&table.header, &table.rows);
+        }
+    }
+    page.finish()
+}
+
+/// Pixels between the panels of a figure's picture.
+const GAP: u32 = 4;
+
+/// The panels in a row, as one picture.
+fn side_by_side(panels: &[Panel]) -> Option<Srgb8Picture> {
+    let width = panels.iter().map(|panel| panel.picture.width + GAP).sum::<u32>().checked_sub(GAP)?;
+    let height = panels.iter().map(|panel| panel.picture.height).max()?;
+    let mut row = Srgb8Picture { pixels: vec![255; 3 * (width * height) as usize], width, height };
+    let mut x = 0;
+    for panel in panels {
+        row.paste(&panel.picture, x, 0);
+        x += panel.picture.width + GAP;
+    }
+    Some(row)
+}

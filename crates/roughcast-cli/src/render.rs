@@ -1,0 +1,352 @@
+//! `roughcast render`: a map on a shape, shaded by any of the models, on the processor or on the graphics card.
+
+use std::fs;
+use std::io::Write;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Context, Result};
+use clap::ValueHint;
+use indicatif::ProgressBar;
+use roughcast::shading::Shading;
+use roughcast_io::picture::{Plane, write_exr, write_png};
+use roughcast_io::{AtomicFile, AtomicSet};
+use roughcast_scene::render::{Method, ShadingTextures, Truth};
+use roughcast_scene::{Filter, Picture, Reconstruction, Sampler, Scene, SlopeMap};
+
+use crate::args::{SourceArgs, one_of};
+use crate::display::{exposure_of, shown};
+use crate::input::{Map, read_map};
+use crate::method::{TextureOptions, bake_for};
+use crate::output::is_same_file;
+use crate::scene_args::{SHADING, SceneArgs, ShadingArgs, Size, size};
+use crate::{UsageError, progress, usage, warn};
+
+/// Render a map on a shape: what it looks like with LEAN, with the old ways, or in truth.
+///
+/// Writes a PNG as a screen shows it, or an EXR of linear radiance with the highlights apart (specular.R ...) and
+/// the part of each pixel that is covered (A). With --frames the camera moves slowly, and the output is a folder.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  LEAN mapping, filtered as graphics hardware does it:
+    roughcast render bricks_normal.png -o bricks.png
+  The ordinary way, which shimmers, and the truth with 256 rays a pixel:
+    roughcast render bricks_normal.png -o before.png --shading blinn-phong
+    roughcast render bricks_normal.png -o truth.png --filter truth:256
+  On a model, by the graphics card:
+    roughcast render bricks_normal.png -o pot.png --scene teapot.obj --gpu")]
+pub struct Args {
+    /// A normal or height map
+    #[arg(value_hint = ValueHint::FilePath)]
+    map: PathBuf,
+
+    /// The picture to write, .png or .exr; with --frames the folder
+    #[arg(short, long, value_name = "PATH", value_hint = ValueHint::AnyPath)]
+    output: PathBuf,
+
+    /// The shading model
+    #[arg(long, value_name = "MODEL", default_value = "lean", value_parser = one_of::<Shading>(), help_heading = SHADING)]
+    shading: Shading,
+
+    /// Texture filter: nearest, trilinear, anisotropic (16 taps), ewa or summed-area; or truth:N, which shades N rays a
+    /// pixel with the model's own lobe at the finest level
+    #[arg(long, value_name = "FILTER", default_value = "anisotropic", value_parser = filter, help_heading = SHADING)]
+    filter: FilterChoice,
+
+    /// Sample this level of the textures, 0 being the finest, whatever the distance
+    #[arg(long, value_name = "L", value_parser = level, help_heading = SHADING)]
+    level: Option<f64>,
+
+    /// Sample so many levels coarser than the distance asks for
+    #[arg(long, value_name = "B", default_value_t = 0.0, value_parser = bias, allow_negative_numbers = true, help_heading = SHADING)]
+    mip_bias: f64,
+
+    #[command(flatten)]
+    shading_options: ShadingArgs,
+
+    #[command(flatten)]
+    scene: SceneArgs,
+
+    /// Width and height of the picture in pixels
+    #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = size)]
+    size: Size,
+
+    /// Brightness that is shown as white, in stops below the automatic one
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true)]
+    exposure: f32,
+
+    /// Render this many frames of a slow camera move into the output folder
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_FRAMES))]
+    frames: Option<u32>,
+
+    /// Format of the frames
+    #[arg(long, value_parser = one_of::<PictureFormat>(), default_value = "png", requires = "frames")]
+    frame_format: PictureFormat,
+
+    /// Render on the graphics card
+    #[arg(long)]
+    gpu: bool,
+
+    /// Render on the processor [default]
+    #[arg(long, conflicts_with = "gpu")]
+    cpu: bool,
+
+    #[command(flatten)]
+    source: SourceArgs,
+}
+
+/// Frames are numbered with four digits.
+const MOST_FRAMES: i64 = 10_000;
+
+/// What a pixel averages.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum FilterChoice {
+    /// One sample of filtered textures.
+    Textures(Filter),
+    /// So many samples of the finest level.
+    Truth(u32),
+}
+
+fn filter(text: &str) -> Result<FilterChoice, String> {
+    if let Some(samples) = text.strip_prefix("truth:") {
+        let samples: u32 = samples.parse().unwrap_or(0);
+        let is_square = samples.isqrt() * samples.isqrt() == samples;
+        return if is_square && (1..=roughcast_scene::render::MAX_SAMPLES).contains(&samples) {
+            Ok(FilterChoice::Truth(samples))
+        } else {
+            Err(format!(
+                "the samples of a pixel must be a square number, from 1 to {}: truth:64",
+                roughcast_scene::render::MAX_SAMPLES
+            ))
+        };
+    }
+    text.parse()
+        .map(FilterChoice::Textures)
+        .map_err(|error: roughcast::UnknownName| format!("{error}, truth:N"))
+}
+
+fn level(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(level) if level.is_finite() && level >= 0.0 => Ok(level),
+        _ => Err("it must be a number, 0 or above".to_owned()),
+    }
+}
+
+fn bias(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(bias) if bias.is_finite() => Ok(bias),
+        _ => Err("it must be a number".to_owned()),
+    }
+}
+
+/// Formats of pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum PictureFormat {
+    Png,
+    Exr,
+}
+
+impl roughcast::Named for PictureFormat {
+    fn all() -> &'static [Self] {
+        &[Self::Png, Self::Exr]
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Png => "png",
+            Self::Exr => "exr",
+        }
+    }
+}
+
+impl PictureFormat {
+    fn of(path: &Path) -> Result<Self> {
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+        match extension.as_str() {
+            "png" => Ok(Self::Png),
+            "exr" => Ok(Self::Exr),
+            _ => Err(usage(
+                path,
+                "pictures are written as .png or .exr: end the name of the output in one of them",
+            )),
+        }
+    }
+}
+
+/// Renders the picture, or the frames.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    args.check()?;
+    let map = read_map(&args.map, &args.source)?;
+    map.warnings.iter().for_each(|warning| warn(&args.map, warning));
+    let scene = args.scene.scene(&map.image, args.size, args.shading_options.material())?;
+    let painter = Painter::new(args, &map)?;
+    match args.frames {
+        None => {
+            let format = PictureFormat::of(&args.output)?;
+            let bar = progress::bar(1);
+            let picture = painter.paint(&scene, &bar)?;
+            bar.finish_and_clear();
+            let mut set = AtomicSet::new();
+            add(&mut set, &args.output, format, &picture, args.exposure_of(&picture))?;
+            set.commit()?;
+        }
+        Some(frames) => render_frames(args, &scene, &painter, frames)?,
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+impl Args {
+    /// Refuses what makes no sense before anything is read.
+    fn check(&self) -> Result<()> {
+        if self.frames.is_none() {
+            PictureFormat::of(&self.output)?;
+            if is_same_file(&self.output, &self.map) {
+                return Err(usage(
+                    &self.output,
+                    "it is the map, which would be lost: give the output another name",
+                ));
+            }
+            let output = || self.output.display().to_string();
+            AtomicFile::create(&self.output).map(drop).with_context(output)?;
+        }
+        if self.gpu
+            && !matches!(
+                self.filter,
+                FilterChoice::Textures(Filter::Nearest | Filter::Trilinear | Filter::Anisotropic)
+            )
+        {
+            let line = "--gpu filters as the hardware does: nearest, trilinear or anisotropic; leave --gpu out for the others";
+            return Err(UsageError(line.to_owned()).into());
+        }
+        Ok(())
+    }
+
+    /// One exposure for all frames, or they would flicker by themselves.
+    fn exposure_of(&self, first: &Picture) -> f32 {
+        exposure_of(first) * (-self.exposure).exp2()
+    }
+
+    fn sampler(&self, filter: Filter, map: &Map) -> Sampler {
+        Sampler { filter, level: self.level, mip_bias: self.mip_bias, wrap: map.options.wrap }
+    }
+}
+
+/// What renders, with the textures that it needs.
+enum Painter {
+    Method {
+        textures: ShadingTextures,
+        sampler: Sampler,
+        args: ShadingArgs,
+        size: Size,
+    },
+    Truth {
+        slopes: SlopeMap,
+        shading: Shading,
+        samples: u32,
+        map_wrap: roughcast::Wrap,
+        args: ShadingArgs,
+        size: Size,
+    },
+}
+
+impl Painter {
+    fn new(args: &Args, map: &Map) -> Result<Self> {
+        let (shading_args, size) = (args.shading_options.clone(), args.size);
+        let path = || args.map.display().to_string();
+        match args.filter {
+            FilterChoice::Truth(samples) => {
+                let slopes = SlopeMap::of(&map.image, &map.options).with_context(path)?;
+                let map_wrap = map.options.wrap;
+                Ok(Self::Truth { slopes, shading: args.shading, samples, map_wrap, args: shading_args, size })
+            }
+            FilterChoice::Textures(filter) => {
+                let options = TextureOptions {
+                    bits: shading_args.bits,
+                    lobe: shading_args.lobe,
+                    specular_power: shading_args.specular_power,
+                };
+                let arrays = bake_for(args.shading, &map.image, &map.options, options).with_context(path)?;
+                let textures = ShadingTextures::new(args.shading, &arrays)?;
+                Ok(Self::Method { textures, sampler: args.sampler(filter, map), args: shading_args, size })
+            }
+        }
+    }
+
+    fn paint(&self, scene: &Scene, bar: &ProgressBar) -> Result<Picture> {
+        bar.reset();
+        let watch = |done: usize, rows: usize| {
+            bar.set_length(rows as u64);
+            bar.set_position(done as u64);
+            ControlFlow::Continue(())
+        };
+        Ok(match self {
+            Self::Method { textures, sampler, args, size } => {
+                let method = Method { textures, sampler: *sampler, options: args.lobe_options() };
+                method.render(scene, (size.width, size.height), &watch)?
+            }
+            Self::Truth { slopes, shading, samples, map_wrap, args, size } => {
+                let truth = Truth {
+                    shading: *shading,
+                    slopes,
+                    reconstruction: Reconstruction::Linear,
+                    wrap: *map_wrap,
+                    options: args.lobe_options(),
+                    samples: *samples,
+                };
+                truth.render(scene, (size.width, size.height), &watch)?
+            }
+        })
+    }
+}
+
+/// All frames, or none.
+fn render_frames(args: &Args, scene: &Scene, painter: &Painter, frames: u32) -> Result<()> {
+    let folder = || args.output.display().to_string();
+    fs::create_dir_all(&args.output).with_context(folder)?;
+    let bar = progress::bar(1);
+    let mut set = AtomicSet::new();
+    let mut exposure = None;
+    for (frame, scene) in roughcast_scene::slow_move(scene, frames).into_iter().enumerate() {
+        bar.set_message(format!("frame {} of {frames}", frame + 1));
+        let picture = painter.paint(&scene, &bar)?;
+        let exposure = *exposure.get_or_insert_with(|| args.exposure_of(&picture));
+        let path = args.output.join(format!("{frame:04}.{}", roughcast::Named::name(args.frame_format)));
+        add(&mut set, &path, args.frame_format, &picture, exposure)?;
+    }
+    bar.finish_and_clear();
+    set.commit().with_context(folder)
+}
+
+/// Writes a picture to a file that appears with the set.
+fn add(
+    set: &mut AtomicSet,
+    path: &Path,
+    format: PictureFormat,
+    picture: &Picture,
+    exposure: f32,
+) -> Result<()> {
+    let named = || path.display().to_string();
+    let mut file = AtomicFile::create(path).with_context(named)?;
+    match format {
+        PictureFormat::Png => write_png(&shown(picture, exposure), &mut file),
+        PictureFormat::Exr => write_exr((picture.width, picture.height), planes(picture), &mut file),
+    }
+    .with_context(named)?;
+    file.flush().with_context(named)?;
+    set.push(file).with_context(named)
+}
+
+/// The channels of a picture in EXR. Radiance is premultiplied by coverage, as EXR has it, where the background is black.
+fn planes(picture: &Picture) -> Vec<Plane> {
+    let channel = |pixels: &[[f32; 3]], i: usize| pixels.iter().map(|pixel| pixel[i]).collect();
+    let mut planes = vec![Plane { name: "A", values: picture.coverage.clone() }];
+    for (i, name) in ["R", "G", "B"].into_iter().enumerate() {
+        planes.push(Plane { name, values: channel(&picture.radiance, i) });
+    }
+    for (i, name) in ["specular.R", "specular.G", "specular.B"].into_iter().enumerate() {
+        planes.push(Plane { name, values: channel(&picture.specular, i) });
+    }
+    planes
+}

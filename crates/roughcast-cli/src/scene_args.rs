@@ -1,0 +1,315 @@
+//! Arguments that say what a picture shows and how it is shaded, shared by the subcommands that render.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use anyhow::{Context, Result};
+use clap::Args;
+use glam::DVec3;
+use roughcast::shading::{BaseLobe, Form, LobeOptions, Material, Repair};
+use roughcast::{Bits, Image, Lobe};
+use roughcast_scene::render::MAX_PIXELS;
+use roughcast_scene::{Camera, Light, Plane, Scene, Shape, Sphere, Torus, View, default_light, load_mesh};
+
+use crate::args::{one_of, positive};
+use crate::{UsageError, usage};
+
+/// Headings under which the help lists these options.
+const SCENE: &str = "Scene";
+pub const SHADING: &str = "Shading";
+
+/// What the map lies on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SceneChoice {
+    Plane,
+    Sphere,
+    Torus,
+    Mesh(PathBuf),
+}
+
+impl SceneChoice {
+    fn parse(text: &str) -> Result<Self, std::convert::Infallible> {
+        Ok(match text {
+            "plane" => Self::Plane,
+            "sphere" => Self::Sphere,
+            "torus" => Self::Torus,
+            path => Self::Mesh(path.into()),
+        })
+    }
+
+    /// A short name for reports.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Plane => "plane".to_owned(),
+            Self::Sphere => "sphere".to_owned(),
+            Self::Torus => "torus".to_owned(),
+            Self::Mesh(path) => {
+                path.file_stem().map_or_else(|| "mesh".to_owned(), |name| name.to_string_lossy().into_owned())
+            }
+        }
+    }
+
+    /// The shape; a mesh is read from its file.
+    pub fn shape(&self) -> Result<Shape> {
+        Ok(match self {
+            Self::Plane => Shape::Plane(Plane::default()),
+            Self::Sphere => Shape::Sphere(Sphere),
+            Self::Torus => Shape::Torus(Torus::default()),
+            Self::Mesh(path) => {
+                let mesh = load_mesh(path).with_context(|| path.display().to_string())?;
+                if !mesh.has_texture_coordinates() {
+                    return Err(usage(
+                        path,
+                        "the mesh has no texture coordinates, which a map needs to lie on it: unwrap it in a modelling program \
+                         and export it with texture coordinates",
+                    ));
+                }
+                Shape::Mesh(Arc::new(mesh))
+            }
+        })
+    }
+}
+
+/// Where the camera stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CameraChoice {
+    View(View),
+    Eye(DVec3),
+}
+
+fn camera(text: &str) -> Result<CameraChoice, String> {
+    if let Ok(view) = text.parse::<View>() {
+        return Ok(CameraChoice::View(view));
+    }
+    point(text).map(CameraChoice::Eye).map_err(|_| {
+        format!(
+            "it must be one of {}, or the position of the eye as X,Y,Z",
+            View::ALL.iter().map(|view| view.name()).collect::<Vec<_>>().join(", ")
+        )
+    })
+}
+
+fn numbers(text: &str) -> Option<Vec<f64>> {
+    let parsed: Option<Vec<f64>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+    parsed.filter(|numbers| numbers.iter().all(|number| number.is_finite()))
+}
+
+fn point(text: &str) -> Result<DVec3, String> {
+    match numbers(text).as_deref() {
+        Some([x, y, z]) => Ok(DVec3::new(*x, *y, *z)),
+        _ => Err("it must be three numbers, X,Y,Z".to_owned()),
+    }
+}
+
+/// A light of this irradiance on a white surface that faces it gives a radiance of one.
+const WHITE: f32 = std::f32::consts::PI;
+
+fn light(text: &str) -> Result<Light, String> {
+    let (is_point, rest) = match text.strip_prefix("point:") {
+        Some(rest) => (true, rest),
+        None => (false, text),
+    };
+    let (place, strength) = match numbers(rest).as_deref() {
+        Some([x, y, z]) => (DVec3::new(*x, *y, *z), [WHITE; 3]),
+        Some([x, y, z, r, g, b]) if r.min(*g).min(*b) >= 0.0 => {
+            (DVec3::new(*x, *y, *z), [*r as f32, *g as f32, *b as f32])
+        }
+        _ => {
+            return Err(
+                "it must be X,Y,Z or X,Y,Z,R,G,B, with 'point:' before it for a point light".to_owned()
+            );
+        }
+    };
+    if is_point {
+        return Ok(Light::Point { position: place, intensity: strength });
+    }
+    let towards = place.try_normalize().ok_or("the direction towards the light must not be zero")?;
+    Ok(Light::Directional { towards, irradiance: strength })
+}
+
+/// The size of a picture in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size {
+    pub width: u32,
+    pub height: u32,
+}
+
+pub fn size(text: &str) -> Result<Size, String> {
+    let wanted = || "it must be WIDTHxHEIGHT, such as 640x480".to_owned();
+    let (width, height) = text.split_once(['x', 'X']).ok_or_else(wanted)?;
+    let size =
+        Size { width: width.parse().map_err(|_| wanted())?, height: height.parse().map_err(|_| wanted())? };
+    match u64::from(size.width) * u64::from(size.height) {
+        0 => Err(format!("a picture of {text} has no pixels: both numbers must be above zero")),
+        pixels if pixels <= MAX_PIXELS => Ok(size),
+        _ => Err(format!("a picture of {text} is too large: at most {MAX_PIXELS} pixels")),
+    }
+}
+
+/// What a picture shows.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = SCENE)]
+pub struct SceneArgs {
+    /// What the map lies on: plane, sphere, torus, or a mesh file (.obj, .gltf, .glb) with texture coordinates
+    #[arg(long, value_name = "SCENE", default_value = "plane", value_parser = SceneChoice::parse)]
+    pub scene: SceneChoice,
+
+    /// Where the camera stands: near, mid, far or grazing, or the position of the eye as X,Y,Z (y is up)
+    #[arg(long, value_name = "VIEW|X,Y,Z", default_value = "mid", value_parser = camera, allow_hyphen_values = true)]
+    pub camera: CameraChoice,
+
+    /// The point that the camera looks at, with --camera X,Y,Z [default: the middle of the scene]
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    pub look_at: Option<DVec3>,
+
+    /// Vertical angle of view in degrees, with --camera X,Y,Z
+    #[arg(long, value_name = "DEGREES", default_value_t = 40.0, value_parser = angle)]
+    pub fov: f64,
+
+    /// A light: the direction towards it as X,Y,Z, or point:X,Y,Z; behind that its colour as ,R,G,B (irradiance; pi is white).
+    /// May be given more than once [default: one whose highlight is in the picture]
+    #[arg(long = "light", value_name = "LIGHT", value_parser = light, allow_hyphen_values = true)]
+    pub lights: Vec<Light>,
+
+    /// How often the map repeats over the scene's texture coordinates [default: chosen for the scene]
+    #[arg(long, value_name = "N", value_parser = positive)]
+    pub repeat: Option<f32>,
+}
+
+impl SceneArgs {
+    /// The scene for a map and a picture of this size.
+    pub fn scene(&self, map: &Image, size: Size, material: Material) -> Result<Scene> {
+        let shape = Arc::new(self.scene.shape()?);
+        let (texels, size) = ((map.width(), map.height()), (size.width, size.height));
+        let mut scene = match self.camera {
+            CameraChoice::View(view) => {
+                if self.look_at.is_some() {
+                    let line =
+                        "--look-at goes with a camera at X,Y,Z; a named view looks at the scene by itself";
+                    return Err(UsageError(line.to_owned()).into());
+                }
+                view.scene(shape, texels, size, material)
+            }
+            CameraChoice::Eye(eye) => {
+                let target = self.look_at.unwrap_or_else(|| shape.bounds().centre);
+                let camera = Camera::new(eye, target, DVec3::Y, self.fov.to_radians())
+                    .map_err(|error| UsageError(format!("--camera: {error}")))?;
+                let scene = View::Mid.scene(shape, texels, size, material);
+                let lights = vec![default_light(&scene.shape, &camera, size, View::Mid)];
+                Scene { camera, lights, ..scene }
+            }
+        };
+        if !self.lights.is_empty() {
+            scene.lights.clone_from(&self.lights);
+        }
+        if let Some(repeats) = self.repeat {
+            scene.repeats = f64::from(repeats);
+        }
+        Ok(scene)
+    }
+}
+
+fn angle(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(angle) if angle > 0.0 && angle < 180.0 => Ok(angle),
+        _ => Err("it must be an angle above 0 and below 180 degrees".to_owned()),
+    }
+}
+
+fn scene_colour(text: &str) -> Result<[f32; 3], String> {
+    match numbers(text).as_deref() {
+        Some([all]) if *all >= 0.0 => Ok([*all as f32; 3]),
+        Some([r, g, b]) if r.min(*g).min(*b) >= 0.0 => Ok([*r as f32, *g as f32, *b as f32]),
+        _ => Err("it must be one number or R,G,B, none below zero".to_owned()),
+    }
+}
+
+/// How surfaces are shaded, whatever the model.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = SHADING)]
+pub struct ShadingArgs {
+    /// Blinn-Phong exponent of the surface itself, before any bumps
+    #[arg(long, value_name = "S", default_value_t = 256.0, value_parser = positive)]
+    pub specular_power: f32,
+
+    /// The lobes' form: as the LEAN text has them, or normalised as microfacet distributions
+    #[arg(long, default_value = "paper", value_parser = one_of::<Form>())]
+    pub form: Form,
+
+    /// The base roughness in the plane of the surface: round, as LEAN has it, or as the facet's own lobe looks there
+    #[arg(long = "base-lobe", value_name = "BASE", default_value = "plane", value_parser = one_of::<BaseLobe>())]
+    pub base: BaseLobe,
+
+    /// What becomes of covariances that rounding has made impossible: mended, or the texts' own rules
+    #[arg(long, default_value = "clamp", value_parser = one_of::<Repair>())]
+    pub repair: Repair,
+
+    /// One roughness for ggx, or two and a direction
+    #[arg(long, default_value = "isotropic", value_parser = one_of::<Lobe>())]
+    pub lobe: Lobe,
+
+    /// Bits of the textures that the model samples
+    #[arg(long, default_value = "16", value_parser = one_of::<Bits>())]
+    pub bits: Bits,
+
+    /// Diffuse colour, linear, as one number or R,G,B
+    #[arg(long, value_name = "COLOUR", default_value = "0.1", value_parser = scene_colour)]
+    pub albedo: [f32; 3],
+
+    /// Ambient light, as one number or R,G,B
+    #[arg(long, value_name = "COLOUR", default_value = "0.2", value_parser = scene_colour)]
+    pub ambient: [f32; 3],
+
+    /// Reflectance at normal incidence, as one number or R,G,B; 0.04 is plastic
+    #[arg(long, value_name = "COLOUR", default_value = "0.04", value_parser = scene_colour)]
+    pub specular: [f32; 3],
+}
+
+impl ShadingArgs {
+    /// The library's options.
+    pub fn lobe_options(&self) -> LobeOptions {
+        LobeOptions {
+            specular_power: self.specular_power,
+            form: self.form,
+            base: self.base,
+            repair: self.repair,
+            ..LobeOptions::default()
+        }
+    }
+
+    /// The material.
+    pub fn material(&self) -> Material {
+        Material { albedo: self.albedo, ambient: self.ambient, specular: self.specular }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_without_pixels_and_beyond_memory_are_refused() {
+        assert_eq!(size("640x480"), Ok(Size { width: 640, height: 480 }));
+        for wrong in ["0x0", "0x5", "640", "x", "-1x5", "99999999x99999999", "1e3x5"] {
+            assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn lights_are_directions_or_points() {
+        let Ok(Light::Directional { towards, irradiance }) = light("0,2,0") else { panic!("a direction") };
+        assert_eq!((towards, irradiance), (DVec3::Y, [WHITE; 3]));
+        let Ok(Light::Point { position, intensity }) = light("point:1,2,-3,4,5,6") else { panic!("a point") };
+        assert_eq!((position, intensity), (DVec3::new(1.0, 2.0, -3.0), [4.0, 5.0, 6.0]));
+        for wrong in ["0,0,0", "1,2", "point:", "1,2,3,4", "1,2,3,-1,0,0", "nan,1,2", "inf,0,0"] {
+            assert!(light(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn cameras_are_views_or_points() {
+        assert!(matches!(camera("grazing"), Ok(CameraChoice::View(View::Grazing))));
+        assert_eq!(camera("1,2,-3"), Ok(CameraChoice::Eye(DVec3::new(1.0, 2.0, -3.0))));
+        assert!(camera("elsewhere").expect_err("no view").contains("near"));
+    }
+}

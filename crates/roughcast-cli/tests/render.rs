@@ -1,0 +1,151 @@
+//! `render`: pictures of maps, and what is said where there can be none.
+
+mod common;
+
+use std::path::{Path, PathBuf};
+
+use common::{Outcome, data, names, run, scratch, text};
+use roughcast::Samples;
+use roughcast_io::{Limits, read_image_file};
+
+/// Small enough for a test, large enough for a highlight.
+const SIZE: &str = "96x64";
+
+/// Renders a real map, with further arguments.
+fn render(output: &Path, further: &[&str]) -> Outcome {
+    render_map(&map(), output, further)
+}
+
+fn render_map(map: &Path, output: &Path, further: &[&str]) -> Outcome {
+    run(["render", text(map), "-o", text(output), "--size", SIZE].iter().chain(further))
+}
+
+/// A real normal map.
+fn map() -> PathBuf {
+    let folder = data("materials/rock020");
+    let mut files = names(&folder);
+    files.retain(|name| name.to_lowercase().contains("nor"));
+    folder.join(files.first().expect("rock020 has a normal map"))
+}
+
+/// The pixels of a picture in EXR, red, green and blue.
+fn radiance(path: &Path) -> Vec<f32> {
+    let decoded = read_image_file(path, &Limits::default()).expect("the picture reads back");
+    let Samples::F32(samples) = decoded.image.samples() else { panic!("not single floats") };
+    samples.clone()
+}
+
+#[test]
+fn every_model_makes_a_picture_with_a_highlight() {
+    let folder = scratch();
+    let models =
+        ["phong", "blinn-phong", "beckmann", "off-centre", "lean", "clean", "toksvig", "variance", "ggx"];
+    let mut pictures: Vec<Vec<f32>> = Vec::new();
+    for model in models {
+        let output = folder.path().join(format!("{model}.exr"));
+        render(&output, &["--shading", model]).expect_success();
+        let pixels = radiance(&output);
+        assert!(pixels.iter().all(|value| value.is_finite() && *value >= 0.0), "{model}");
+        let brightest = pixels.iter().fold(0.0_f32, |a, b| a.max(*b));
+        let mean = pixels.iter().sum::<f32>() / pixels.len() as f32;
+        assert!(brightest > 2.0 * mean, "{model}: no highlight, {brightest} over {mean}");
+        assert!(pictures.iter().all(|other| *other != pixels), "{model} is the same as another");
+        pictures.push(pixels);
+    }
+}
+
+#[test]
+fn every_scene_and_filter_makes_a_picture() {
+    let folder = scratch();
+    let teapot = data("models/meshes/teapot_keijiro.obj");
+    let mut done = 0;
+    for scene in ["plane", "sphere", "torus", text(&teapot)] {
+        for filter in ["nearest", "trilinear", "anisotropic", "ewa", "summed-area", "truth:16"] {
+            let output = folder.path().join(format!("{done}.png"));
+            render(&output, &["--scene", scene, "--filter", filter]).expect_success();
+            let decoded = read_image_file(&output, &Limits::default()).expect("a picture");
+            assert_eq!((decoded.image.width(), decoded.image.height()), (96, 64));
+            let Samples::U8(samples) = decoded.image.samples() else { panic!("8 bits") };
+            assert!(samples.iter().any(|sample| *sample > 128), "{scene}, {filter}: a dark picture");
+            done += 1;
+        }
+    }
+    assert_eq!(done, 24);
+}
+
+#[test]
+fn frames_of_a_camera_move_go_to_a_folder_and_differ() {
+    let folder = scratch();
+    let frames = folder.path().join("frames");
+    render(&frames, &["--frames", "3"]).expect_success();
+    assert_eq!(names(&frames), ["0000.png", "0001.png", "0002.png"]);
+    let read = |name: &str| std::fs::read(frames.join(name)).expect("a frame");
+    assert!(read("0000.png") != read("0001.png") && read("0001.png") != read("0002.png"));
+}
+
+#[test]
+fn the_same_command_makes_the_same_bytes() {
+    let folder = scratch();
+    let [a, b] = ["a.exr", "b.exr"].map(|name| folder.path().join(name));
+    for output in [&a, &b] {
+        render(output, &["--filter", "truth:16", "--scene", "sphere"]).expect_success();
+    }
+    assert!(std::fs::read(a).expect("a picture") == std::fs::read(b).expect("a picture"));
+}
+
+#[test]
+fn what_cannot_be_rendered_is_refused_in_one_line_and_leaves_nothing() {
+    let folder = scratch();
+    let output = folder.path().join("picture.png");
+    let missing = folder.path().join("missing.obj");
+    let bunny = data("models/meshes/bunny_decimated_bgfx.obj");
+    let cut = folder.path().join("cut.glb");
+    let whole = std::fs::read(data("models/BoomBox/boombox.glb")).expect("a model");
+    std::fs::write(&cut, &whole[..whole.len() / 2]).expect("a file");
+
+    render(&output, &["--scene", text(&missing)]).expect_refusal(1, &missing);
+    let line = render(&output, &["--scene", text(&bunny)]).expect_refusal(2, &bunny);
+    assert!(line.contains("texture coordinates"), "{line}");
+    render(&output, &["--scene", text(&cut)]).expect_refusal(1, &cut);
+    let colour = data("models/BoomBox/BoomBox_emissive.png");
+    render_map(&colour, &output, &[]).expect_refusal(1, &colour);
+    let mesh = data("models/meshes/teapot_keijiro.obj");
+    render_map(&mesh, &output, &[]).expect_refusal(1, &mesh);
+    std::fs::remove_file(&cut).expect("it is there");
+    assert!(names(folder.path()).is_empty(), "{:?}", names(folder.path()));
+}
+
+#[test]
+fn command_lines_that_make_no_sense_are_refused() {
+    let folder = scratch();
+    let output = folder.path().join("picture.png");
+    let refused = |arguments: &[&str], words: &str| render(&output, arguments).expect_usage_error(words);
+    refused(&["--size", "0x0"], "no pixels");
+    refused(&["--size", "99999999x99999999"], "too large");
+    refused(&["--filter", "truth:5"], "square");
+    refused(&["--filter", "truth:0"], "square");
+    refused(&["--filter", "lanczos"], "trilinear");
+    refused(&["--shading", "lambert"], "blinn-phong");
+    refused(&["--camera", "here"], "grazing");
+    refused(&["--light", "0,0,0"], "zero");
+    refused(&["--specular-power", "0"], "above zero");
+    refused(&["--frames", "0"], "--frames");
+    refused(&["--gpu", "--filter", "ewa"], "--gpu");
+    refused(&["--gpu", "--filter", "truth:64"], "--gpu");
+    refused(&["--gpu", "--cpu"], "--cpu");
+    refused(&["--camera", "0,0,0", "--look-at", "0,0,0"], "camera");
+    let picture = folder.path().join("picture.jpg");
+    run(["render", text(&map()), "-o", text(&picture)]).expect_refusal(2, &picture);
+    assert!(names(folder.path()).is_empty());
+}
+
+#[test]
+fn the_map_itself_is_not_overwritten() {
+    let folder = scratch();
+    let copy = folder.path().join("map.png");
+    let rock = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/rock_normal.png");
+    std::fs::copy(rock, &copy).expect("a copy");
+    let before = std::fs::read(&copy).expect("a map");
+    render_map(&copy, &copy, &[]).expect_refusal(2, &copy);
+    assert!(std::fs::read(&copy).expect("a map") == before);
+}

@@ -1,0 +1,22 @@
+//! Pipelines by their text: levels that are made in the same way share one.
+
+/// Pipelines made so far.
+pub(super) struct Pipelines<P> {
+    made: Vec<(String, P)>,
+}
+
+impl<P: Clone> Pipelines<P> {
+    pub fn new() -> Self {
+        Self { made: Vec::new() }
+    }
+
+    /// The pipeline of this text, made where there is none. Texts say all that makes pipelines differ.
+    pub fn of(&mut self, source: String, make: impl FnOnce(&str) -> P) -> P {
+        if let Some((_, pipeline)) = self.made.iter().find(|(known, _)| *known == source) {
+            return pipeline.clone();
+        }
+        let pipeline = make(&source);
+        self.made.push((source, pipeline.clone()));
+        pipeline
+    }
+}

@@ -1,0 +1,64 @@
+//! The comparator of baked textures fails when it should.
+
+mod common;
+
+use common::compare::difference;
+use common::maps::normals;
+use half::f16;
+use roughcast::texture::TextureArray;
+use roughcast::{BakeOptions, Bits, SampleType, Samples, SourceOptions};
+
+fn baked(bits: Bits) -> TextureArray {
+    let options = BakeOptions { bits, ..Default::default() };
+    let image = normals(16, 8, 3, SampleType::U8);
+    roughcast::bake(&image, &SourceOptions::default(), None, &options).expect("baked").arrays.remove(0)
+}
+
+/// Moves one channel of one texel of the third level of the second texture by so many steps.
+fn moved(array: &TextureArray, steps: u16) -> TextureArray {
+    let mut moved = array.clone();
+    match moved.layers[1].levels[2].samples_mut() {
+        Samples::U8(v) => v[5] = v[5].wrapping_add(steps as u8),
+        Samples::U16(v) => v[5] = v[5].wrapping_add(steps),
+        Samples::F16(v) => v[5] = f16::from_bits(v[5].to_bits().wrapping_add(steps)),
+        Samples::F32(_) => unreachable!("the GPU bakes no single floats"),
+    }
+    moved
+}
+
+#[test]
+fn a_texel_that_is_off_is_found_and_measured() {
+    for bits in [Bits::Eight, Bits::Sixteen, Bits::Half] {
+        let array = baked(bits);
+        assert_eq!(difference(&array, &array).expect("one shape").steps, 0);
+        for steps in [1, 2, 7] {
+            let found = difference(&array, &moved(&array, steps)).expect("one shape");
+            assert_eq!((found.steps, found.texels_that_differ), (u32::from(steps), 1), "{bits}");
+            assert!(found.place.starts_with("lean2 level 2 (1, 0)"), "{}", found.place);
+        }
+    }
+}
+
+#[test]
+fn halves_are_counted_across_zero_and_nan_is_no_neighbour() {
+    let with = |value: f16| {
+        let mut array = baked(Bits::Half);
+        let Samples::F16(v) = array.layers[0].levels[0].samples_mut() else { unreachable!("asked for") };
+        v[0] = value;
+        array
+    };
+    let steps = |a, b| difference(&with(a), &with(b)).expect("one shape").steps;
+    let smallest = f16::from_bits(1);
+    assert_eq!(steps(f16::ZERO, f16::NEG_ZERO), 0);
+    assert_eq!(steps(smallest, -smallest), 2);
+    assert!(steps(f16::NAN, f16::ONE) > 1000);
+}
+
+#[test]
+fn other_shapes_are_no_match() {
+    let array = baked(Bits::Half);
+    let mut short = array.clone();
+    short.layers.pop();
+    assert!(difference(&array, &short).is_err());
+    assert!(difference(&array, &baked(Bits::Sixteen)).is_err());
+}

@@ -1,0 +1,241 @@
+//! The library's rules in WGSL against their Rust twins, over thousands of inputs.
+
+mod common;
+
+use common::gpu;
+use common::maps::Random;
+use half::f16;
+use pollster::block_on;
+use roughcast::{Normal, Slope, SourceCounts};
+use roughcast_gpu::{Gpu, read_back};
+use wgpu::util::DeviceExt;
+
+const INPUTS: usize = 1 << 14;
+
+/// A quotient or a root of the GPU after one exact correction: the nearest float, save where two are about equally near.
+const NEAREST_OR_NEXT: u32 = 1;
+
+/// A mended slope: the quotient by the larger component, two squares, a root, a quotient and a product, in f32 where the
+/// CPU has f64.
+const MENDED: f32 = 6.0 * f32::EPSILON;
+
+/// The inverse of a product of two, read back through another inverse.
+const STORES: f32 = 4.0 * f32::EPSILON;
+
+/// Runs `body`, WGSL that makes `output: vec4f` of `input: vec4f`, over all inputs.
+fn run(gpu: &Gpu, body: &str, inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
+    let source = format!(
+        "{}\n@group(0) @binding(0) var<storage, read> inputs: array<vec4f>;\n\
+         @group(0) @binding(1) var<storage, read_write> outputs: array<vec4f>;\n\
+         @group(0) @binding(2) var<storage, read> zero: u32;\n\
+         @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {{\n\
+         opaque_zero = zero;\nlet input = inputs[id.x];\nvar output = vec4f(0.0);\n{body}\noutputs[id.x] = output;\n}}\n",
+        roughcast::wgsl::ALL.join("\n")
+    );
+    let device = &gpu.device;
+    let buffer = |contents: &[u8]| {
+        device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: None,
+            contents,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+        })
+    };
+    let bytes: &[u8] = bytemuck::cast_slice(inputs);
+    let (input, output, zero) = (buffer(bytes), buffer(&vec![0; bytes.len()]), buffer(&[0; 4]));
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: None,
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: None,
+        layout: None,
+        module: &module,
+        entry_point: None,
+        compilation_options: Default::default(),
+        cache: None,
+    });
+    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout: &pipeline.get_bind_group_layout(0),
+        entries: &[
+            wgpu::BindGroupEntry { binding: 0, resource: input.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 1, resource: output.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 2, resource: zero.as_entire_binding() },
+        ],
+    });
+    let mut encoder = device.create_command_encoder(&Default::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.dispatch_workgroups((inputs.len() / 64) as u32, 1, 1);
+    }
+    gpu.queue.submit([encoder.finish()]);
+    let bytes = block_on(read_back::read_buffer(gpu, &output)).expect("read back");
+    bytemuck::pod_collect_to_vec(&bytes)
+}
+
+/// Numbers of both signs over many powers of two.
+fn inputs(seed: u64, smallest_exponent: i32, largest_exponent: i32) -> Vec<[f32; 4]> {
+    let mut random = Random(seed);
+    let mut number = || {
+        let exponent =
+            smallest_exponent as f32 + random.next() * (largest_exponent - smallest_exponent) as f32;
+        (random.next() - 0.5) * 2.0 * exponent.floor().exp2()
+    };
+    (0..INPUTS).map(|_| std::array::from_fn(|_| number())).collect()
+}
+
+/// Floats between two of one sign.
+fn floats_apart(a: f32, b: f32) -> u32 {
+    if a == b { 0 } else { a.to_bits().abs_diff(b.to_bits()) }
+}
+
+#[test]
+fn quotients_and_roots_are_rounded_as_on_the_cpu() {
+    let inputs = inputs(1, -20, 20);
+    let body =
+        "output = vec4f(quotient(input.x, input.y), square_root(abs(input.z)), quotient(1.0, input.w), 0.0);";
+    let outputs = run(&gpu(), body, &inputs);
+    let mut differ = 0;
+    for (input, output) in inputs.iter().zip(&outputs) {
+        let expected = [input[0] / input[1], input[2].abs().sqrt(), 1.0 / input[3]];
+        for (got, wanted) in output.iter().zip(expected) {
+            let apart = floats_apart(*got, wanted);
+            assert!(apart <= NEAREST_OR_NEXT, "{input:?}: {got:e}, not {wanted:e}");
+            differ += usize::from(apart > 0);
+        }
+    }
+    assert!(differ * 1000 < INPUTS, "{differ} are not the nearest");
+}
+
+#[test]
+fn codes_divided_by_their_number_are_the_cpus() {
+    let inputs: Vec<[f32; 4]> =
+        (0..1 << 16).map(|code| [code as f32, (code % 256) as f32, 0.0, 0.0]).collect();
+    let body = "output = vec4f(component_from_code(input.x, 65535.0), component_from_code(input.y, 255.0),\
+                quotient(input.x, 65535.0), quotient(input.y, 255.0));";
+    for (input, output) in inputs.iter().zip(run(&gpu(), body, &inputs)) {
+        let [wide, narrow, ..] = *input;
+        let expected = [
+            (2.0 * wide - 65535.0) / 65535.0,
+            (2.0 * narrow - 255.0) / 255.0,
+            wide / 65535.0,
+            narrow / 255.0,
+        ];
+        assert_eq!(output, expected);
+    }
+}
+
+#[test]
+fn slopes_are_mended_as_on_the_cpu() {
+    const MAX_SLOPE: f32 = 3.0;
+    let mut inputs = inputs(2, -8, 8);
+    let special = [0.0, -1.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, 1e-30];
+    for (i, input) in inputs.iter_mut().enumerate().take(special.len().pow(3)) {
+        *input = [special[i % 7], special[i / 7 % 7], special[i / 49], 0.0];
+    }
+    let body =
+        "let mended = mended_slope(input.xyz, 3.0);\noutput = vec4f(mended.slope, f32(mended.fault), 0.0);";
+    for (input, output) in inputs.iter().zip(run(&gpu(), body, &inputs)) {
+        let mut counts = SourceCounts::default();
+        let wanted = roughcast::mended_slope(input[0], input[1], input[2], MAX_SLOPE, &mut counts);
+        let length = wanted.x.hypot(wanted.y);
+        // A slope as long as the largest may fall on either side of it.
+        let on_the_edge = (length - MAX_SLOPE).abs() <= MENDED * MAX_SLOPE;
+        let fault = match (counts.clamped, counts.behind, counts.invalid, counts.non_finite) {
+            (1, ..) => 1.0,
+            (_, 1, ..) => 2.0,
+            (_, _, 1, _) => 3.0,
+            (_, _, _, 1) => 4.0,
+            _ => 0.0,
+        };
+        assert!(output[2] == fault || (on_the_edge && fault < 2.0), "{input:?}: {output:?}, not {fault}");
+        for (got, wanted) in output.iter().zip([wanted.x, wanted.y]) {
+            assert!((got - wanted).abs() <= MENDED * wanted.abs(), "{input:?}: {output:?}, not {wanted:?}");
+        }
+    }
+}
+
+#[test]
+fn unit_normals_are_the_cpus() {
+    let inputs = inputs(3, -8, 6);
+    for (input, output) in
+        inputs.iter().zip(run(&gpu(), "output = vec4f(normal_from_slope(input.xy), 0.0);", &inputs))
+    {
+        let Normal { x, y, z } = roughcast::normal_from_slope(Slope { x: input[0], y: input[1] });
+        for (got, wanted) in output.iter().zip([x, y, z]) {
+            // The product with z has one more rounding of z's neighbour.
+            assert!(floats_apart(*got, wanted) <= 2 * NEAREST_OR_NEXT, "{input:?}: {output:?}, not {wanted}");
+        }
+    }
+}
+
+#[test]
+fn texels_are_rounded_as_the_cpu_rounds() {
+    let mut inputs = inputs(4, -30, 15);
+    // Numbers in the middle between two halves, and between two codes.
+    inputs.extend((0..256_u16).map(|i| {
+        let half = f16::from_bits(i * 97);
+        let middle = 0.5 * (half.to_f32() + f16::from_bits(i * 97 + 1).to_f32());
+        [middle, -middle, (f32::from(i) + 0.5) / 255.0, f32::from(i) / 255.0]
+    }));
+    let gpu = gpu();
+    for (input, output) in inputs.iter().zip(run(&gpu, "output = half_nearest(input);", &inputs)) {
+        assert_eq!(output, input.map(|v| f16::from_f32(v).to_f32()), "{input:?}");
+    }
+    for steps in [255.0_f32, 65535.0] {
+        let body = format!("output = round(unorm_nearest(input, {steps:.1}) * {steps:.1});");
+        for (input, output) in inputs.iter().zip(run(&gpu, &body, &inputs)) {
+            assert_eq!(output, input.map(|v| (v.clamp(0.0, 1.0) * steps).round_ties_even()), "{input:?}");
+        }
+    }
+}
+
+#[test]
+fn weights_are_coverage() {
+    let inputs: Vec<[f32; 4]> = (0..INPUTS)
+        .map(|i| {
+            let size = 1 + i % 4096;
+            let j = (i * 31) % (size / 2).max(1);
+            [j as f32, size as f32, 0.0, 0.0]
+        })
+        .collect();
+    let body = "output = vec4f(halving_weights(u32(input.x), u32(input.y)), 0.0);";
+    for (input, output) in inputs.iter().zip(run(&gpu(), body, &inputs)) {
+        let (j, from) = (f64::from(input[0]), f64::from(input[1]));
+        let ratio = from / (from / 2.0).floor().max(1.0);
+        // Where the coarser texel covers the finer one, as a part of the coarser.
+        let covered = |i: f64| (((j + 1.0) * ratio).min(i + 1.0) - (j * ratio).max(i)).max(0.0) / ratio;
+        for (k, weight) in output.iter().take(3).enumerate() {
+            let wanted = covered(2.0 * j + k as f64);
+            assert!((f64::from(*weight) - wanted).abs() <= f64::from(f32::EPSILON), "{input:?}: {output:?}");
+        }
+    }
+}
+
+#[test]
+fn scales_are_the_cpus() {
+    let inputs = inputs(5, -14, 8);
+    let body = "let scale = smallest_scale(abs(input.x), abs(input.y));\nlet stores = unsigned_stores(scale);\n\
+                output = vec4f(scale, stores.slope.x, stores.second.x, stores.trace.x);";
+    for (input, output) in inputs.iter().zip(run(&gpu(), body, &inputs)) {
+        let scale = (input[0] * input[0] + input[1].abs()).sqrt().max(1.0 / 1024.0);
+        let expected = [scale, 0.5 / scale, 1.0 / (scale * scale), 0.5 / (scale * scale)];
+        for (got, wanted) in output.iter().zip(expected) {
+            assert!((got / wanted - 1.0).abs() <= STORES, "{input:?}: {output:?}, not {expected:?}");
+        }
+    }
+}
+
+#[test]
+fn a_wrong_twin_is_caught() {
+    let inputs: Vec<[f32; 4]> = (0..64).map(|i| [i as f32, 1.0, 2.0, 3.0]).collect();
+    let wrong = run(&gpu(), "output = vec4f(quotient(input.x + 1.0, 3.0));", &inputs);
+    assert!(
+        inputs
+            .iter()
+            .zip(&wrong)
+            .all(|(input, output)| floats_apart(output[0], input[0] / 3.0) > NEAREST_OR_NEXT)
+    );
+}

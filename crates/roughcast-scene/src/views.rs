@@ -1,0 +1,224 @@
+//! Standard views of a shape: where the camera stands, how large texels are in the picture, and a light whose highlight is
+//! in it.
+
+use std::f64::consts::FRAC_PI_4;
+use std::sync::Arc;
+
+use glam::DVec3;
+use roughcast::shading::Material;
+
+use crate::{Camera, Footprint, Hit, Light, Ray, Scene, Shape};
+
+roughcast::named_enum! {
+    /// A distance, told by how many texels a pixel spans.
+    pub enum View: "view" {
+        /// Texels are magnified: a quarter of one in a pixel.
+        Near = "near",
+        /// Three texels a pixel.
+        Mid = "mid",
+        /// Twenty-four texels a pixel.
+        Far = "far",
+        /// Six texels a pixel across, and many along: a plane up to the horizon, round shapes with the light behind them.
+        Grazing = "grazing",
+    }
+}
+
+/// Vertical angle of view.
+const FOV: f64 = 0.61;
+/// Light of this irradiance gives a white surface that faces it a radiance of one.
+const WHITE: [f32; 3] = [std::f32::consts::PI; 3];
+/// Rays by which a view is measured, each way.
+const GRID: u32 = 24;
+/// The place in the picture, right and down, in parts of its size, where the highlight is wanted.
+const HIGHLIGHT: (f64, f64) = (0.46, 0.44);
+/// Round shapes mirror a light behind them where the eye meets them at this cosine.
+const GRAZING_COSINE: f64 = 0.25;
+
+impl View {
+    /// Texels that a pixel spans in the middle of the picture.
+    pub const fn texels_per_pixel(self) -> f64 {
+        match self {
+            Self::Near => 0.25,
+            Self::Mid => 3.0,
+            Self::Far => 24.0,
+            Self::Grazing => 6.0,
+        }
+    }
+
+    /// The camera of this view. Whether something is near or far is told by its texels, so only grazing views differ.
+    pub fn camera(self, shape: &Shape) -> Camera {
+        let (eye, target) = match (shape, self) {
+            (Shape::Plane(plane), Self::Grazing) => {
+                (DVec3::new(0.0, 0.11, 0.97), DVec3::new(0.0, 0.0, 0.42)).map_both(|v| v * plane.half_size())
+            }
+            (Shape::Plane(plane), _) => {
+                (DVec3::new(0.0, 0.85, 0.85), DVec3::new(0.0, 0.0, 0.03)).map_both(|v| v * plane.half_size())
+            }
+            (_, view) => {
+                let bounds = shape.bounds();
+                let height = if view == Self::Grazing { 0.15 } else { 0.6 };
+                let towards_eye = DVec3::new(0.25, height, 1.0).normalize();
+                let distance = bounds.radius / (0.5 * FOV).sin();
+                (bounds.centre + towards_eye * distance, bounds.centre)
+            }
+        };
+        Camera { eye, target, up: DVec3::Y, vertical_fov: FOV }
+    }
+
+    /// The scene of this view: a shape with a map of `texels` a side, in a picture of `size`, with one light whose
+    /// highlight is in the picture.
+    ///
+    /// A shape that nothing can be laid on, or that is not in the picture, gets one repeat and a light from above.
+    pub fn scene(
+        self,
+        shape: Arc<Shape>,
+        texels: (usize, usize),
+        size: (u32, u32),
+        material: Material,
+    ) -> Scene {
+        let camera = self.camera(&shape);
+        let repeats = repeats(&shape, &camera, texels, size, self.texels_per_pixel());
+        let lights = vec![default_light(&shape, &camera, size, self)];
+        Scene { shape, camera, lights, material, repeats, background: [0.0; 3] }
+    }
+}
+
+/// How often a map of `texels` a side must repeat for a pixel to span `texels_per_pixel` of them, the way in which it spans
+/// fewer, in the middle (the median) of what `camera` shows.
+pub fn repeats(
+    shape: &Shape,
+    camera: &Camera,
+    texels: (usize, usize),
+    size: (u32, u32),
+    texels_per_pixel: f64,
+) -> f64 {
+    let spans = grid(size).filter_map(|(x, y)| {
+        let hit = shape.hit(&camera.ray(x, y, size.0, size.1))?;
+        let right = camera.ray(x + 1.0, y, size.0, size.1);
+        let below = camera.ray(x, y + 1.0, size.0, size.1);
+        let span = narrow_side(hit.footprint(&right, &below), texels);
+        (span.is_finite() && span > 0.0).then_some(span)
+    });
+    median(spans.collect()).map_or(1.0, |span| texels_per_pixel / span)
+}
+
+/// The shorter half axis of a footprint, in texels, twice.
+fn narrow_side(footprint: Footprint, (width, height): (usize, usize)) -> f64 {
+    let scale = glam::DVec2::new(width as f64, height as f64);
+    let (dx, dy) = (footprint.dx * scale, footprint.dy * scale);
+    // The singular values of [dx dy]: their squares' sum and their product.
+    let (sum, product) = (dx.length_squared() + dy.length_squared(), dx.perp_dot(dy).abs());
+    let larger = (0.5 * (sum + (sum * sum - 4.0 * product * product).max(0.0).sqrt())).sqrt();
+    product / larger
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
+
+/// A white directional light that the shape mirrors into the camera near the middle of the picture.
+pub fn default_light(shape: &Shape, camera: &Camera, size: (u32, u32), view: View) -> Light {
+    let wanted = (HIGHLIGHT.0 * f64::from(size.0), HIGHLIGHT.1 * f64::from(size.1));
+    let is_round = !matches!(shape, Shape::Plane(_));
+    let cost = |x: f64, y: f64, ray: &Ray, hit: &Hit| {
+        if is_round && view == View::Grazing {
+            (hit.frame.normal.dot(-ray.direction) - GRAZING_COSINE).abs()
+        } else {
+            (x - wanted.0).hypot(y - wanted.1)
+        }
+    };
+    let candidates = grid(size).filter_map(|(x, y)| {
+        let ray = camera.ray(x, y, size.0, size.1);
+        let hit = shape.hit(&ray)?;
+        Some((cost(x, y, &ray, &hit), ray.direction.reflect(hit.frame.normal)))
+    });
+    let best = candidates.min_by(|a, b| a.0.total_cmp(&b.0));
+    let fallback = DVec3::new(0.0, FRAC_PI_4.sin(), FRAC_PI_4.cos());
+    Light::Directional {
+        towards: best.map_or(fallback, |(_, towards)| towards.normalize()),
+        irradiance: WHITE,
+    }
+}
+
+/// Points of a picture on a regular grid, in pixels.
+fn grid((width, height): (u32, u32)) -> impl Iterator<Item = (f64, f64)> {
+    let part = |i: u32| (f64::from(i) + 0.5) / f64::from(GRID);
+    let (width, height) = (f64::from(width), f64::from(height));
+    (0..GRID).flat_map(move |row| (0..GRID).map(move |column| (part(column) * width, part(row) * height)))
+}
+
+/// Applies a function to both of a pair.
+trait MapBoth {
+    fn map_both(self, f: impl Fn(DVec3) -> DVec3) -> Self;
+}
+
+impl MapBoth for (DVec3, DVec3) {
+    fn map_both(self, f: impl Fn(DVec3) -> DVec3) -> Self {
+        (f(self.0), f(self.1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Plane, Sphere, Torus};
+
+    const SIZE: (u32, u32) = (256, 192);
+    const TEXELS: (usize, usize) = (512, 512);
+
+    fn shapes() -> [Arc<Shape>; 3] {
+        [Shape::Plane(Plane::default()), Shape::Sphere(Sphere), Shape::Torus(Torus::default())].map(Arc::new)
+    }
+
+    fn hits(scene: &Scene) -> Vec<(Ray, Hit)> {
+        let rays = grid(SIZE).map(|(x, y)| scene.camera.ray(x, y, SIZE.0, SIZE.1));
+        rays.filter_map(|ray| Some((ray, scene.shape.hit(&ray)?))).collect()
+    }
+
+    #[test]
+    fn every_view_shows_the_shape_with_its_highlight() {
+        for shape in shapes() {
+            for view in View::ALL {
+                let scene = view.scene(Arc::clone(&shape), TEXELS, SIZE, Material::default());
+                let hits = hits(&scene);
+                let part = hits.len() as f64 / f64::from(GRID * GRID);
+                assert!(part > 0.25, "{shape:?}, {view}: {part} of the picture is covered");
+                let (towards, _) = scene.lights[0].at(DVec3::ZERO);
+                let aligned =
+                    |(ray, hit): &(Ray, Hit)| (towards - ray.direction).normalize().dot(hit.frame.normal);
+                let best = hits.iter().map(aligned).fold(0.0, f64::max);
+                // Within three degrees, where a lobe of any exponent up to 400 is bright.
+                assert!(best > 0.9986, "{shape:?}, {view}: the highlight is off by {best}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_plane_fills_the_picture_but_for_the_sky_of_the_grazing_view() {
+        let plane = || Arc::new(Shape::Plane(Plane::default()));
+        for view in View::ALL {
+            let scene = view.scene(plane(), TEXELS, SIZE, Material::default());
+            let all = (GRID * GRID) as usize;
+            let count = hits(&scene).len();
+            assert!(count == all || (*view == View::Grazing && count > all / 2), "{view}: {count} of {all}");
+        }
+    }
+
+    #[test]
+    fn texels_have_the_size_of_the_view() {
+        for shape in shapes() {
+            for view in View::ALL {
+                let scene = view.scene(Arc::clone(&shape), TEXELS, SIZE, Material::default());
+                let one = repeats(&shape, &scene.camera, TEXELS, SIZE, 1.0);
+                assert!((scene.repeats / one - view.texels_per_pixel()).abs() < 1e-9, "{view}");
+            }
+        }
+        // An independent look at the simplest: a plane seen at distance d from 45 degrees has pixels of d * pixel.
+        let scene = View::Far.scene(shapes()[0].clone(), TEXELS, SIZE, Material::default());
+        let pixel =
+            2.0 * (0.5 * FOV).tan() / f64::from(SIZE.1) * scene.camera.eye.distance(scene.camera.target);
+        let texels = pixel * 0.5 * scene.repeats * TEXELS.0 as f64;
+        assert!((texels / View::Far.texels_per_pixel() - 1.0).abs() < 0.1, "{texels}");
+    }
+}
