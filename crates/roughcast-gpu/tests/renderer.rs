@@ -3,18 +3,19 @@
 mod common;
 
 use common::pictures::{GpuPictures, options};
-use common::scenes::{SIZE, maps, maps_with, scene};
+use common::scenes::{SIDE, SIZE, maps, maps_with, scene};
 use common::{gpu, gpu_of_the_web};
 use pollster::block_on;
 use roughcast::shading::{LobeOptions, Shading};
-use roughcast::texture::Layout;
+use roughcast::texture::{Layout, Part, TextureInfo};
 use roughcast::{BakeOptions, Bits, Lobe};
+use roughcast_gpu::bake::{BakePath, GpuBaker};
 use roughcast_gpu::render::{
     DEPTH_FORMAT, Detail, DrawOptions, Geometry, GpuTextures, RenderTarget, Renderer, ShaderKey, Views,
     render, shader_source,
 };
 use roughcast_gpu::{Gpu, GpuError, Timestamps, read_back};
-use roughcast_scene::{Filter, Picture, Plane, Sampler, Scene, Shape, View};
+use roughcast_scene::{Filter, Picture, Plane, Sampler, Scene, Shape, View, pattern};
 
 fn plane() -> Scene {
     scene(Shape::Plane(Plane::default()), View::Mid)
@@ -176,4 +177,46 @@ fn plain_device() -> Gpu {
     let adapter = block_on(instance.request_adapter(&Default::default())).expect("an adapter");
     let (device, queue) = block_on(adapter.request_device(&Default::default())).expect("a plain device");
     Gpu::from_device(device, queue)
+}
+
+#[test]
+fn textures_baked_on_the_gpu_are_drawn_where_they_are() {
+    let (gpu, scene) = (gpu(), plane());
+    let bumps = pattern::random_bumps(SIDE, 0.3, 5);
+    for (shading, bits) in
+        [(Shading::Lean, Bits::Sixteen), (Shading::Clean, Bits::Half), (Shading::Phong, Bits::Eight)]
+    {
+        let options = BakeOptions { layout: shading.layout(), bits, ..BakeOptions::default() };
+        let source = bumps.source_options();
+        let [here, back] = block_on(async {
+            let path = BakePath::Fastest;
+            let baker = GpuBaker::for_image(&gpu, &bumps.heights, &source, None, &options, path).await?;
+            baker.run();
+            let mut renderer = Renderer::new(&gpu, RenderTarget::Parts).await?;
+            let geometry = Geometry::new(&gpu, &scene.shape, 4).await?;
+            let here = GpuTextures::of_baked(&gpu, shading, baker.textures(), &baker.info().await?)?;
+            let back = GpuTextures::new(&gpu, shading, &[baker.read_back().await?]).await?;
+            let mut pictures = Vec::new();
+            for textures in [here, back] {
+                let draw = DrawOptions::default();
+                let mut drawing = renderer.prepare(&geometry, &textures, &draw).await?;
+                pictures.push(render(&renderer, &mut drawing, &scene, SIZE).await?);
+            }
+            Ok::<_, GpuError>(<[Picture; 2]>::try_from(pictures).expect("two of them"))
+        })
+        .expect("two pictures");
+        // The same texels: the same picture, to the bit.
+        assert!(here == back, "{shading} with {bits}");
+        assert!(here.specular.iter().any(|s| s[0] > 0.0));
+    }
+}
+
+#[test]
+fn baked_textures_of_another_layout_are_refused() {
+    let gpu = gpu();
+    let info = TextureInfo::new(Layout::Clean, Part::Whole);
+    let error =
+        GpuTextures::of_baked(&gpu, Shading::Lean, &[], &info).expect_err("LEAN samples two textures");
+    let line = error.to_string();
+    assert!(line.contains("lean") && line.contains("clean") && !line.contains('\n'), "{line}");
 }
