@@ -19,6 +19,7 @@ mod render;
 mod report;
 mod roughness;
 mod scene_args;
+mod shader;
 mod textures;
 mod unpack;
 
@@ -46,6 +47,7 @@ enum Command {
     Precision(precision::Args),
     Render(render::Args),
     Figures(figures::Args),
+    Shader(shader::Args),
 }
 
 fn main() -> ExitCode {
@@ -60,6 +62,7 @@ fn main() -> ExitCode {
         Command::Precision(args) => precision::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Figures(args) => figures::run(&args),
+        Command::Shader(args) => shader::run(&args),
     };
     match result {
         Ok(code) => code,

@@ -5,6 +5,8 @@ mod common;
 use common::{Outcome, command, run};
 use roughcast::texture::Layout;
 
+const SUBCOMMANDS: [&str; 5] = ["bake", "info", "unpack", "precision", "shader"];
+
 fn help(subcommand: &str, flag: &str) -> String {
     let output = command([subcommand, flag]).env("COLUMNS", "80").output().expect("the program starts");
     let outcome = Outcome::of(&output).expect_success();
@@ -14,7 +16,7 @@ fn help(subcommand: &str, flag: &str) -> String {
 
 #[test]
 fn every_subcommand_explains_itself_within_80_columns() {
-    for subcommand in ["bake", "info", "unpack", "precision"] {
+    for subcommand in SUBCOMMANDS {
         for flag in ["-h", "--help"] {
             let text = help(subcommand, flag);
             assert!(text.contains(&format!("Usage: roughcast {subcommand}")), "{text}");
@@ -23,7 +25,7 @@ fn every_subcommand_explains_itself_within_80_columns() {
         }
     }
     let overview = run(["--help"]).expect_success().stdout;
-    for subcommand in ["bake", "info", "unpack", "precision"] {
+    for subcommand in SUBCOMMANDS {
         assert!(overview.contains(&format!("\n  {subcommand} ")), "{overview}");
     }
 }
@@ -80,6 +82,7 @@ fn the_documented_options_exist() {
         ("info", &["json", "max-pixels", "green"][..]),
         ("unpack", &["output", "max-pixels"]),
         ("precision", &["specular-power", "json", "max-slope"]),
+        ("shader", &["lang", "output", "json"]),
     ] {
         let text = help(subcommand, "-h");
         assert!(options.iter().all(|option| text.contains(&format!("--{option}"))), "{text}");

@@ -5,7 +5,7 @@ mod common;
 use std::path::PathBuf;
 
 use common::Numbers;
-use roughcast_scene::{Mesh, MeshError, MeshFault, TriangleMesh, load_mesh};
+use roughcast_scene::{MAX_FILE_BYTES, MAX_TRIANGLES, Mesh, MeshError, MeshFault, TriangleMesh, load_mesh};
 
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data");
 
@@ -55,7 +55,7 @@ fn broken_obj_files() {
     }
     // The same triangle, whole, loads: the faults above are what is refused.
     let path = file("broken_obj", "whole.obj", format!("# caf\u{e9}\n{TRIANGLE}f 1 2 3\nf -3 -2 -1\n"));
-    assert_eq!(load_mesh(&path).unwrap().triangle_count(), 2);
+    assert_eq!(load_mesh(&path).unwrap().triangle_count(), 1, "the second repeats the first");
     let latin = [b"# caf\xe9\n".as_slice(), TRIANGLE.as_bytes(), b"f 1 2 3\n"].concat();
     assert!(load_mesh(file("broken_obj", "latin.OBJ", latin)).is_ok());
 }
@@ -172,6 +172,41 @@ fn broken_glb_files() {
         // The length of the whole file is not needed; that of the JSON is.
         assert_eq!(load_mesh(&path).is_ok(), at == 8);
     }
+}
+
+#[test]
+fn files_beyond_the_limits_are_refused_before_memory_is_taken() {
+    let corners = " 1".repeat(MAX_TRIANGLES + 3);
+    let path = file("limits", "polygon.obj", format!("{TRIANGLE}f{corners}\n"));
+    assert!(message(load_mesh(&path), &path).contains("more triangles than the limit"));
+    // Nodes show one mesh of a hundred thousand triangles over and over.
+    let (triangles, shown) = (100_000, MAX_TRIANGLES / 100_000 + 1);
+    let positions = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let mut bytes: Vec<u8> = positions.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+    bytes.extend([0, 1, 2].repeat(triangles));
+    file("limits", "many.bin", &bytes);
+    let text = |shown: usize| {
+        let roots: Vec<String> = (0..shown).map(|i| i.to_string()).collect();
+        gltf("many.bin", |s| {
+            s.replace(r#"{"mesh":0}"#, &vec![r#"{"mesh":0}"#; shown].join(","))
+                .replace(r#""nodes":[0]"#, &format!(r#""nodes":[{}]"#, roots.join(",")))
+                .replace(r#""byteLength":3}"#, &format!(r#""byteLength":{}}}"#, 3 * triangles))
+                .replace(
+                    r#""count":3,"type":"SCALAR""#,
+                    &format!(r#""count":{},"type":"SCALAR""#, 3 * triangles),
+                )
+        })
+    };
+    let path = file("limits", "two.gltf", text(2));
+    // All of them are the same one.
+    assert_eq!(load_mesh(&path).unwrap().triangle_count(), 1);
+    let path = file("limits", "nodes.gltf", text(shown));
+    assert!(message(load_mesh(&path), &path).contains("more triangles than the limit"));
+    let path = file("limits", "values.gltf", format!("[{}", "{},".repeat(1 << 22)));
+    assert!(message(load_mesh(&path), &path).contains("more values in its JSON than the limit"));
+    let path = file("limits", "large.glb", "");
+    std::fs::File::options().write(true).open(&path).unwrap().set_len(MAX_FILE_BYTES as u64 + 1).unwrap();
+    assert!(message(load_mesh(&path), &path).contains("more bytes than the limit"));
 }
 
 #[test]

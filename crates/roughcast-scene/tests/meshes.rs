@@ -222,6 +222,28 @@ fn the_files_normals_say_which_side_is_out() {
 }
 
 #[test]
+fn repeated_triangles_are_dropped_and_backs_are_kept() {
+    let mut part = square(UPRIGHT);
+    part.indices.extend([2, 1, 0, 2, 3, 1, 0, 1, 2]);
+    let mesh = Mesh::new(vec![part]).unwrap();
+    assert_eq!(mesh.triangles().indices.len(), 9);
+}
+
+#[test]
+fn triangles_in_one_place_take_no_more_time() {
+    // Different triangles with equal boxes, of which a hierarchy makes bad choices: minutes, if it went wrong.
+    let count = 50_000_u32;
+    let aside = |i: u32| i as f32 / count as f32;
+    let mut positions = vec![[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]];
+    positions.extend((0..count).map(|i| [aside(i), 0.5, 0.5]));
+    let tangents = vec![[1.0, 0.0, 0.0, 1.0]; positions.len()];
+    let indices = (0..count).flat_map(|i| [0, 1, i + 2]).collect();
+    let mesh = Mesh::new(vec![TriangleMesh { positions, tangents, indices, ..Default::default() }]).unwrap();
+    // The one whose corner is at 0.5 is a line.
+    assert_eq!(mesh.triangle_count(), 49_999);
+}
+
+#[test]
 fn a_part_without_texture_coordinates_leaves_the_mesh_without() {
     let bare = TriangleMesh { uvs: Vec::new(), ..square(UPRIGHT) };
     let mesh = Mesh::new(vec![square(UPRIGHT), bare]).unwrap();

@@ -11,6 +11,9 @@ use super::accessor::{Buffers, malformed};
 use super::{MAX_TRIANGLES, MAX_VERTICES, MeshFault};
 use crate::TriangleMesh;
 
+/// The most objects and values in the JSON.
+const MAX_JSON_VALUES: usize = 1 << 22;
+
 /// The triangles of the default scene, in world space, one part a primitive.
 pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Vec<TriangleMesh>, MeshFault> {
     let (json, chunk) = if bytes.starts_with(b"glTF") { chunks(bytes)? } else { (bytes, None) };
@@ -23,6 +26,10 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Vec<TriangleMesh>, Mes
 
 /// The JSON, whose indices are valid.
 fn document(json: &[u8]) -> Result<Document, MeshFault> {
+    // Each value may take a few hundred bytes once it is read.
+    if json.iter().filter(|&&b| b == b'{' || b == b',').count() > MAX_JSON_VALUES {
+        return Err(MeshFault::TooLarge { what: "values in its JSON", limit: MAX_JSON_VALUES });
+    }
     let fault = |error: gltf::Error| malformed(one_line(&error));
     let root = gltf::Gltf::from_slice_without_validation(json).map_err(fault)?.document.into_json();
     // The validation of the gltf crate takes this index for valid before it has looked.
@@ -76,10 +83,11 @@ impl Scene<'_> {
         let scene = document.default_scene().or_else(|| document.scenes().next());
         let scene = scene.ok_or_else(|| malformed("it has no scene"))?;
         let mut open: Vec<(Node, DMat4)> = scene.nodes().map(|node| (node, DMat4::IDENTITY)).collect();
-        // The nodes of a file are trees, so none is met twice.
-        let mut left = document.nodes().count();
+        let mut seen = vec![false; document.nodes().count()];
         while let Some((node, world_from_parent)) = open.pop() {
-            left = left.checked_sub(1).ok_or_else(|| malformed("its nodes are no trees"))?;
+            if std::mem::replace(&mut seen[node.index()], true) {
+                return Err(malformed("its nodes are no trees"));
+            }
             let parent_from_node = Mat4::from_cols_array_2d(&node.transform().matrix()).as_dmat4();
             let world_from_node = world_from_parent * parent_from_node;
             for primitive in node.mesh().iter().flat_map(|mesh| mesh.primitives()) {

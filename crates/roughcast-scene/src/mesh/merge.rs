@@ -1,12 +1,14 @@
 //! Parts of a mesh become one set of checked arrays. Missing normals, tangents and texture coordinates are zeros in it.
 
+use std::collections::HashSet;
+
 use glam::DVec3;
 
 use super::error::{MAX_RADIUS, MIN_RADIUS};
 use super::{MAX_TRIANGLES, MAX_VERTICES, MeshFault, position};
 use crate::{Bounds, TriangleMesh};
 
-/// One mesh of all parts, whose triangles have an area.
+/// One mesh of all parts, whose triangles have an area and differ.
 pub(super) fn merge(parts: Vec<TriangleMesh>) -> Result<TriangleMesh, MeshFault> {
     let mut merged = TriangleMesh::default();
     for part in parts {
@@ -25,7 +27,7 @@ pub(super) fn merge(parts: Vec<TriangleMesh>) -> Result<TriangleMesh, MeshFault>
         append(&mut merged.tangents, part.tangents, vertices);
         append(&mut merged.uvs, part.uvs, vertices);
     }
-    drop_triangles_without_area(&mut merged);
+    drop_unseen_triangles(&mut merged);
     if merged.indices.is_empty() { Err(MeshFault::NoTriangles) } else { Ok(merged) }
 }
 
@@ -39,7 +41,7 @@ fn append<const N: usize>(to: &mut Vec<[f32; N]>, from: Vec<[f32; N]>, vertices:
 /// Whether arrays and indices of a part fit together and all numbers are finite.
 fn check(part: &TriangleMesh) -> Result<(), MeshFault> {
     let vertices = part.positions.len();
-    if part.indices.len() % 3 != 0 {
+    if !part.indices.len().is_multiple_of(3) {
         return Err(MeshFault::Count {
             what: "indices",
             count: part.indices.len(),
@@ -70,11 +72,19 @@ fn check_attribute<const N: usize>(
     }
 }
 
-fn drop_triangles_without_area(mesh: &mut TriangleMesh) {
+/// Drops triangles without an area, and those that repeat an earlier one's positions: no ray meets them first, and the
+/// time that tangents take grows with the square of the number of triangles on one edge.
+fn drop_unseen_triangles(mesh: &mut TriangleMesh) {
+    let mut seen = HashSet::with_capacity(mesh.indices.len() / 3);
     let mut kept = Vec::with_capacity(mesh.indices.len());
     for triangle in mesh.indices.chunks_exact(3) {
-        let [a, b, c] = std::array::from_fn(|i| position(mesh, triangle[i] as usize));
-        if (b - a).cross(c - a) != DVec3::ZERO {
+        let vertices: [usize; 3] = std::array::from_fn(|i| triangle[i] as usize);
+        let [a, b, c] = vertices.map(|i| position(mesh, i));
+        // The same triangle may start at any of its vertices; the other way round it is another, the back of a sheet.
+        let mut key = vertices.map(|i| mesh.positions[i].map(f32::to_bits));
+        let least = (0..3).min_by_key(|&i| key[i]).unwrap_or(0);
+        key.rotate_left(least);
+        if (b - a).cross(c - a) != DVec3::ZERO && seen.insert(key) {
             kept.extend_from_slice(triangle);
         }
     }

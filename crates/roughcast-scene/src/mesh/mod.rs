@@ -23,8 +23,8 @@ use bvh::TriangleBvh;
 
 /// The largest file that is read, and the most bytes of buffers of a glTF file.
 pub const MAX_FILE_BYTES: usize = 1 << 29;
-/// The most triangles of a mesh.
-pub const MAX_TRIANGLES: usize = 1 << 24;
+/// The most triangles of a mesh. Reading one this large takes about two gigabytes.
+pub const MAX_TRIANGLES: usize = 1 << 22;
 /// The most vertices of a mesh.
 pub const MAX_VERTICES: usize = 3 * MAX_TRIANGLES;
 
@@ -57,7 +57,7 @@ impl std::fmt::Debug for Mesh {
 /// Of glTF all triangles of the default scene are taken, in the places that its nodes give them, with the first set of
 /// texture coordinates; materials, skins, morph targets and animations are not. Textures are not read. Tangents of a file
 /// are taken as they are. Some exporters write them with the bitangent along growing v, against the convention of this
-/// crate; bumps on such a mesh look like dents from one side, and a map for it is one with green down.
+/// crate; maps for such a mesh have green down.
 pub fn load_mesh(path: impl AsRef<Path>) -> Result<Mesh, MeshError> {
     let path = path.as_ref();
     parts_of_file(path).and_then(Mesh::new).map_err(|fault| MeshError { path: path.to_owned(), fault })
@@ -74,12 +74,15 @@ fn parts_of_file(path: &Path) -> Result<Vec<TriangleMesh>, MeshFault> {
 
 /// The bytes of a file, or an error before more than the limit are held.
 fn read_file(path: &Path) -> Result<Vec<u8>, MeshFault> {
-    let mut bytes = Vec::new();
-    std::fs::File::open(path)?.take(MAX_FILE_BYTES as u64 + 1).read_to_end(&mut bytes)?;
-    if bytes.len() > MAX_FILE_BYTES {
-        return Err(MeshFault::TooLarge { what: "bytes", limit: MAX_FILE_BYTES });
+    let too_large = MeshFault::TooLarge { what: "bytes", limit: MAX_FILE_BYTES };
+    let file = std::fs::File::open(path)?;
+    if file.metadata()?.len() > MAX_FILE_BYTES as u64 {
+        return Err(too_large);
     }
-    Ok(bytes)
+    // Pipes and devices do not state their length.
+    let mut bytes = Vec::new();
+    file.take(MAX_FILE_BYTES as u64 + 1).read_to_end(&mut bytes)?;
+    if bytes.len() > MAX_FILE_BYTES { Err(too_large) } else { Ok(bytes) }
 }
 
 impl Mesh {
@@ -87,8 +90,8 @@ impl Mesh {
     ///
     /// Each part needs positions and indices; its other arrays may be empty. Missing normals are computed, smooth across
     /// all triangles that meet at a position and weighed by their areas; missing tangents by MikkTSpace. A triangle that
-    /// turns clockwise seen from the side to which its normals point is turned over. Triangles without an area are
-    /// dropped. Where not all parts have texture coordinates, the mesh counts as having none.
+    /// turns clockwise seen from the side to which its normals point is turned over. Triangles without an area,
+    /// and those that repeat another, are dropped. Where not all parts have texture coordinates, the mesh counts as having none.
     pub fn new(parts: Vec<TriangleMesh>) -> Result<Self, MeshFault> {
         let has_texture_coordinates = parts.iter().all(|part| !part.uvs.is_empty());
         let mut triangles = merge::merge(parts)?;

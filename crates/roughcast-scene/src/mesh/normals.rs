@@ -22,7 +22,7 @@ pub(super) fn turn_towards_normals(mesh: &mut TriangleMesh) {
 
 /// Makes all normals unit; those that are zero become the mean of the triangles at their position, weighed by area.
 pub(super) fn complete(mesh: &mut TriangleMesh) {
-    let missing = mesh.normals.iter().any(|n| *n == [0.0; 3]);
+    let missing = mesh.normals.contains(&[0.0; 3]);
     let smooth = if missing { sums_by_position(mesh) } else { HashMap::new() };
     for (normal, p) in mesh.normals.iter_mut().zip(&mesh.positions) {
         let given = Vec3::from(*normal).as_dvec3();

@@ -1,7 +1,7 @@
 //! What a scene is made of: one shape a file.
 
 mod plane;
-mod polynomial;
+mod quartic;
 mod sphere;
 mod torus;
 

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 
-use super::polynomial::roots;
+use super::quartic::roots;
 use super::{Bounds, ShapeError, SurfacePoint, TriangleMesh, sin_cos_turns, tessellate};
 use crate::{Hit, Ray};
 
@@ -56,12 +56,13 @@ impl Torus {
             a * a - 4.0 * ring(middle, middle),
             -8.0 * ring(middle, direction),
             2.0 * a - 4.0 * ring(direction, direction),
-            0.0,
-            1.0,
         ];
         let half = half_squared.sqrt();
         let from = (-half).max(-nearest);
-        let t = roots(quartic, from, half).into_iter().find(|t| t + nearest > 0.0)?;
+        if from >= half {
+            return None;
+        }
+        let t = roots(quartic, from, half).find(|t| t + nearest > 0.0)?;
         Some(self.point_at(middle + direction * t).hit(ray, (t + nearest) / length))
     }
 

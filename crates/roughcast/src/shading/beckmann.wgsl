@@ -8,7 +8,7 @@ fn beckmann_lobe(surface: BumpFacet, view: vec3f, light: vec3f, options: LobeOpt
     if !both_above(view, light) {
         return 0.0;
     }
-    let h = half_vector(view, light);
+    let h = normalize(view + light);
     let cosine = dot(surface.normal, h);
     if cosine < LEAST_COSINE {
         return 0.0;

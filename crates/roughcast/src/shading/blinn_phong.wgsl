@@ -8,5 +8,5 @@ fn blinn_phong_lobe(surface: BumpFacet, view: vec3f, light: vec3f, options: Lobe
     if !both_above(view, light) {
         return 0.0;
     }
-    return cosine_lobe(surface.normal, half_vector(view, light), surface.specular_power, options.form);
+    return cosine_lobe(surface.normal, normalize(view + light), surface.specular_power, options.form);
 }

@@ -23,7 +23,7 @@ fn bump_facet(normal: vec3f, specular_power: f32) -> BumpFacet {
 
 // The filtered normal that LEAN's first texture holds; its length is what averaging has left of it. For diffuse light.
 fn bump_normal(lean1: vec4f, packing: Packing) -> vec3f {
-    return vec3f(unpack(lean1.x, packing.unit), unpack(lean1.y, packing.unit), lean1.z);
+    return vec3f(lean1.xy * packing.unit.x + packing.unit.y, lean1.z);
 }
 
 // log(1 + x) for x >= 0, also where 1 + x would round x away: 2 artanh(x / (2 + x)), as a series for small x.

@@ -59,14 +59,14 @@ pub fn gaussian_lobe(surface: &SlopeGaussian, view: Vector, light: Vector, optio
     let SlopeGaussian { mean, covariance, determinant } = *surface;
     // Both sides of the quotient times h.z², so that grazing half vectors divide nothing by zero.
     let (x, y) = (half[0] - mean.x * half[2], half[1] - mean.y * half[2]);
-    let distance = covariance.yy * x * x - 2.0 * covariance.xy * x * y + covariance.xx * y * y;
-    let distance = distance.max(0.0); // rounding may take a thin ellipse's below
+    let squared_distance = covariance.yy * x * x - 2.0 * covariance.xy * x * y + covariance.xx * y * y;
+    let squared_distance = squared_distance.max(0.0); // rounding may take a thin ellipse's below
     let scale = 2.0 * determinant * half[2] * half[2];
     // Also false for a determinant of zero, or below.
-    if !(scale > 0.0 && distance < LARGEST_EXPONENT * scale) {
+    if !(scale > 0.0 && squared_distance < LARGEST_EXPONENT * scale) {
         return 0.0;
     }
-    let density = (-distance / scale).exp() / determinant.sqrt();
+    let density = (-squared_distance / scale).exp() / determinant.sqrt();
     match options.form {
         Form::Paper => density,
         Form::Normalised => density / (TAU * half[2].powi(4)),

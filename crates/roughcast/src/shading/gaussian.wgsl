@@ -13,14 +13,6 @@ struct SlopeGaussian {
     det: f32,           // of the covariance matrix; no highlight where it is not positive
 }
 
-// Determinant of the covariance matrix (xx, yy, xy). Where fma rounds once, the rounding of the square is made good
-// (Kahan); elsewhere it is the plain difference.
-fn covariance_determinant(sigma: vec3f) -> f32 {
-    let square = sigma.z * sigma.z;
-    let rounding = fma(-sigma.z, sigma.z, square);
-    return fma(sigma.x, sigma.y, -square) + rounding;
-}
-
 // The nearest covariance by rule: variances below zero become zero, the mixed term is cut to sqrt(xx yy).
 fn positive_semidefinite(sigma: vec3f) -> vec3f {
     let variances = max(sigma.xy, vec2f(0.0));
@@ -30,9 +22,13 @@ fn positive_semidefinite(sigma: vec3f) -> vec3f {
 
 // The Gaussian with this mean and covariance (xx, yy, xy), which has its base roughness in it.
 fn slope_gaussian(mean: vec2f, sigma: vec3f, options: LobeOptions) -> SlopeGaussian {
-    // Of two negative variances, too, the determinant is positive, and the lobe would grow with the distance.
     let trace = sigma.x + sigma.y;
-    let det = select(0.0, covariance_determinant(sigma), trace > 0.0);
+    // Where fma rounds once, the rounding of the square is made good (Kahan); elsewhere this is the plain difference.
+    let square = sigma.z * sigma.z;
+    let rounding = fma(-sigma.z, sigma.z, square);
+    let difference = fma(sigma.x, sigma.y, -square) + rounding;
+    // Of two negative variances, too, the determinant is positive, and the lobe would grow with the distance.
+    let det = select(0.0, difference, trace > 0.0);
     // The quotient is at most the smaller eigenvalue and at least half of it. What is added raises both.
     let least = select(0.0, det / max(trace, LEAST_VARIANCE), trace > LEAST_VARIANCE);
     let missing = max(LEAST_VARIANCE - least, 0.0);
@@ -45,16 +41,16 @@ fn gaussian_lobe(surface: SlopeGaussian, view: vec3f, light: vec3f, options: Lob
     if !both_above(view, light) {
         return 0.0;
     }
-    let h = half_vector(view, light);
+    let h = normalize(view + light);
     // Both sides of the quotient times h.z^2, so that grazing half vectors divide nothing by zero.
     let d = h.xy - surface.mean * h.z;
     let squares = surface.variance.y * d.x * d.x + surface.variance.x * d.y * d.y;
-    let distance = max(squares - 2.0 * surface.covariance * d.x * d.y, 0.0);
+    let squared_distance = max(squares - 2.0 * surface.covariance * d.x * d.y, 0.0);
     let scale = 2.0 * surface.det * h.z * h.z;
-    if !((scale > 0.0) & (distance < LARGEST_EXPONENT * scale)) {
+    if !((scale > 0.0) & (squared_distance < LARGEST_EXPONENT * scale)) {
         return 0.0;
     }
-    let density = exp(-distance / scale) / sqrt(surface.det);
+    let density = exp(-squared_distance / scale) / sqrt(surface.det);
     let squared = h.z * h.z;
     return select(density, density / (TWO_PI * squared * squared), options.form == FORM_NORMALISED);
 }

@@ -43,10 +43,9 @@ fn ggx_facet(normal: vec3f, direction: vec2f, along: f32, across: f32) -> GgxSur
 // The unit normal that the normal texture holds. Where no z is stored (two-channel textures give 0 for it), it follows
 // from x and y.
 fn ggx_normal(normal: vec4f, packing: Packing) -> vec3f {
-    let x = unpack(normal.x, packing.unit);
-    let y = unpack(normal.y, packing.unit);
-    let z = unpack(normal.z, packing.unit);
-    return unit_normal(vec3f(x, y, select(sqrt(max(1.0 - x * x - y * y, 0.0)), z, z > 0.0)));
+    let stored = normal.xyz * packing.unit.x + packing.unit.y;
+    let z = sqrt(max(1.0 - dot(stored.xy, stored.xy), 0.0));
+    return unit_normal(vec3f(stored.xy, select(z, stored.z, stored.z > 0.0)));
 }
 
 // Where there is no anisotropy texture, pass vec4f(1.0, 0.5, 0.0, 1.0).
@@ -61,7 +60,7 @@ fn ggx_surface(
     let variance = max(variance_from_stored(roughness, options.roughness_stored), 0.0) + added;
     let across = sqrt(2.0 * max(variance, LEAST_VARIANCE));
     let along = across + max(1.0 - across, 0.0) * anisotropy.z * anisotropy.z;
-    let direction = vec2f(unpack(anisotropy.x, packing.unit), unpack(anisotropy.y, packing.unit));
+    let direction = anisotropy.xy * packing.unit.x + packing.unit.y;
     return ggx_facet(ggx_normal(normal, packing), direction, along, across);
 }
 
@@ -75,7 +74,7 @@ fn ggx_lobe(surface: GgxSurface, view: vec3f, light: vec3f, options: LobeOptions
     if !both_above(view, light) {
         return 0.0;
     }
-    let h = half_vector(view, light);
+    let h = normalize(view + light);
     let cosine = dot(surface.normal, h);
     if cosine <= 0.0 {
         return 0.0;

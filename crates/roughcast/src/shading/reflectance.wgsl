@@ -36,7 +36,7 @@ fn specular_radiance(
     }
     // 1 / (8 pi) in the paper's form, where the lobe is 2 pi p.
     let coefficient = select(0.125 / PI, 0.25 * light.z, options.form == FORM_NORMALISED);
-    let cosine = dot(view, half_vector(view, light));
+    let cosine = dot(view, normalize(view + light));
     let fresnel = vec3f(schlick(specular.x, cosine), schlick(specular.y, cosine), schlick(specular.z, cosine));
     return fresnel * coefficient * lobe * irradiance;
 }

@@ -2,11 +2,7 @@
 
 // The averaged normal, not renormalised: for diffuse light.
 fn toksvig_normal(toksvig: vec4f, packing: Packing) -> vec3f {
-    return vec3f(
-        unpack(toksvig.x, packing.unit),
-        unpack(toksvig.y, packing.unit),
-        unpack(toksvig.z, packing.unit),
-    );
+    return toksvig.xyz * packing.unit.x + packing.unit.y;
 }
 
 fn toksvig_surface(toksvig: vec4f, packing: Packing, options: LobeOptions) -> BumpFacet {

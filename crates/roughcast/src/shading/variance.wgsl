@@ -1,8 +1,8 @@
 // Off-centre Beckmann with a stored variance along each axis.
 
 fn variance_surface(variance: vec4f, packing: Packing, options: LobeOptions) -> SlopeGaussian {
-    let mean = vec2f(unpack(variance.x, packing.slope), unpack(variance.y, packing.slope));
-    let stored = vec2f(unpack(variance.z, packing.variance), unpack(variance.w, packing.variance));
+    let mean = variance.xy * packing.slope.x + packing.slope.y;
+    let stored = variance.zw * packing.variance.x + packing.variance.y;
     let bumps = vec3f(max(stored, vec2f(0.0)), 0.0);
     return slope_gaussian(mean, bumps + base_to_add(mean, options), options);
 }

@@ -11,8 +11,3 @@ const LEAST_HEIGHT: f32 = 1e-15;
 fn both_above(view: vec3f, light: vec3f) -> bool {
     return min(view.z, light.z) > LEAST_HEIGHT;
 }
-
-// Half-way between two unit directions.
-fn half_vector(view: vec3f, light: vec3f) -> vec3f {
-    return normalize(view + light);
-}

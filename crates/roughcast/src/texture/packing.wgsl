@@ -9,7 +9,3 @@ struct Packing {
     variance: vec2f,    // a stored variance
     unit: vec2f,        // a component of a unit vector
 }
-
-fn unpack(stored: f32, pair: vec2f) -> f32 {
-    return stored * pair.x + pair.y;
-}

@@ -1,0 +1,120 @@
+//! `roughcast shader`: the shading models for other people's renderers.
+
+mod export;
+mod header;
+mod names;
+mod stage;
+
+use std::io::{IsTerminal, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Context, Result};
+use clap::ValueHint;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use roughcast::shading::wgsl::{MODULES, Module, Role};
+use roughcast_io::AtomicFile;
+use serde_json::{Value, json};
+
+use crate::args::{REPORT, one_of};
+use crate::{UsageError, say, say_json};
+use export::{Export, Language, export};
+
+/// Export the shading models as shader code, or list them.
+///
+/// The code has no entry points and no resources (SPIR-V, which has no libraries, has a fragment shader a model). It starts
+/// with its source, its conventions and how to call it; docs/shaders.md has examples for every language.
+#[derive(clap::Args)]
+pub struct Args {
+    /// What to export, or all; without a name, what there is
+    #[arg(value_name = "NAME", value_parser = names_parser())]
+    names: Vec<String>,
+
+    /// The language
+    #[arg(long, value_name = "LANGUAGE", default_value = "wgsl", value_parser = one_of::<Language>())]
+    lang: Language,
+
+    /// Where to write it [default: standard output]
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    output: Option<PathBuf>,
+
+    /// Print the list as JSON
+    #[arg(long, help_heading = REPORT, conflicts_with = "names")]
+    json: bool,
+}
+
+/// The name that stands for every export.
+const ALL: &str = "all";
+
+/// What can be exported.
+fn exports() -> impl Iterator<Item = &'static Module> {
+    MODULES.iter().filter(|module| module.role != Role::Part)
+}
+
+fn names_parser() -> impl TypedValueParser<Value = String> {
+    PossibleValuesParser::new(exports().map(|module| module.name).chain([ALL]))
+}
+
+pub fn run(args: &Args) -> Result<ExitCode> {
+    if args.names.is_empty() {
+        if args.output.is_some() {
+            return Err(UsageError("--output needs the name of what to export, or all".to_owned()).into());
+        }
+        list(args.json)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let names: Vec<&str> = if args.names.iter().any(|name| name == ALL) {
+        exports().map(|module| module.name).collect()
+    } else {
+        args.names.iter().map(String::as_str).collect()
+    };
+    let export = export(&names, args.lang)?;
+    let bytes = match &export {
+        Export::Text(text) => text.as_bytes(),
+        Export::Binary(bytes) => bytes,
+    };
+    match &args.output {
+        Some(path) => {
+            let file = AtomicFile::create(path).with_context(|| path.display().to_string())?;
+            write_to(file, bytes).with_context(|| path.display().to_string())?;
+        }
+        None if matches!(export, Export::Binary(_)) && std::io::stdout().is_terminal() => {
+            let line = "SPIR-V is binary: name a file with --output, or send it down a pipe";
+            return Err(UsageError(line.to_owned()).into());
+        }
+        None => to_stdout(bytes)?,
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn write_to(mut file: AtomicFile, bytes: &[u8]) -> Result<()> {
+    file.write_all(bytes)?;
+    Ok(file.commit()?)
+}
+
+/// A reader that has gone away is no error of ours.
+fn to_stdout(bytes: &[u8]) -> Result<()> {
+    match std::io::stdout().write_all(bytes) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error).context("stdout"),
+        _ => Ok(()),
+    }
+}
+
+fn list(as_json: bool) -> Result<()> {
+    if as_json {
+        return say_json(&Value::Array(exports().map(entry).collect()));
+    }
+    for module in exports() {
+        say(&format!("{:<12} {}", module.name, module.summary))?;
+    }
+    Ok(())
+}
+
+fn entry(module: &Module) -> Value {
+    json!({
+        "name": module.name,
+        "summary": module.summary,
+        "source": module.citation,
+        "model": module.role == Role::Model,
+    })
+}

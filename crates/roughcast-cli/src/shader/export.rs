@@ -1,0 +1,136 @@
+//! The library of shading models in each language, by way of naga.
+
+use anyhow::{Context, Result};
+use naga::ShaderStage;
+use naga::back::{glsl, hlsl, msl, spv};
+use naga::proc::BoundsCheckPolicies;
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+use roughcast::Named;
+use roughcast::shading::wgsl::{library, modules};
+
+use super::header::{header, models};
+use super::names::with_plain_names;
+use super::stage::fragment_shaders;
+use crate::UsageError;
+
+/// A language of shaders.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Language {
+    Wgsl,
+    Glsl,
+    Hlsl,
+    Msl,
+    Spirv,
+}
+
+impl Named for Language {
+    fn all() -> &'static [Self] {
+        &[Self::Wgsl, Self::Glsl, Self::Hlsl, Self::Msl, Self::Spirv]
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Wgsl => "wgsl",
+            Self::Glsl => "glsl",
+            Self::Hlsl => "hlsl",
+            Self::Msl => "msl",
+            Self::Spirv => "spirv",
+        }
+    }
+}
+
+/// Exported code.
+pub enum Export {
+    Text(String),
+    Binary(Vec<u8>),
+}
+
+/// The modules of these names, and what they need, in a language.
+pub fn export(names: &[&str], language: Language) -> Result<Export> {
+    let exported = modules(names)?;
+    let source = library(names)?;
+    let code = match language {
+        Language::Wgsl => {
+            parse(&source)?;
+            source
+        }
+        Language::Glsl => with_plain_names(&to_glsl(&source)?),
+        Language::Hlsl => with_plain_names(&to_hlsl(&source)?),
+        Language::Msl => with_plain_names(&to_msl(&source)?),
+        Language::Spirv => {
+            let models: Vec<_> = models(&exported).collect();
+            if models.is_empty() {
+                let line = "SPIR-V has no libraries, so it is exported as a fragment shader: name a model";
+                return Err(UsageError(line.to_owned()).into());
+            }
+            let with_reflectance = library(&[names, &["reflectance"]].concat())?;
+            return Ok(Export::Binary(to_spirv(&format!(
+                "{with_reflectance}\n{}",
+                fragment_shaders(&models)
+            ))?));
+        }
+    };
+    Ok(Export::Text(format!("{}\n{}\n", header(&exported, language), code.trim())))
+}
+
+fn parse(source: &str) -> Result<(naga::Module, ModuleInfo)> {
+    let module = naga::front::wgsl::parse_str(source)
+        .map_err(|error| anyhow::anyhow!("{}", error.message().to_owned()))
+        .context("the library does not parse as WGSL")?;
+    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+        .validate(&module)
+        .map_err(|error| error.into_inner())
+        .context("the library is not valid WGSL")?;
+    Ok((module, info))
+}
+
+/// GLSL wants an entry point: it gets an empty one, which is the last function and is cut off again, and its version and
+/// precisions are left to the user.
+fn to_glsl(source: &str) -> Result<String> {
+    const ENTRY_POINT: &str = "entry_point";
+    let (module, info) = parse(&format!("{source}\n@fragment fn {ENTRY_POINT}() {{}}\n"))?;
+    let options = glsl::Options {
+        version: glsl::Version::Embedded { version: 310, is_webgl: false },
+        writer_flags: glsl::WriterFlags::INCLUDE_UNUSED_ITEMS,
+        ..Default::default()
+    };
+    let pipeline = glsl::PipelineOptions {
+        shader_stage: ShaderStage::Fragment,
+        entry_point: ENTRY_POINT.to_owned(),
+        multiview: None,
+    };
+    let mut code = String::new();
+    glsl::Writer::new(&mut code, &module, &info, &options, &pipeline, BoundsCheckPolicies::default())?
+        .write()?;
+    let (library, _) = code.split_once("void main()").context("naga wrote GLSL without an entry point")?;
+    let lines =
+        library.lines().filter(|line| !line.starts_with("#version") && !line.starts_with("precision "));
+    Ok(lines.collect::<Vec<_>>().join("\n"))
+}
+
+fn to_hlsl(source: &str) -> Result<String> {
+    let (module, info) = parse(source)?;
+    let options = hlsl::Options::default();
+    let pipeline = hlsl::PipelineOptions::default();
+    let mut code = String::new();
+    hlsl::Writer::new(&mut code, &options, &pipeline).write(&module, &info, None)?;
+    Ok(code)
+}
+
+fn to_msl(source: &str) -> Result<String> {
+    let (module, info) = parse(source)?;
+    let (code, _) =
+        msl::write_string(&module, &info, &msl::Options::default(), &msl::PipelineOptions::default())?;
+    Ok(code)
+}
+
+/// SPIR-V 1.0 with the names of everything, in little-endian words.
+fn to_spirv(source: &str) -> Result<Vec<u8>> {
+    let (module, info) = parse(source)?;
+    let options = spv::Options {
+        flags: spv::WriterFlags::DEBUG | spv::WriterFlags::LABEL_VARYINGS,
+        ..Default::default()
+    };
+    let words = spv::write_vec(&module, &info, &options, None)?;
+    Ok(words.into_iter().flat_map(u32::to_le_bytes).collect())
+}

@@ -1,0 +1,93 @@
+//! The comment with which every exported text starts: naga drops comments, so what a user must know stands here.
+
+use roughcast::shading::Shading;
+use roughcast::shading::wgsl::{CONVENTIONS, Module, Role};
+
+use super::export::Language;
+use super::stage::calls;
+
+/// Characters of a line, `// ` included.
+const WIDTH: usize = 120;
+
+const PACKING: &[&str] = &[
+    "Packing, for textures of scale sc and variance scale vs, as their metadata and `roughcast info` give them:",
+    "  8 or 16 bits   slope (2 sc, -sc), second (sc^2, 0), mixed (2 sc^2, -sc^2), trace (2 sc^2, 0), variance (vs, 0), unit (2, -1)",
+    "  half or float  all (1, 0)",
+];
+
+/// The header of an export of these modules, as comment lines.
+pub fn header(modules: &[&Module], language: Language) -> String {
+    let mut lines =
+        vec![format!("Shading models of roughcast {}.", env!("CARGO_PKG_VERSION")), String::new()];
+    for module in modules.iter().filter(|module| module.role != Role::Part) {
+        lines.push(format!("{}: {}.", module.name, module.summary));
+        lines.push(format!("  Source: {}.", module.citation));
+    }
+    lines.push(String::new());
+    lines.push("Conventions:".to_owned());
+    lines.extend(CONVENTIONS.iter().map(|line| format!("  {line}")));
+    lines.push(String::new());
+    lines.extend(PACKING.iter().map(|line| (*line).to_owned()));
+    lines.push(String::new());
+    lines.push("How to call them:".to_owned());
+    for model in models(modules) {
+        let calls = calls(model);
+        let texels = calls.texels.join(", ");
+        let values = calls.in_order().map(|(name, call)| format!("{name} = {call};"));
+        lines.push(format!("  {model}, with the texels {texels}:"));
+        lines.push(format!("    {}", values.join("  ")));
+        lines.push(format!("    lobe = {};", calls.lobe));
+    }
+    if modules.iter().any(|module| module.name == "reflectance") {
+        lines.push("  radiance = ambient_radiance(albedo, ambient) + diffuse_radiance(normal, albedo, light, irradiance)".to_owned());
+        lines.push(
+            "    + specular_radiance(lobe, specular, view, light, irradiance, options); the last two for every light"
+                .to_owned(),
+        );
+    } else if models(modules).any(|model| calls(model).normal.starts_with("slope_normal")) {
+        lines.push("  slope_normal is of the module reflectance: normalize((slope, 1)).".to_owned());
+    }
+    lines.push(String::new());
+    lines.extend(notes(language).iter().map(|line| (*line).to_owned()));
+    let commented = lines.iter().flat_map(|line| wrapped(line));
+    commented.map(|line| format!("// {line}").trim_end().to_owned() + "\n").collect()
+}
+
+/// The models among these modules.
+pub fn models<'a>(modules: &'a [&Module]) -> impl Iterator<Item = Shading> + 'a {
+    let is_exported = |model: &Shading| modules.iter().any(|module| module.name == model.name());
+    Shading::ALL.iter().copied().filter(is_exported)
+}
+
+/// What is to be known of one language.
+fn notes(language: Language) -> &'static [&'static str] {
+    match language {
+        Language::Wgsl => &["WGSL, as it was written. No entry points, no resources."],
+        Language::Glsl => &[
+            "GLSL, for #version 450 and for #version 310 es with `precision highp float;`: put it after those lines.",
+        ],
+        Language::Hlsl => &["HLSL, shader model 5.1. No entry points, no resources."],
+        Language::Msl => &["Metal Shading Language 1.0. No entry points, no resources."],
+        Language::Spirv => &[],
+    }
+}
+
+/// The line in pieces that fit; those after the first are set in by two more.
+fn wrapped(line: &str) -> Vec<String> {
+    let room = WIDTH - "// ".len();
+    let indent = line.len() - line.trim_start().len();
+    let mut lines = vec![" ".repeat(indent)];
+    for word in line.trim_start().split(' ') {
+        let last = lines.last_mut().expect("there is a line from the start");
+        let is_empty = last.trim().is_empty();
+        if !is_empty && last.len() + 1 + word.len() > room {
+            lines.push(format!("{}{word}", " ".repeat(indent + 2)));
+        } else {
+            if !is_empty {
+                last.push(' ');
+            }
+            last.push_str(word);
+        }
+    }
+    lines
+}

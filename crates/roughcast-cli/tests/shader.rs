@@ -1,0 +1,314 @@
+//! `roughcast shader`: every export of every model compiles with the compilers of its language, and so do the calls that its
+//! header names and the examples of docs/shaders.md.
+
+mod common;
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use common::run;
+use roughcast::shading::Shading;
+
+const TEXTS: [&str; 4] = ["wgsl", "glsl", "hlsl", "msl"];
+
+/// The names that the program lists.
+fn names() -> Vec<String> {
+    let list = run(["shader", "--json"]).expect_success().json();
+    let entries = list.as_array().expect("the list is an array");
+    let names =
+        entries.iter().map(|entry| entry["name"].as_str().expect("every export has a name").to_owned());
+    let names: Vec<_> = names.collect();
+    assert_eq!(names.len(), Shading::ALL.len() + 1, "{names:?}");
+    names
+}
+
+fn exported(names: &[&str], language: &str) -> String {
+    let arguments = [&["shader"], names, &["--lang", language]].concat();
+    run(&arguments).expect_success().stdout
+}
+
+fn folder() -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("shader");
+    std::fs::create_dir_all(&folder).expect("the folder can be made");
+    folder
+}
+
+/// Runs a compiler or validator; where it is not installed, says which Debian package has it.
+fn tool(program: &str, package: &str, arguments: &[&str]) -> Result<(), String> {
+    let output = Command::new(program).args(arguments).output();
+    let output =
+        output.unwrap_or_else(|fault| panic!("{program}: {fault}: install the Debian package {package}"));
+    let said = [output.stdout, output.stderr].concat();
+    if output.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&said).into_owned()) }
+}
+
+fn valid_spirv(file: &Path) -> Result<(), String> {
+    tool("spirv-val", "spirv-tools", &["--target-env", "vulkan1.0", path(file)])
+}
+
+fn path(file: &Path) -> &str {
+    file.to_str().expect("the path of the target folder is plain text")
+}
+
+/// Compiles a whole shader, whose entry point of a pixel is `main` or `shade`.
+fn compile(code: &str, language: &str, name: &str) -> Result<(), String> {
+    let file = folder().join(format!("{name}.{language}"));
+    std::fs::write(&file, code).expect("the shader can be written");
+    match language {
+        "wgsl" => validate_wgsl(code),
+        "glsl" => tool("glslangValidator", "glslang-tools", &["-S", "frag", path(&file)]),
+        "hlsl" => {
+            let spirv = file.with_extension("hlsl.spv");
+            let arguments = ["-D", "-V", "-S", "frag", "-e", "shade", "-o", path(&spirv), path(&file)];
+            tool("glslangValidator", "glslang-tools", &arguments)?;
+            valid_spirv(&spirv)
+        }
+        other => panic!("no compiler of {other} is known"),
+    }
+}
+
+fn validate_wgsl(code: &str) -> Result<(), String> {
+    use naga::valid::{Capabilities, ValidationFlags, Validator};
+    let module = naga::front::wgsl::parse_str(code).map_err(|error| error.emit_to_string(code))?;
+    let validated = Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module);
+    validated.map(drop).map_err(|error| error.emit_to_string(code))
+}
+
+/// A desktop shader as one of OpenGL ES.
+fn for_es(code: &str) -> String {
+    let start = "#version 310 es\nprecision highp float;\nprecision highp sampler2DArray;";
+    assert!(code.starts_with("#version 450"));
+    code.replacen("#version 450", start, 1)
+}
+
+/// The code of an export, without comments.
+fn code_of(text: &str) -> String {
+    let lines = text.lines().map(|line| line.split("//").next().unwrap_or_default());
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn the_list_has_a_line_for_every_export() {
+    let list = run(["shader"]).expect_success().stdout;
+    let listed: Vec<_> = list.lines().filter_map(|line| line.split_whitespace().next()).collect();
+    assert_eq!(listed, names());
+    assert!(Shading::ALL.iter().all(|model| listed.contains(&model.name())));
+}
+
+#[test]
+fn every_text_starts_with_source_conventions_and_calls() {
+    for name in names() {
+        for language in TEXTS {
+            let text = exported(&[&name], language);
+            let header: Vec<_> = text.lines().take_while(|line| line.starts_with("//")).collect();
+            let header = header.join("\n");
+            for part in ["Source: ", "Conventions:", "tangent frame", "Packing, for textures", "How to call"]
+            {
+                assert!(header.contains(part), "{name}, {language}: no '{part}' in\n{header}");
+            }
+            assert!(header.contains(&format!("\n// {name}: ")), "{name}, {language}");
+            assert!(header.lines().all(|line| line.chars().count() <= 120), "{name}, {language}\n{header}");
+            let function = format!("{}(", if name == "reflectance" { "schlick" } else { "_lobe" });
+            assert!(code_of(&text).contains(&function), "{name}, {language}");
+        }
+    }
+}
+
+/// Identifiers to which naga has added: `view_3`, `lean1_`, padding. Its temporaries, `_e7`, have no name to lose.
+fn mangled(code: &str) -> Vec<&str> {
+    let words = code.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'));
+    let is_mangled = |word: &&str| {
+        let numbered = word
+            .rsplit_once('_')
+            .is_some_and(|(base, number)| !base.is_empty() && number.chars().all(|c| c.is_ascii_digit()));
+        numbered || word.contains("pad")
+    };
+    words.filter(is_mangled).collect()
+}
+
+#[test]
+fn names_are_as_they_were_written() {
+    for name in names().iter().map(String::as_str).chain(["all"]) {
+        for language in TEXTS {
+            let code = code_of(&exported(&[name], language));
+            assert_eq!(mangled(&code), Vec::<&str>::new(), "{name}, {language}");
+        }
+    }
+    assert_eq!(
+        mangled("float f(float view_1, vec4 lean1_) { int _pad0; _e3 }"),
+        ["view_1", "lean1_", "_pad0"]
+    );
+}
+
+/// Words of the languages in which the calls of a header are put to the test.
+struct Dialect {
+    language: &'static str,
+    vec4: &'static str,
+    vec3: &'static str,
+    /// What the pixel's entry point starts with; its body follows.
+    entry: &'static str,
+    exit: &'static str,
+}
+
+const DIALECTS: [Dialect; 2] = [
+    Dialect {
+        language: "glsl",
+        vec4: "vec4",
+        vec3: "vec3",
+        entry: "layout(std140, binding = 0) uniform Material { Packing packing; LobeOptions options; vec4 given; };
+            layout(location = 0) out vec4 colour;
+            void main() {",
+        exit: "colour = vec4(lobe * normal, 1.0); }",
+    },
+    Dialect {
+        language: "hlsl",
+        vec4: "float4",
+        vec3: "float3",
+        entry: "cbuffer Material : register(b0) { Packing packing; LobeOptions options; float4 given; };
+            float4 shade() : SV_Target {",
+        exit: "return float4(lobe * normal, 1.0); }",
+    },
+];
+
+/// The statements that the header of a model's export names, and the texels that they need.
+fn calls(text: &str) -> (Vec<String>, Vec<String>) {
+    let header = text.lines().take_while(|line| line.starts_with("//"));
+    let mut lines = header.skip_while(|line| !line.contains(", with the texels "));
+    let (_, texels) = lines.next().and_then(|line| line.split_once(", with the texels ")).expect("texels");
+    let texels = texels.trim_end_matches(':').split(", ").map(str::to_owned).collect();
+    let statements = lines.take(2).flat_map(|line| line.trim_start_matches("//").trim().split(";  "));
+    (texels, statements.map(|call| call.trim_end_matches(';').to_owned()).collect())
+}
+
+/// A shader that makes the calls of the header.
+fn caller(text: &str, dialect: &Dialect) -> String {
+    let Dialect { vec4, vec3, entry, exit, .. } = dialect;
+    let (texels, statements) = calls(text);
+    let mut code = format!("{text}\n{entry}\n");
+    for texel in &texels {
+        code += &format!("{vec4} {texel} = given;\n");
+    }
+    code += &format!("{vec3} view = given.xyz; {vec3} light = given.zyx;\n");
+    assert_eq!(statements.len(), 3, "{statements:?}");
+    for statement in statements {
+        let (value, call) = statement.split_once(" = ").expect("a call gives a value");
+        let function = call.split('(').next().expect("a call has a function");
+        let definition = text.lines().find(|line| {
+            !line.starts_with("//")
+                && line
+                    .split_whitespace()
+                    .nth(1)
+                    .is_some_and(|word| word.starts_with(&format!("{function}(")))
+        });
+        let definition = definition.unwrap_or_else(|| panic!("{function} is not defined in\n{text}"));
+        let kind = definition.split_whitespace().next().expect("a definition starts with its type");
+        code += &format!("{kind} {value} = {call};\n");
+    }
+    code + exit
+}
+
+#[test]
+fn the_calls_of_every_header_compile() {
+    for model in Shading::ALL {
+        for dialect in &DIALECTS {
+            let text = exported(&[model.name(), "reflectance"], dialect.language);
+            let code = caller(&text, dialect);
+            let name = format!("calls-{model}");
+            match dialect.language {
+                "glsl" => {
+                    let desktop = format!("#version 450\n{code}");
+                    compile(&desktop, "glsl", &name).unwrap_or_else(|said| panic!("{model}: {said}"));
+                    compile(&for_es(&desktop), "glsl", &format!("{name}-es"))
+                        .unwrap_or_else(|said| panic!("{model}, ES: {said}"));
+                }
+                language => compile(&code, language, &name).unwrap_or_else(|said| panic!("{model}: {said}")),
+            }
+        }
+    }
+}
+
+#[test]
+fn every_export_compiles_on_its_own() {
+    for name in names().iter().map(String::as_str).chain(["all"]) {
+        let file = format!("alone-{name}");
+        let text = |language| exported(&[name], language);
+        validate_wgsl(&text("wgsl")).unwrap_or_else(|said| panic!("{name}: {said}"));
+        let glsl = format!("#version 450\n{}\nvoid main() {{}}\n", text("glsl"));
+        compile(&glsl, "glsl", &file).unwrap_or_else(|said| panic!("{name}: {said}"));
+        compile(&for_es(&glsl), "glsl", &format!("{file}-es"))
+            .unwrap_or_else(|said| panic!("{name}: {said}"));
+        let hlsl = format!("{}\nfloat4 shade() : SV_Target {{ return 0.0; }}\n", text("hlsl"));
+        compile(&hlsl, "hlsl", &file).unwrap_or_else(|said| panic!("{name}: {said}"));
+        let msl = text("msl");
+        assert_eq!(msl.matches('{').count(), msl.matches('}').count(), "{name}");
+    }
+}
+
+#[test]
+fn every_models_spirv_is_valid_and_has_its_entry_point() {
+    for name in Shading::ALL.iter().map(|model| model.name()).chain(["all"]) {
+        let file = folder().join(format!("{name}.spv"));
+        run(["shader", name, "--lang", "spirv", "-o", path(&file)]).expect_success();
+        valid_spirv(&file).unwrap_or_else(|said| panic!("{name}: {said}"));
+        let bytes = std::fs::read(&file).expect("the module was written");
+        let entry = match name {
+            "all" => "shade_".to_owned(),
+            model => format!("shade_{}", model.replace('-', "_")),
+        };
+        assert!(bytes.windows(entry.len()).any(|window| window == entry.as_bytes()), "{name}: no {entry}");
+    }
+}
+
+#[test]
+fn the_compilers_refuse_what_is_wrong() {
+    let right = exported(&["lean"], "glsl");
+    let wrong = right.replacen("return", "return undefined +", 1);
+    let shader = |code: &str| format!("#version 450\n{code}\nvoid main() {{}}\n");
+    assert!(compile(&shader(&right), "glsl", "right").is_ok());
+    assert!(compile(&shader(&wrong), "glsl", "wrong").is_err());
+    let broken = folder().join("broken.spv");
+    std::fs::write(&broken, [0_u8; 64]).expect("the file can be written");
+    assert!(valid_spirv(&broken).is_err());
+    assert!(validate_wgsl("fn f() -> f32 { return 1u; }").is_err());
+}
+
+/// The blocks of a document that are marked as compiled, with their language.
+fn examples(document: &str) -> Vec<(String, String)> {
+    let blocks = document.split("<!-- compiled: ").skip(1).map(|after| {
+        let (language, rest) = after.split_once(" -->").expect("the mark is closed");
+        let block = rest.split("```").nth(1).expect("a block of code follows the mark");
+        let (_, code) = block.split_once('\n').expect("the block's language has its own line");
+        (language.to_owned(), code.to_owned())
+    });
+    blocks.collect()
+}
+
+#[test]
+fn the_documents_examples_compile() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/shaders.md");
+    let document = std::fs::read_to_string(file).expect("docs/shaders.md is there");
+    let examples = examples(&document);
+    let languages: Vec<_> = examples.iter().map(|(language, _)| language.as_str()).collect();
+    assert_eq!(languages, ["wgsl", "glsl", "hlsl"]);
+    for (language, code) in &examples {
+        let command = code.lines().find_map(|line| line.strip_prefix("// roughcast ")).expect("an export");
+        let arguments: Vec<_> = command.split_whitespace().collect();
+        let export = run(&arguments).expect_success().stdout;
+        let code = code.replacen(&format!("// roughcast {command}"), &export, 1);
+        compile(&code, language, "example").unwrap_or_else(|said| panic!("{language}: {said}"));
+        if language == "glsl" {
+            compile(&for_es(&code), "glsl", "example-es").unwrap_or_else(|said| panic!("ES: {said}"));
+        }
+    }
+    for name in names() {
+        assert!(document.contains(&format!("`{name}`")), "docs/shaders.md does not speak of {name}");
+    }
+}
+
+#[test]
+fn what_makes_no_sense_is_refused_in_a_line() {
+    run(["shader", "loan"]).expect_usage_error("loan");
+    run(["shader", "lean", "--lang", "cg"]).expect_usage_error("cg");
+    run(["shader", "reflectance", "--lang", "spirv"]).expect_usage_error("name a model");
+    run(["shader", "-o", "out.wgsl"]).expect_usage_error("name");
+}
