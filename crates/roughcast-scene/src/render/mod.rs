@@ -1,5 +1,6 @@
 //! The CPU renderer: shading methods as a GPU runs them, and the supersampled truth that they are compared with.
 
+mod inputs;
 mod method;
 mod normal_quantile;
 mod shade;
@@ -11,6 +12,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use rayon::prelude::*;
 use roughcast::texture::Part;
 
+pub use inputs::{ModelInputs, model_inputs};
 pub use method::{Method, ShadingTextures};
 pub use truth::{MAX_SAMPLES, PIXEL_FILTER_DEVIATION, PIXEL_FILTER_RADIUS, Truth};
 
