@@ -119,7 +119,10 @@ fn what_cannot_be_rendered_is_refused_in_one_line_and_leaves_nothing() {
 fn command_lines_that_make_no_sense_are_refused() {
     let folder = scratch();
     let output = folder.path().join("picture.png");
-    let refused = |arguments: &[&str], words: &str| render(&output, arguments).expect_usage_error(words);
+    let map = map();
+    let refused = |arguments: &[&str], words: &str| {
+        run(["render", text(&map), "-o", text(&output)].iter().chain(arguments)).expect_usage_error(words);
+    };
     refused(&["--size", "0x0"], "no pixels");
     refused(&["--size", "99999999x99999999"], "too large");
     refused(&["--filter", "truth:5"], "square");
@@ -135,7 +138,7 @@ fn command_lines_that_make_no_sense_are_refused() {
     refused(&["--gpu", "--cpu"], "--cpu");
     refused(&["--camera", "0,0,0", "--look-at", "0,0,0"], "camera");
     let picture = folder.path().join("picture.jpg");
-    run(["render", text(&map()), "-o", text(&picture)]).expect_refusal(2, &picture);
+    run(["render", text(&map), "-o", text(&picture)]).expect_refusal(2, &picture);
     assert!(names(folder.path()).is_empty());
 }
 
