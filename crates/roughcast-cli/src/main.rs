@@ -6,6 +6,7 @@
 mod args;
 mod bake;
 mod batch;
+mod compare;
 mod display;
 mod figures;
 mod html;
@@ -46,6 +47,7 @@ enum Command {
     Unpack(unpack::Args),
     Precision(precision::Args),
     Render(render::Args),
+    Compare(compare::Args),
     Figures(figures::Args),
     Shader(shader::Args),
 }
@@ -61,6 +63,7 @@ fn main() -> ExitCode {
         Command::Unpack(args) => unpack::run(&args),
         Command::Precision(args) => precision::run(&args),
         Command::Render(args) => render::run(&args),
+        Command::Compare(args) => compare::run(&args),
         Command::Figures(args) => figures::run(&args),
         Command::Shader(args) => shader::run(&args),
     };

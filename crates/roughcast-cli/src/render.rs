@@ -20,7 +20,7 @@ use crate::display::{exposure_of, shown};
 use crate::input::{Map, read_map};
 use crate::method::{TextureOptions, bake_for};
 use crate::output::is_same_file;
-use crate::scene_args::{SHADING, SceneArgs, ShadingArgs, Size, size};
+use crate::scene_args::{CameraArgs, SHADING, SceneArgs, ShadingArgs, Size, size};
 use crate::{UsageError, progress, usage, warn};
 
 /// Render a map on a shape: what it looks like with LEAN, with the old ways, or in truth.
@@ -68,6 +68,9 @@ pub struct Args {
 
     #[command(flatten)]
     scene: SceneArgs,
+
+    #[command(flatten)]
+    camera: CameraArgs,
 
     /// Width and height of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = size)]
@@ -180,7 +183,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     args.check()?;
     let map = read_map(&args.map, &args.source)?;
     map.warnings.iter().for_each(|warning| warn(&args.map, warning));
-    let scene = args.scene.scene(&map.image, args.size, args.shading_options.material())?;
+    let scene = args.camera.scene(&args.scene, &map.image, args.size, args.shading_options.material())?;
     let painter = Painter::new(args, &map)?;
     match args.frames {
         None => {

@@ -5,7 +5,7 @@ use roughcast::texture::TextureArray;
 use roughcast_gpu::render::{DrawOptions, Geometry, GpuTextures, RenderTarget, Renderer, render};
 use roughcast_gpu::{Gpu, GpuError};
 use roughcast_scene::render::{Method, ShadingTextures, unwatched};
-use roughcast_scene::{Picture, Sampler, Scene};
+use roughcast_scene::{Picture, Sampler, Scene, Shape};
 
 use roughcast::shading::Shading;
 
@@ -130,13 +130,22 @@ pub fn inside(cpu: &Picture, gpu: &Picture, i: usize) -> bool {
         .all(|j| cpu.coverage[j] == own && gpu.coverage[j] == own)
 }
 
-/// Whether the middle of a pixel shows a place at least so many texels from the edges of its texel, of maps of
-/// `side` x `side` texels. Nearer to them a rounding decides which texel is taken.
-pub fn within_texel(scene: &Scene, (width, height): (u32, u32), i: usize, side: f64, margin: f64) -> bool {
+/// The least cosine between view and surface, below which flat triangles are seen too obliquely to stand for round shapes:
+/// where they lie a little lower, the eye meets them somewhere else.
+const OBLIQUE: f64 = 0.3;
+/// From the poles of a sphere, in parts of the map's height, where triangles do not have the direction of its tangent.
+const POLE: f64 = 0.1;
+
+/// Whether the middle of a pixel shows a place where flat triangles stand for the shape, and where a rounding does not
+/// decide which texel is the nearest: at least `margin` texels from the edges of its texel, of maps of `side` texels.
+pub fn well_placed(scene: &Scene, (width, height): (u32, u32), i: usize, side: f64, margin: f64) -> bool {
     let (x, y) = (i % width as usize, i / width as usize);
     let ray = scene.camera.ray(x as f64 + 0.5, y as f64 + 0.5, width, height);
-    let Some(hit) = scene.shape.hit(&ray) else { return true };
+    let Some(hit) = scene.shape.hit(&ray) else { return false };
+    let round = matches!(*scene.shape, Shape::Sphere(_) | Shape::Torus(_));
+    let at_pole = matches!(*scene.shape, Shape::Sphere(_)) && !(POLE..1.0 - POLE).contains(&hit.uv.y);
     let at = hit.uv * scene.repeats * side;
-    let from_edge = (at - at.round()).abs();
-    from_edge.min_element() > margin
+    let from_edge = (at - at.round()).abs().min_element();
+    let oblique = round && -hit.geometric_normal.dot(ray.direction) < OBLIQUE;
+    from_edge >= margin && !oblique && !at_pole
 }

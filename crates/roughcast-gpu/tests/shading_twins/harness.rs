@@ -18,6 +18,8 @@ const WORKGROUP: u32 = 64;
 pub struct Twin {
     /// The WGSL function's name.
     pub name: &'static str,
+    /// What it gives.
+    pub gives: Gives,
     /// A WGSL statement that calls it with `f(i)`, `f2(i)`, ... of the arguments, `o()` the options and `p()` the packing, and
     /// writes what it gives.
     pub call: &'static str,
@@ -25,6 +27,17 @@ pub struct Twin {
     pub arguments: fn(&mut crate::inputs::Inputs) -> Vec<f32>,
     /// The Rust twin; where Rust has it only inside of others, the formula in f64.
     pub rust: fn(&[f32], &LobeOptions, &Packing) -> Vec<f32>,
+}
+
+/// What a function gives, where that decides how far roundings on the way bear on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Gives {
+    /// Numbers by themselves.
+    Numbers,
+    /// The six words of a Gaussian, whose determinant is a small difference of products.
+    Gaussian,
+    /// The eight words of a facet of GGX, whose tangent is a small difference of vectors.
+    Ggx,
 }
 
 /// One call.
@@ -122,6 +135,9 @@ fn source(library: &str, twin: &Twin, [stride, outputs, cases]: [usize; 3]) -> S
 /// them bear on the result together.
 const ARGUMENT_ULPS: f32 = 8.0;
 
+/// Where intermediate results of the size of one cancel, the result may be off by so many units of one.
+const CANCELLED_ULPS: f32 = 4.0;
+
 /// And be off by this part of its value: `exp` of a GPU is off by 3 + 2 |x| units (Vulkan), here of |x| <= 87, and `log` near 1
 /// by 2^-21, which an exponent of at most 430 (beyond it nothing is left where `log` is used) doubles into 1e-4.
 const RELATIVE: f32 = 1e-4;
@@ -135,13 +151,34 @@ pub fn first_difference(twin: &Twin, cases: &[Case], results: &[Vec<f32>]) -> Op
     cases.iter().zip(results).find_map(|(case, got)| {
         let rust = |arguments: &[f32]| (twin.rust)(arguments, &case.options, &case.packing);
         let wanted = rust(&case.arguments);
-        let allowed = tolerances(&rust, &case.arguments, &wanted);
+        let mut allowed = tolerances(&rust, &case.arguments, &wanted);
+        let cancelled = cancellation(twin.gives, &wanted);
+        allowed.iter_mut().zip(cancelled).for_each(|(allowed, more)| *allowed += more);
         let worst = (0..wanted.len()).find(|i| !((got[*i] - wanted[*i]).abs() <= allowed[*i]))?;
         Some(format!(
             "{} gives {:e} and not {:e} +- {:e} as number {worst}, for {:?} with {:?}",
             twin.name, got[worst], wanted[worst], allowed[worst], case.arguments, case.options
         ))
     })
+}
+
+/// What roundings before a subtraction leave in its result, which moving the arguments does not show.
+fn cancellation(gives: Gives, wanted: &[f32]) -> Vec<f32> {
+    let unit = CANCELLED_ULPS * f32::EPSILON;
+    let mut left = vec![0.0; wanted.len()];
+    match gives {
+        Gives::Numbers => {}
+        Gives::Gaussian => {
+            let [xx, yy, xy] = [wanted[2], wanted[3], wanted[4]];
+            let determinant = unit * (xx * yy + xy * xy).abs();
+            // The repair adds about determinant / trace to the variances.
+            let variance = determinant / (xx + yy).abs().max(f32::MIN_POSITIVE);
+            (left[2], left[3], left[5]) = (variance, variance, 2.0 * determinant);
+        }
+        // The part of a direction in the surface's plane that is across the normal is no shorter than the normal's z.
+        Gives::Ggx => left[4..7].fill(unit / wanted[2]),
+    }
+    left
 }
 
 /// How far each result moves when the arguments do.

@@ -96,7 +96,7 @@ fn wrong_twins_are_caught() {
             "cross(surface.normal, surface.tangent), h) / surface.alpha_along",
         ),
         ("ggx_surface", "anisotropy.z * anisotropy.z", "anisotropy.z"),
-        ("half_vector", "normalize(view + light)", "0.5 * (view + light)"),
+        ("specular_radiance", "dot(view, normalize(view + light))", "dot(view, view + light)"),
         ("beckmann_lobe", "0.5 * surface.specular_power", "surface.specular_power"),
         ("cosine_lobe", "(exponent + 2.0)", "(exponent + 1.0)"),
         ("phong_lobe", "2.0 * dot(surface.normal, view)", "dot(surface.normal, view)"),

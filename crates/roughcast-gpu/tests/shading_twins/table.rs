@@ -4,7 +4,7 @@ use roughcast::shading::*;
 use roughcast::texture::{Packing, RoughnessStored};
 use roughcast::{Covariance, Slope, variance_from_stored};
 
-use crate::harness::Twin;
+use crate::harness::{Gives, Twin};
 use crate::inputs::{Inputs, gaussian_words};
 
 fn v3(a: &[f32]) -> [f32; 3] {
@@ -61,14 +61,6 @@ fn view_and_light(inputs: &mut Inputs) -> Vec<f32> {
     [inputs.direction(), inputs.direction()].concat()
 }
 
-fn above_the_surface(inputs: &mut Inputs) -> Vec<f32> {
-    let mut words = view_and_light(inputs);
-    for z in [2, 5] {
-        words[z] = words[z].abs().max(1e-6);
-    }
-    words
-}
-
 fn axis_and_direction(inputs: &mut Inputs) -> Vec<f32> {
     let words = inputs.facet_lobe();
     let exponent = inputs.options.specular_power;
@@ -111,78 +103,91 @@ fn surface_twins() -> Vec<Twin> {
     vec![
         Twin {
             name: "phong_surface",
+            gives: Gives::Numbers,
             call: "put_facet(phong_surface(f3(0u), o()));",
             arguments: normal,
             rust: |a, o, _| facet_words(phong_surface(v3(a), o)),
         },
         Twin {
             name: "blinn_phong_surface",
+            gives: Gives::Numbers,
             call: "put_facet(blinn_phong_surface(f3(0u), o()));",
             arguments: normal,
             rust: |a, o, _| facet_words(blinn_phong_surface(v3(a), o)),
         },
         Twin {
             name: "beckmann_surface",
+            gives: Gives::Numbers,
             call: "put_facet(beckmann_surface(f3(0u), o()));",
             arguments: normal,
             rust: |a, o, _| facet_words(beckmann_surface(v3(a), o)),
         },
         Twin {
             name: "off_centre_surface",
+            gives: Gives::Gaussian,
             call: "put_gaussian(off_centre_surface(f3(0u), o()));",
             arguments: normal,
             rust: |a, o, _| gaussian_words(&off_centre_surface(v3(a), o)).to_vec(),
         },
         Twin {
             name: "lean_surface",
+            gives: Gives::Gaussian,
             call: "put_gaussian(lean_surface(f4(0u), f4(4u), p(), o()));",
             arguments: Inputs::lean,
             rust: |a, o, p| gaussian_words(&lean_surface(v4(a), v4(&a[4..]), p, o)).to_vec(),
         },
         Twin {
             name: "clean_surface",
+            gives: Gives::Gaussian,
             call: "put_gaussian(clean_surface(f4(0u), p(), o()));",
             arguments: clean,
             rust: |a, o, p| gaussian_words(&clean_surface(v4(a), p, o)).to_vec(),
         },
         Twin {
             name: "toksvig_normal",
+            gives: Gives::Numbers,
             call: "put3(toksvig_normal(f4(0u), p()));",
             arguments: toksvig,
             rust: |a, _, p| toksvig_normal(v4(a), p).to_vec(),
         },
         Twin {
             name: "toksvig_surface",
+            gives: Gives::Numbers,
             call: "put_facet(toksvig_surface(f4(0u), p(), o()));",
             arguments: toksvig,
             rust: |a, o, p| facet_words(toksvig_surface(v4(a), p, o)),
         },
         Twin {
             name: "variance_surface",
+            gives: Gives::Gaussian,
             call: "put_gaussian(variance_surface(f4(0u), p(), o()));",
             arguments: variance,
             rust: |a, o, p| gaussian_words(&variance_surface(v4(a), p, o)).to_vec(),
         },
         Twin {
             name: "ggx_surface",
+            gives: Gives::Ggx,
             call: "put_ggx(ggx_surface(f4(0u), f(4u), f4(5u), p(), o()));",
             arguments: Inputs::material,
             rust: |a, o, p| ggx_words(ggx_surface(v4(a), a[4], v4(&a[5..]), p, o)),
         },
         Twin {
             name: "ggx_surface_of_normal",
+            gives: Gives::Ggx,
             call: "put_ggx(ggx_surface_of_normal(f3(0u), o()));",
             arguments: normal,
             rust: |a, o, _| ggx_words(ggx_surface_of_normal(v3(a), o)),
         },
         Twin {
             name: "ggx_normal",
+            gives: Gives::Numbers,
             call: "put3(ggx_normal(f4(0u), p()));",
             arguments: Inputs::material,
             rust: |a, _, p| ggx_normal(v4(a), p).to_vec(),
         },
         Twin {
             name: "ggx_facet",
+            gives: Gives::Ggx,
             call: "put_ggx(ggx_facet(f3(0u), f2(3u), f(5u), f(6u)));",
             arguments: |inputs| {
                 let normal = unit_normal(inputs.normal());
@@ -204,6 +209,7 @@ fn lobe_twins() -> Vec<Twin> {
     vec![
         Twin {
             name: "phong_lobe",
+            gives: Gives::Numbers,
             call: "put(phong_lobe(facet(0u), f3(4u), f3(7u), o()));",
             arguments: |inputs| {
                 let mut words = inputs.facet_lobe();
@@ -215,54 +221,63 @@ fn lobe_twins() -> Vec<Twin> {
         },
         Twin {
             name: "blinn_phong_lobe",
+            gives: Gives::Numbers,
             call: "put(blinn_phong_lobe(facet(0u), f3(4u), f3(7u), o()));",
             arguments: Inputs::facet_lobe,
             rust: |a, o, _| one(blinn_phong_lobe(&facet(a), v3(&a[4..]), v3(&a[7..]), o)),
         },
         Twin {
             name: "beckmann_lobe",
+            gives: Gives::Numbers,
             call: "put(beckmann_lobe(facet(0u), f3(4u), f3(7u), o()));",
             arguments: Inputs::facet_lobe,
             rust: |a, o, _| one(beckmann_lobe(&facet(a), v3(&a[4..]), v3(&a[7..]), o)),
         },
         Twin {
             name: "toksvig_lobe",
+            gives: Gives::Numbers,
             call: "put(toksvig_lobe(facet(0u), f3(4u), f3(7u), o()));",
             arguments: Inputs::facet_lobe,
             rust: |a, o, _| one(toksvig_lobe(&facet(a), v3(&a[4..]), v3(&a[7..]), o)),
         },
         Twin {
             name: "off_centre_lobe",
+            gives: Gives::Numbers,
             call: "put(off_centre_lobe(gaussian(0u), f3(6u), f3(9u), o()));",
             arguments: Inputs::gaussian_lobe,
             rust: |a, o, _| one(off_centre_lobe(&gaussian(a), v3(&a[6..]), v3(&a[9..]), o)),
         },
         Twin {
             name: "lean_lobe",
+            gives: Gives::Numbers,
             call: "put(lean_lobe(gaussian(0u), f3(6u), f3(9u), o()));",
             arguments: Inputs::gaussian_lobe,
             rust: |a, o, _| one(lean_lobe(&gaussian(a), v3(&a[6..]), v3(&a[9..]), o)),
         },
         Twin {
             name: "clean_lobe",
+            gives: Gives::Numbers,
             call: "put(clean_lobe(gaussian(0u), f3(6u), f3(9u), o()));",
             arguments: Inputs::gaussian_lobe,
             rust: |a, o, _| one(clean_lobe(&gaussian(a), v3(&a[6..]), v3(&a[9..]), o)),
         },
         Twin {
             name: "variance_lobe",
+            gives: Gives::Numbers,
             call: "put(variance_lobe(gaussian(0u), f3(6u), f3(9u), o()));",
             arguments: Inputs::gaussian_lobe,
             rust: |a, o, _| one(variance_lobe(&gaussian(a), v3(&a[6..]), v3(&a[9..]), o)),
         },
         Twin {
             name: "gaussian_lobe",
+            gives: Gives::Numbers,
             call: "put(gaussian_lobe(gaussian(0u), f3(6u), f3(9u), o()));",
             arguments: Inputs::gaussian_lobe,
             rust: |a, o, _| one(gaussian_lobe(&gaussian(a), v3(&a[6..]), v3(&a[9..]), o)),
         },
         Twin {
             name: "ggx_lobe",
+            gives: Gives::Numbers,
             call: "put(ggx_lobe(ggx(0u), f3(8u), f3(11u), o()));",
             arguments: Inputs::ggx_lobe,
             rust: |a, o, _| one(ggx_lobe(&ggx(a), v3(&a[8..]), v3(&a[11..]), o)),
@@ -273,94 +288,85 @@ fn lobe_twins() -> Vec<Twin> {
 fn part_twins() -> Vec<Twin> {
     vec![
         Twin {
-            name: "unpack",
-            call: "put(unpack(f(0u), f2(1u)));",
-            arguments: |inputs| vec![inputs.unit(), inputs.of_any_size(0.1, 9.0), inputs.unit()],
-            rust: |a, _, _| one((f64::from(a[0]) * f64::from(a[1]) + f64::from(a[2])) as f32),
-        },
-        Twin {
             name: "both_above",
+            gives: Gives::Numbers,
             call: "put(select(0.0, 1.0, both_above(f3(0u), f3(3u))));",
             arguments: view_and_light,
             rust: |a, _, _| one(f32::from(u8::from(a[2] > LEAST_HEIGHT && a[5] > LEAST_HEIGHT))),
         },
         Twin {
-            name: "half_vector",
-            call: "put3(half_vector(f3(0u), f3(3u)));",
-            arguments: above_the_surface,
-            rust: |a, _, _| normalized([0, 1, 2].map(|i| f64::from(a[i]) + f64::from(a[i + 3]))),
-        },
-        Twin {
             name: "unit_normal",
+            gives: Gives::Numbers,
             call: "put3(unit_normal(f3(0u)));",
             arguments: normal,
             rust: |a, _, _| unit_normal(v3(a)).to_vec(),
         },
         Twin {
             name: "bump_facet",
+            gives: Gives::Numbers,
             call: "put_facet(bump_facet(f3(0u), f(3u)));",
             arguments: |inputs| [&inputs.normal()[..], &[inputs.options.specular_power]].concat(),
             rust: |a, _, _| facet_words(bump_facet(v3(a), a[3])),
         },
         Twin {
             name: "bump_normal",
+            gives: Gives::Numbers,
             call: "put3(bump_normal(f4(0u), p()));",
             arguments: |inputs| inputs.lean()[..4].to_vec(),
             rust: |a, _, p| bump_normal(v4(a), p).to_vec(),
         },
         Twin {
             name: "log_one_plus",
+            gives: Gives::Numbers,
             call: "put(log_one_plus(f(0u)));",
             arguments: |inputs| vec![inputs.of_any_size(1e-12, 1e12).abs()],
             rust: |a, _, _| one(f64::from(a[0]).ln_1p() as f32),
         },
         Twin {
             name: "cosine_power",
+            gives: Gives::Numbers,
             call: "put(cosine_power(f3(0u), f3(3u), f(6u)));",
             arguments: axis_and_direction,
             rust: |a, _, _| one(cosine_power(v3(a), v3(&a[3..]), a[6])),
         },
         Twin {
             name: "cosine_lobe",
+            gives: Gives::Numbers,
             call: "put(cosine_lobe(f3(0u), f3(3u), f(6u), o().form));",
             arguments: axis_and_direction,
             rust: |a, o, _| one(cosine_lobe(v3(a), v3(&a[3..]), a[6], o.form)),
         },
         Twin {
             name: "base_covariance",
+            gives: Gives::Numbers,
             call: "put3(base_covariance(f2(0u), o()));",
             arguments: |inputs| inputs.slope().to_vec(),
             rust: |a, o, _| covariance_words(base_covariance(slope(a), o)),
         },
         Twin {
             name: "base_to_add",
+            gives: Gives::Numbers,
             call: "put3(base_to_add(f2(0u), o()));",
             arguments: |inputs| inputs.slope().to_vec(),
             rust: |a, o, _| covariance_words(base_to_add(slope(a), o)),
         },
         Twin {
-            name: "covariance_determinant",
-            call: "put(covariance_determinant(f3(0u)));",
-            arguments: |inputs| inputs.covariance().to_vec(),
-            rust: |a, _, _| {
-                let [xx, yy, xy] = [a[0], a[1], a[2]].map(f64::from);
-                one((xx * yy - xy * xy) as f32)
-            },
-        },
-        Twin {
             name: "positive_semidefinite",
+            gives: Gives::Numbers,
             call: "put3(positive_semidefinite(f3(0u)));",
             arguments: |inputs| inputs.covariance().to_vec(),
             rust: |a, _, _| covariance_words(covariance(a).positive_semidefinite()),
         },
         Twin {
             name: "slope_gaussian",
+            gives: Gives::Gaussian,
             call: "put_gaussian(slope_gaussian(f2(0u), f3(2u), o()));",
             arguments: |inputs| [&inputs.slope()[..], &inputs.covariance()].concat(),
             rust: |a, o, _| gaussian_words(&slope_gaussian(slope(a), covariance(&a[2..]), o)).to_vec(),
         },
         Twin {
             name: "variance_from_stored",
+            gives: Gives::Numbers,
             call: "put(variance_from_stored(f(0u), o().roughness_stored));",
             arguments: |inputs| vec![inputs.material()[4]],
             rust: |a, o, _| {
@@ -371,24 +377,28 @@ fn part_twins() -> Vec<Twin> {
         },
         Twin {
             name: "slope_normal",
+            gives: Gives::Numbers,
             call: "put3(slope_normal(f2(0u)));",
             arguments: |inputs| inputs.slope().to_vec(),
             rust: |a, _, _| slope_normal(slope(a)).to_vec(),
         },
         Twin {
             name: "schlick",
+            gives: Gives::Numbers,
             call: "put(schlick(f(0u), f(1u)));",
             arguments: |inputs| vec![inputs.unit(), inputs.between(-0.1, 1.1)],
             rust: |a, _, _| one(schlick(a[0], a[1])),
         },
         Twin {
             name: "ambient_radiance",
+            gives: Gives::Numbers,
             call: "put3(ambient_radiance(f3(0u), f3(3u)));",
             arguments: |inputs| (0..6).map(|_| inputs.unit()).collect(),
             rust: |a, _, _| ambient_radiance(v3(a), v3(&a[3..])).to_vec(),
         },
         Twin {
             name: "diffuse_radiance",
+            gives: Gives::Numbers,
             call: "put3(diffuse_radiance(f3(0u), f3(3u), f3(6u), f3(9u)));",
             arguments: |inputs| {
                 let colours: Vec<f32> = (0..6).map(|_| inputs.unit()).collect();
@@ -398,6 +408,7 @@ fn part_twins() -> Vec<Twin> {
         },
         Twin {
             name: "specular_radiance",
+            gives: Gives::Numbers,
             call: "put3(specular_radiance(f(0u), f3(1u), f3(4u), f3(7u), f3(10u), o()));",
             arguments: lobe_and_light,
             rust: |a, o, _| {
