@@ -14,6 +14,7 @@ mod info;
 mod input;
 mod method;
 mod output;
+mod painter;
 mod precision;
 mod progress;
 mod render;
