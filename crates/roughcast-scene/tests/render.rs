@@ -315,6 +315,21 @@ fn what_cannot_be_rendered_is_refused() {
 }
 
 #[test]
+fn truths_that_share_their_rays_are_those_of_each_model() {
+    const SMALL: (u32, u32) = (24, 16);
+    let (map, scene) = figure_14();
+    let truth = map.truth(Shading::Lean, power(64.0, Form::Normalised), 9);
+    let together = truth.render_each(Shading::ALL, &scene, SMALL, &unwatched).unwrap();
+    assert_eq!(together.len(), Shading::ALL.len());
+    for (shading, picture) in Shading::ALL.iter().zip(&together) {
+        let alone = Truth { shading: *shading, ..truth }.render(&scene, SMALL, &unwatched).unwrap();
+        assert!(*picture == alone, "{shading}");
+    }
+    assert!(together[0] != together[1], "different lobes look alike");
+    assert_eq!(truth.render_each(&[], &scene, SMALL, &unwatched), Ok(Vec::new()));
+}
+
+#[test]
 fn progress_is_told_of_every_row_and_can_stop() {
     let (map, scene) = (flat(), plane(1.0));
     let truth = map.truth(Shading::OffCentre, power(32.0, Form::Paper), 1);
