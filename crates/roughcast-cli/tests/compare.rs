@@ -61,7 +61,8 @@ fn every_method_filter_and_view_has_its_row_and_lean_wins_from_afar() {
         let keys: Vec<&String> = row.as_object().expect("a row is an object").keys().collect();
         assert_eq!(keys, KEYS);
         assert_eq!(row["scene"], "plane");
-        let number = |key: &str| row[key].as_f64().filter(|n| n.is_finite()).unwrap_or_else(|| panic!("{row}"));
+        let number =
+            |key: &str| row[key].as_f64().filter(|n| n.is_finite()).unwrap_or_else(|| panic!("{row}"));
         assert!(number("rmse") > 0.0 && (0.0..=1.0).contains(&number("flip")), "{row}");
         assert!(number("energy") >= -1.0 && number("flicker") >= 0.0, "{row}");
     }
@@ -110,14 +111,16 @@ fn lean_misses_grooves_by_more_than_it_misses_stone_and_the_page_says_so() {
 #[test]
 fn the_page_needs_no_other_file_and_has_every_picture() {
     let folder = scratch();
-    compare(folder.path(), &["--views", "mid,mid", "--filters", "trilinear", "--frames", "2"]).expect_success();
+    compare(folder.path(), &["--views", "mid,mid", "--filters", "trilinear", "--frames", "2"])
+        .expect_success();
     let page = std::fs::read_to_string(folder.path().join("index.html")).expect("the page is there");
     for foreign in ["http:", "https:", "src=\"/", "href", "<link", "<script", "url(", "@import"] {
         assert!(!page.contains(foreign), "the page has {foreign}");
     }
     let pictures = page.matches("src=\"data:image/png;base64,").count();
-    // The scale; then for each view the moving picture, and truth, picture and errors of every method.
-    assert_eq!(pictures, 1 + (1 + LIMIT_VIEWS) * (1 + 3 * METHODS.len()));
+    // The scale; two distributions of each map; then for each view the moving picture, and truth, picture and errors of every
+    // method.
+    assert_eq!(pictures, 1 + 2 * 3 + (1 + LIMIT_VIEWS) * (1 + 3 * METHODS.len()));
     assert_eq!(page.matches("src=").count(), pictures);
     for setting in ["16 bits", "256", "paper", "64x48", "16 samples a pixel", "towards "] {
         assert!(page.contains(setting), "the page does not say {setting}");
