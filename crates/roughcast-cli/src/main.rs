@@ -6,6 +6,7 @@
 mod args;
 mod bake;
 mod batch;
+mod compare;
 mod display;
 mod figures;
 mod html;
@@ -13,6 +14,7 @@ mod info;
 mod input;
 mod method;
 mod output;
+mod painter;
 mod precision;
 mod progress;
 mod render;
@@ -46,6 +48,7 @@ enum Command {
     Unpack(unpack::Args),
     Precision(precision::Args),
     Render(render::Args),
+    Compare(compare::Args),
     Figures(figures::Args),
     Shader(shader::Args),
 }
@@ -61,6 +64,7 @@ fn main() -> ExitCode {
         Command::Unpack(args) => unpack::run(&args),
         Command::Precision(args) => precision::run(&args),
         Command::Render(args) => render::run(&args),
+        Command::Compare(args) => compare::run(&args),
         Command::Figures(args) => figures::run(&args),
         Command::Shader(args) => shader::run(&args),
     };

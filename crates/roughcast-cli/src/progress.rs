@@ -16,6 +16,15 @@ pub fn bar(steps: u64) -> ProgressBar {
     bar
 }
 
+/// A bar over long work, which tells the time that is left.
+pub fn timed_bar(steps: u64) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr());
+    let style = ProgressStyle::with_template("{bar:24} {percent}% {wide_msg} {eta} left")
+        .expect("the template is a constant");
+    bar.set_style(style);
+    bar
+}
+
 /// The stages of one job: shown on a bar while it lasts, and listed with their times afterwards.
 pub struct Stages {
     bar: ProgressBar,

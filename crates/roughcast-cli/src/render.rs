@@ -2,25 +2,25 @@
 
 use std::fs;
 use std::io::Write;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use clap::ValueHint;
-use indicatif::ProgressBar;
 use roughcast::shading::Shading;
+use roughcast_gpu::render::DrawOptions;
 use roughcast_io::picture::{Plane, write_exr, write_png};
 use roughcast_io::{AtomicFile, AtomicSet};
-use roughcast_scene::render::{Method, ShadingTextures, Truth};
-use roughcast_scene::{Filter, Picture, Reconstruction, Sampler, Scene, SlopeMap};
+use roughcast_scene::render::ShadingTextures;
+use roughcast_scene::{Filter, Picture, Sampler, Scene, SlopeMap};
 
 use crate::args::{SourceArgs, one_of};
 use crate::display::{exposure_of, shown};
 use crate::input::{Map, read_map};
 use crate::method::{TextureOptions, bake_for};
 use crate::output::is_same_file;
-use crate::scene_args::{SHADING, SceneArgs, ShadingArgs, Size, size};
+use crate::painter::{GpuPainter, MethodPainter, Painter, TruthPainter};
+use crate::scene_args::{CameraArgs, SHADING, SceneArgs, ShadingArgs, Size, size};
 use crate::{UsageError, progress, usage, warn};
 
 /// Render a map on a shape: what it looks like with LEAN, with the old ways, or in truth.
@@ -69,11 +69,14 @@ pub struct Args {
     #[command(flatten)]
     scene: SceneArgs,
 
+    #[command(flatten)]
+    camera: CameraArgs,
+
     /// Width and height of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = size)]
     size: Size,
 
-    /// Brightness that is shown as white, in stops below the automatic one
+    /// Brighter (above 0) or darker (below 0) than the automatic exposure of PNG, in stops
     #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true)]
     exposure: f32,
 
@@ -180,8 +183,8 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     args.check()?;
     let map = read_map(&args.map, &args.source)?;
     map.warnings.iter().for_each(|warning| warn(&args.map, warning));
-    let scene = args.scene.scene(&map.image, args.size, args.shading_options.material())?;
-    let painter = Painter::new(args, &map)?;
+    let scene = args.camera.scene(&args.scene, &map.image, args.size, args.shading_options.material())?;
+    let mut painter = args.painter(&map, &scene)?;
     match args.frames {
         None => {
             let format = PictureFormat::of(&args.output)?;
@@ -192,7 +195,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             add(&mut set, &args.output, format, &picture, args.exposure_of(&picture))?;
             set.commit()?;
         }
-        Some(frames) => render_frames(args, &scene, &painter, frames)?,
+        Some(frames) => render_frames(args, &scene, &mut painter, frames)?,
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -223,86 +226,43 @@ impl Args {
         Ok(())
     }
 
-    /// One exposure for all frames, or they would flicker by themselves.
+    /// The exposure of a picture. Frames all take the first one's, or they would flicker by themselves.
     fn exposure_of(&self, first: &Picture) -> f32 {
-        exposure_of(first) * (-self.exposure).exp2()
+        exposure_of(first) * self.exposure.exp2()
     }
 
-    fn sampler(&self, filter: Filter, map: &Map) -> Sampler {
-        Sampler { filter, level: self.level, mip_bias: self.mip_bias, wrap: map.options.wrap }
-    }
-}
-
-/// What renders, with the textures that it needs.
-enum Painter {
-    Method {
-        textures: ShadingTextures,
-        sampler: Sampler,
-        args: ShadingArgs,
-        size: Size,
-    },
-    Truth {
-        slopes: SlopeMap,
-        shading: Shading,
-        samples: u32,
-        map_wrap: roughcast::Wrap,
-        args: ShadingArgs,
-        size: Size,
-    },
-}
-
-impl Painter {
-    fn new(args: &Args, map: &Map) -> Result<Self> {
-        let (shading_args, size) = (args.shading_options.clone(), args.size);
-        let path = || args.map.display().to_string();
-        match args.filter {
+    /// What renders, with the textures that it needs.
+    fn painter(&self, map: &Map, scene: &Scene) -> Result<Painter> {
+        let named = || self.map.display().to_string();
+        let (shading, size) = (self.shading, (self.size.width, self.size.height));
+        let options = self.shading_options.lobe_options();
+        let filter = match self.filter {
             FilterChoice::Truth(samples) => {
-                let slopes = SlopeMap::of(&map.image, &map.options).with_context(path)?;
-                let map_wrap = map.options.wrap;
-                Ok(Self::Truth { slopes, shading: args.shading, samples, map_wrap, args: shading_args, size })
+                let slopes = SlopeMap::of(&map.image, &map.options).with_context(named)?;
+                let wrap = map.options.wrap;
+                return Ok(Painter::Truth(TruthPainter { slopes, shading, wrap, options, samples, size }));
             }
-            FilterChoice::Textures(filter) => {
-                let options = TextureOptions {
-                    bits: shading_args.bits,
-                    lobe: shading_args.lobe,
-                    specular_power: shading_args.specular_power,
-                };
-                let arrays = bake_for(args.shading, &map.image, &map.options, options).with_context(path)?;
-                let textures = ShadingTextures::new(args.shading, &arrays)?;
-                Ok(Self::Method { textures, sampler: args.sampler(filter, map), args: shading_args, size })
-            }
-        }
-    }
-
-    fn paint(&self, scene: &Scene, bar: &ProgressBar) -> Result<Picture> {
-        bar.reset();
-        let watch = |done: usize, rows: usize| {
-            bar.set_length(rows as u64);
-            bar.set_position(done as u64);
-            ControlFlow::Continue(())
+            FilterChoice::Textures(filter) => filter,
         };
-        Ok(match self {
-            Self::Method { textures, sampler, args, size } => {
-                let method = Method { textures, sampler: *sampler, options: args.lobe_options() };
-                method.render(scene, (size.width, size.height), &watch)?
-            }
-            Self::Truth { slopes, shading, samples, map_wrap, args, size } => {
-                let truth = Truth {
-                    shading: *shading,
-                    slopes,
-                    reconstruction: Reconstruction::Linear,
-                    wrap: *map_wrap,
-                    options: args.lobe_options(),
-                    samples: *samples,
-                };
-                truth.render(scene, (size.width, size.height), &watch)?
-            }
-        })
+        let sampler = Sampler { filter, level: self.level, mip_bias: self.mip_bias, wrap: map.options.wrap };
+        let texture_options = TextureOptions {
+            bits: self.shading_options.bits,
+            lobe: self.shading_options.lobe,
+            specular_power: self.shading_options.specular_power,
+        };
+        let arrays = bake_for(shading, &map.image, &map.options, texture_options).with_context(named)?;
+        if self.gpu {
+            let draw_options = DrawOptions { sampler, lobe: options };
+            let painter = GpuPainter::new(shading, &arrays, &draw_options, scene, size)?;
+            return Ok(Painter::Gpu(Box::new(painter)));
+        }
+        let textures = ShadingTextures::new(shading, &arrays)?;
+        Ok(Painter::Method(MethodPainter { textures, sampler, options, size }))
     }
 }
 
 /// All frames, or none.
-fn render_frames(args: &Args, scene: &Scene, painter: &Painter, frames: u32) -> Result<()> {
+fn render_frames(args: &Args, scene: &Scene, painter: &mut Painter, frames: u32) -> Result<()> {
     let folder = || args.output.display().to_string();
     fs::create_dir_all(&args.output).with_context(folder)?;
     let bar = progress::bar(1);

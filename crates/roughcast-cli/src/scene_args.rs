@@ -146,7 +146,7 @@ pub fn size(text: &str) -> Result<Size, String> {
     }
 }
 
-/// What a picture shows.
+/// What there is to be seen.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = SCENE)]
 pub struct SceneArgs {
@@ -154,6 +154,34 @@ pub struct SceneArgs {
     #[arg(long, value_name = "SCENE", default_value = "plane", value_parser = SceneChoice::parse)]
     pub scene: SceneChoice,
 
+    /// A light: the direction towards it as X,Y,Z, or point:X,Y,Z; behind that its colour as ,R,G,B (irradiance; pi is white).
+    /// May be given more than once [default: one whose highlight is in the picture]
+    #[arg(long = "light", value_name = "LIGHT", value_parser = light, allow_hyphen_values = true)]
+    pub lights: Vec<Light>,
+}
+
+impl SceneArgs {
+    /// The scene of a standard view of the shape, for a map of `texels` and a picture of `size`.
+    pub fn view(
+        &self,
+        view: View,
+        shape: Arc<Shape>,
+        texels: (usize, usize),
+        size: Size,
+        material: Material,
+    ) -> Scene {
+        let mut scene = view.scene(shape, texels, (size.width, size.height), material);
+        if !self.lights.is_empty() {
+            scene.lights.clone_from(&self.lights);
+        }
+        scene
+    }
+}
+
+/// What of it a single picture shows.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = SCENE)]
+pub struct CameraArgs {
     /// Where the camera stands: near, mid, far or grazing, or the position of the eye as X,Y,Z (y is up)
     #[arg(long, value_name = "VIEW|X,Y,Z", default_value = "mid", value_parser = camera, allow_hyphen_values = true)]
     pub camera: CameraChoice,
@@ -166,46 +194,41 @@ pub struct SceneArgs {
     #[arg(long, value_name = "DEGREES", default_value_t = 40.0, value_parser = angle)]
     pub fov: f64,
 
-    /// A light: the direction towards it as X,Y,Z, or point:X,Y,Z; behind that its colour as ,R,G,B (irradiance; pi is white).
-    /// May be given more than once [default: one whose highlight is in the picture]
-    #[arg(long = "light", value_name = "LIGHT", value_parser = light, allow_hyphen_values = true)]
-    pub lights: Vec<Light>,
-
     /// How often the map repeats over the scene's texture coordinates [default: chosen for the scene]
     #[arg(long, value_name = "N", value_parser = positive)]
     pub repeat: Option<f32>,
 }
 
-impl SceneArgs {
+impl CameraArgs {
     /// The scene for a map and a picture of this size.
-    pub fn scene(&self, map: &Image, size: Size, material: Material) -> Result<Scene> {
-        let shape = Arc::new(self.scene.shape()?);
-        let (texels, size) = ((map.width(), map.height()), (size.width, size.height));
-        let mut scene = match self.camera {
+    pub fn scene(&self, scene: &SceneArgs, map: &Image, size: Size, material: Material) -> Result<Scene> {
+        let shape = Arc::new(scene.scene.shape()?);
+        let texels = (map.width(), map.height());
+        let mut seen = match self.camera {
             CameraChoice::View(view) => {
                 if self.look_at.is_some() {
                     let line =
                         "--look-at goes with a camera at X,Y,Z; a named view looks at the scene by itself";
                     return Err(UsageError(line.to_owned()).into());
                 }
-                view.scene(shape, texels, size, material)
+                scene.view(view, shape, texels, size, material)
             }
             CameraChoice::Eye(eye) => {
                 let target = self.look_at.unwrap_or_else(|| shape.bounds().centre);
                 let camera = Camera::new(eye, target, DVec3::Y, self.fov.to_radians())
                     .map_err(|error| UsageError(format!("--camera: {error}")))?;
-                let scene = View::Mid.scene(shape, texels, size, material);
-                let lights = vec![default_light(&scene.shape, &camera, size, View::Mid)];
-                Scene { camera, lights, ..scene }
+                let mut seen = scene.view(View::Mid, shape, texels, size, material);
+                if scene.lights.is_empty() {
+                    let light = default_light(&seen.shape, &camera, (size.width, size.height), View::Mid);
+                    seen.lights = vec![light];
+                }
+                Scene { camera, ..seen }
             }
         };
-        if !self.lights.is_empty() {
-            scene.lights.clone_from(&self.lights);
-        }
         if let Some(repeats) = self.repeat {
-            scene.repeats = f64::from(repeats);
+            seen.repeats = f64::from(repeats);
         }
-        Ok(scene)
+        Ok(seen)
     }
 }
 

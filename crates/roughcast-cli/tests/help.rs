@@ -5,7 +5,7 @@ mod common;
 use common::{Outcome, command, run};
 use roughcast::texture::Layout;
 
-const SUBCOMMANDS: [&str; 5] = ["bake", "info", "unpack", "precision", "shader"];
+const SUBCOMMANDS: [&str; 7] = ["bake", "info", "unpack", "precision", "render", "figures", "shader"];
 
 fn help(subcommand: &str, flag: &str) -> String {
     let output = command([subcommand, flag]).env("COLUMNS", "80").output().expect("the program starts");

@@ -162,6 +162,20 @@ impl Gpu {
         Ok(())
     }
 
+    /// Refuses a format between whose texels the device cannot interpolate.
+    ///
+    /// # Errors
+    /// [`GpuError::Format`], which names what to use instead.
+    pub fn require_filterable(&self, format: wgpu::TextureFormat) -> Result<(), GpuError> {
+        self.require_format(format, wgpu::TextureUsages::TEXTURE_BINDING)?;
+        let kind = format.sample_type(None, Some(self.features));
+        if kind == Some(wgpu::TextureSampleType::Float { filterable: true }) {
+            return Ok(());
+        }
+        let instead = "use half floats (--bits half) instead";
+        Err(GpuError::Format { wanted: "filter", format, instead })
+    }
+
     /// Makes a texture, or says why there can be none.
     ///
     /// # Errors

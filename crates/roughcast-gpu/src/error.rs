@@ -1,6 +1,7 @@
 //! What can go wrong on a GPU. One line each, with the mend.
 
 use roughcast::BakeError;
+use roughcast_scene::render::RenderError;
 
 /// Why something could not be done on the GPU.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -98,6 +99,9 @@ pub enum GpuError {
     /// The map cannot be read as slopes, or options do not go together.
     #[error(transparent)]
     Bake(#[from] BakeError),
+    /// The scene cannot be rendered, or a model's textures are not complete.
+    #[error(transparent)]
+    Scene(#[from] RenderError),
     /// A texture or an image is not of the kind that is needed.
     #[error("{0}")]
     Shape(String),

@@ -9,6 +9,7 @@ pub mod bake;
 mod device;
 mod error;
 pub mod read_back;
+pub mod render;
 mod timestamps;
 
 pub use device::{AdapterChoice, Gpu, GpuOptions, LimitChoice};

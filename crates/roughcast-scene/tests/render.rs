@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use glam::DVec3;
 use roughcast::shading::{Form, LobeOptions, Material, Shading};
 use roughcast::texture::{Part, TextureArray};
-use roughcast::{BakeOptions, BaseRoughness, Bits, Wrap, bake};
+use roughcast::{BakeOptions, BaseRoughness, Bits, RoughnessTexture, Wrap, bake};
 use roughcast_scene::metrics::{energy_error, flicker, rmse};
 use roughcast_scene::pattern::{self, Pattern};
 use roughcast_scene::render::{Method, RenderError, ShadingTextures, Truth, unwatched};
@@ -272,6 +272,26 @@ fn curved_shapes_shade_without_a_number_that_is_none() {
 }
 
 #[test]
+fn packed_roughness_shades_as_roughness_alone() {
+    let map = Map::new(pattern::random_bumps(64, 0.3, 7));
+    let (scene, options) = (plane(4.0), power(64.0, Form::Normalised));
+    let picture = |roughness_texture| {
+        let bake_options =
+            BakeOptions { layout: Shading::Ggx.layout(), roughness_texture, ..BakeOptions::default() };
+        let base = Some(BaseRoughness::Variance(1.0 / 64.0));
+        let baked = bake(&map.pattern.heights, &map.pattern.source_options(), base, &bake_options).unwrap();
+        let textures = ShadingTextures::new(Shading::Ggx, &baked.arrays).unwrap();
+        let method = Method { textures: &textures, sampler: Sampler::default(), options };
+        method.render(&scene, SIZE, &unwatched).unwrap()
+    };
+    let (alone, packed) = (picture(RoughnessTexture::Alone), picture(RoughnessTexture::Packed));
+    assert_eq!(alone, packed);
+    // The roughness is not the red channel's occlusion of one, with which there would be hardly a highlight.
+    let brightest = packed.specular.iter().map(|s| s[0]).fold(0.0, f32::max);
+    assert!(brightest > 0.02, "{brightest}");
+}
+
+#[test]
 fn what_cannot_be_rendered_is_refused() {
     let (map, scene) = (flat(), plane(1.0));
     let options = power(32.0, Form::Paper);
@@ -292,6 +312,21 @@ fn what_cannot_be_rendered_is_refused() {
     blind.camera.target = blind.camera.eye;
     let result = map.truth(Shading::OffCentre, options, 1).render(&blind, SIZE, &unwatched);
     assert!(matches!(result, Err(RenderError::Camera(_))));
+}
+
+#[test]
+fn truths_that_share_their_rays_are_those_of_each_model() {
+    const SMALL: (u32, u32) = (24, 16);
+    let (map, scene) = figure_14();
+    let truth = map.truth(Shading::Lean, power(64.0, Form::Normalised), 9);
+    let together = truth.render_each(Shading::ALL, &scene, SMALL, &unwatched).unwrap();
+    assert_eq!(together.len(), Shading::ALL.len());
+    for (shading, picture) in Shading::ALL.iter().zip(&together) {
+        let alone = Truth { shading: *shading, ..truth }.render(&scene, SMALL, &unwatched).unwrap();
+        assert!(*picture == alone, "{shading}");
+    }
+    assert!(together[0] != together[1], "different lobes look alike");
+    assert_eq!(truth.render_each(&[], &scene, SMALL, &unwatched), Ok(Vec::new()));
 }
 
 #[test]

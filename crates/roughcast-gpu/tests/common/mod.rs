@@ -4,6 +4,8 @@
 
 pub mod compare;
 pub mod maps;
+pub mod pictures;
+pub mod scenes;
 
 use roughcast_gpu::{Gpu, GpuOptions, LimitChoice};
 

@@ -18,7 +18,7 @@ const RADIUS: f64 = 3.0;
 /// `x = RADIUS^2 / 2`. Widened by it, what is left has the variance that was wanted.
 const WIDENING: f64 = 1.053244;
 /// The shorter deviation has at least this many texels of the level, and less than twice as many: enough that a sum over
-/// texels is the integral to a thousandth.
+/// texels is the integral to a hundredth.
 const TEXELS: f64 = 1.0;
 /// Largest ratio of the axes. Beyond it the shorter is lengthened, so that a sample costs at most some 4000 texels.
 pub(super) const MAX_ECCENTRICITY: f64 = 32.0;

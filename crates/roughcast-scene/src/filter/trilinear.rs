@@ -9,8 +9,8 @@ use crate::mipmap::{Level, Mipmap, wrapped};
 
 /// The level of detail at which a footprint is about a texel wide: the logarithm of its larger extent, in texels.
 ///
-/// Hardware takes the longer of the two derivatives; it is at most the ellipse's longer axis, and that times the root of
-/// two at least.
+/// Hardware takes the longer of the two derivatives. That is at most the ellipse's longer axis, and at least the axis over
+/// the root of two: there up to half a level sharper.
 pub(super) fn level_of(texels: &Footprint) -> f64 {
     Ellipse::of(texels).major.max(f64::MIN_POSITIVE).log2()
 }

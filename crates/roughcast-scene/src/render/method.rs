@@ -1,15 +1,15 @@
 //! A shading method as a GPU runs it: one sample a pixel, at its centre, from filtered textures.
 
-use roughcast::Lobe;
-use roughcast::shading::{Input, LobeOptions, Shading};
-use roughcast::texture::{Packing, Part, Texture, TextureArray, TextureInfo};
+use roughcast::shading::{LobeOptions, Shading};
+use roughcast::texture::{Packing, TextureArray, TextureInfo};
 
+use super::inputs::model_inputs;
 use super::shade::Shaded;
 use super::{Progress, RenderError, render_rows};
 use crate::{Footprint, Hit, Mipmap, Picture, Sampler, Scene};
 
-/// The green channel of a packed texture: glTF's roughness.
-const ROUGHNESS_CHANNEL: usize = 1;
+/// The place of a material's roughness among its textures.
+const ROUGHNESS: usize = 1;
 /// No model samples more textures.
 const MAX_TEXTURES: usize = 3;
 
@@ -29,16 +29,14 @@ impl ShadingTextures {
     /// # Errors
     /// [`RenderError::MissingTexture`] where one is not there.
     pub fn new(shading: Shading, arrays: &[TextureArray]) -> Result<Self, RenderError> {
-        let has = |part: Part| arrays.iter().any(|array| array.info.part == part);
-        let lobe = if has(Part::Anisotropy) { Lobe::Anisotropic } else { Lobe::Isotropic };
-        let inputs = shading.inputs(lobe);
-        let textures = inputs.iter().map(|input| mipmap(*input, arrays)).collect::<Result<_, _>>()?;
-        let first = array(inputs[0].part, arrays).ok_or_else(|| missing(inputs[0]))?;
-        if first.info.layout != shading.layout() {
-            return Err(missing(inputs[0]));
+        let inputs = model_inputs(shading, arrays)?;
+        let mut textures =
+            inputs.textures.iter().map(|texture| Mipmap::of(texture)).collect::<Result<Vec<_>, _>>()?;
+        if inputs.roughness_channel != 0 {
+            let packed = textures.remove(ROUGHNESS);
+            textures.insert(ROUGHNESS, packed.with_first_channel(inputs.roughness_channel));
         }
-        let packing = Packing::new(&first.info, first.layers[0].sample_type());
-        Ok(Self { shading, textures, packing, info: first.info })
+        Ok(Self { shading, textures, packing: inputs.packing, info: inputs.info })
     }
 
     /// The model.
@@ -49,27 +47,6 @@ impl ShadingTextures {
     /// Width and height of level 0.
     pub fn size(&self) -> (usize, usize) {
         self.textures[0].size()
-    }
-}
-
-fn array(part: Part, arrays: &[TextureArray]) -> Option<&TextureArray> {
-    arrays.iter().find(|array| array.info.part == part)
-}
-
-fn missing(input: Input) -> RenderError {
-    RenderError::MissingTexture { part: input.part, layer: input.layer }
-}
-
-fn mipmap(input: Input, arrays: &[TextureArray]) -> Result<Mipmap, RenderError> {
-    let layer = |texture: &&Texture| texture.name == input.layer;
-    if let Some(texture) = array(input.part, arrays).and_then(|array| array.layers.iter().find(layer)) {
-        return Ok(Mipmap::of(texture)?);
-    }
-    match array(Part::OcclusionRoughnessMetallic, arrays) {
-        Some(packed) if input.part == Part::Roughness => {
-            Ok(Mipmap::of(&packed.layers[0])?.with_first_channel(ROUGHNESS_CHANNEL))
-        }
-        _ => Err(missing(input)),
     }
 }
 

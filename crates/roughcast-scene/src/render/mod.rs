@@ -1,5 +1,6 @@
 //! The CPU renderer: shading methods as a GPU runs them, and the supersampled truth that they are compared with.
 
+mod inputs;
 mod method;
 mod normal_quantile;
 mod shade;
@@ -11,6 +12,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use rayon::prelude::*;
 use roughcast::texture::Part;
 
+pub use inputs::{ModelInputs, model_inputs};
 pub use method::{Method, ShadingTextures};
 pub use truth::{MAX_SAMPLES, PIXEL_FILTER_DEVIATION, PIXEL_FILTER_RADIUS, Truth};
 
@@ -65,35 +67,69 @@ pub enum RenderError {
 /// another.
 fn render_rows(
     scene: &Scene,
-    (width, height): (u32, u32),
+    size: (u32, u32),
     progress: Progress<'_>,
     pixel: impl Fn(u32, u32) -> Shaded + Sync,
 ) -> Result<Picture, RenderError> {
+    let mut pictures = render_rows_of_each(1, scene, size, progress, |x, y, each| each[0] = pixel(x, y))?;
+    Ok(pictures.remove(0))
+}
+
+/// Fills `count` pictures at once, as [`render_rows`] does one; `pixel` is given a place for each.
+fn render_rows_of_each(
+    count: usize,
+    scene: &Scene,
+    (width, height): (u32, u32),
+    progress: Progress<'_>,
+    pixel: impl Fn(u32, u32, &mut [Shaded]) + Sync,
+) -> Result<Vec<Picture>, RenderError> {
     if width == 0 || height == 0 || u64::from(width) * u64::from(height) > MAX_PIXELS {
         return Err(RenderError::Size(width, height));
     }
     scene.camera.validate()?;
-    let mut picture = Picture::empty(width as usize, height as usize);
-    let columns = width as usize;
+    let mut pictures = vec![Picture::empty(width as usize, height as usize); count];
     let (done, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
-    let rows = picture
-        .radiance
-        .par_chunks_mut(columns)
-        .zip(picture.specular.par_chunks_mut(columns))
-        .zip(picture.coverage.par_chunks_mut(columns))
-        .enumerate();
-    rows.for_each(|(y, ((radiance, specular), coverage))| {
+    rows_of_each(&mut pictures, height as usize).into_par_iter().enumerate().for_each(|(y, mut rows)| {
         if stopped.load(Ordering::Relaxed) {
             return;
         }
-        for x in 0..columns {
-            let shaded = pixel(x as u32, y as u32);
-            (radiance[x], specular[x], coverage[x]) = (shaded.radiance, shaded.specular, shaded.coverage);
+        let mut shaded = vec![Shaded::default(); count];
+        for x in 0..width as usize {
+            pixel(x as u32, y as u32, &mut shaded);
+            rows.iter_mut().zip(&shaded).for_each(|(row, shaded)| row.set(x, shaded));
         }
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;
         if progress(done, height as usize).is_break() {
             stopped.store(true, Ordering::Relaxed);
         }
     });
-    if stopped.into_inner() { Err(RenderError::Cancelled) } else { Ok(picture) }
+    if stopped.into_inner() { Err(RenderError::Cancelled) } else { Ok(pictures) }
+}
+
+/// A row of a picture that is being rendered.
+struct Row<'a> {
+    radiance: &'a mut [[f32; 3]],
+    specular: &'a mut [[f32; 3]],
+    coverage: &'a mut [f32],
+}
+
+impl Row<'_> {
+    fn set(&mut self, x: usize, shaded: &Shaded) {
+        (self.radiance[x], self.specular[x], self.coverage[x]) =
+            (shaded.radiance, shaded.specular, shaded.coverage);
+    }
+}
+
+/// For every row, that row of each picture.
+fn rows_of_each(pictures: &mut [Picture], height: usize) -> Vec<Vec<Row<'_>>> {
+    let mut rows: Vec<Vec<Row<'_>>> = (0..height).map(|_| Vec::with_capacity(pictures.len())).collect();
+    for picture in pictures {
+        let width = picture.width;
+        let parts = picture.radiance.chunks_mut(width).zip(picture.specular.chunks_mut(width));
+        let parts = parts.zip(picture.coverage.chunks_mut(width));
+        for (row, ((radiance, specular), coverage)) in rows.iter_mut().zip(parts) {
+            row.push(Row { radiance, specular, coverage });
+        }
+    }
+    rows
 }

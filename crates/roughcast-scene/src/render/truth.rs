@@ -8,9 +8,8 @@ use roughcast::shading::{LobeOptions, Shading};
 
 use super::normal_quantile::normal_quantile;
 use super::shade::Shaded;
-use super::{Progress, RenderError, render_rows};
-use crate::camera::PixelRays;
-use crate::{Picture, Reconstruction, Scene, SlopeMap};
+use super::{Progress, RenderError, render_rows_of_each};
+use crate::{Picture, Ray, Reconstruction, Scene, SlopeMap};
 
 /// Most samples of a pixel.
 pub const MAX_SAMPLES: u32 = 4096;
@@ -53,43 +52,86 @@ impl Truth<'_> {
         size: (u32, u32),
         progress: Progress<'_>,
     ) -> Result<Picture, RenderError> {
+        Ok(self.render_each(&[self.shading], scene, size, progress)?.remove(0))
+    }
+
+    /// The truths of several models, in their order, each bit for bit as [`Truth::render`] has it: rays are traced and
+    /// slopes are looked up once for all. [`Truth::shading`] is not looked at.
+    ///
+    /// # Errors
+    /// As [`Truth::render`].
+    pub fn render_each(
+        &self,
+        shadings: &[Shading],
+        scene: &Scene,
+        size: (u32, u32),
+        progress: Progress<'_>,
+    ) -> Result<Vec<Picture>, RenderError> {
         let side = self.samples.isqrt();
         if side * side != self.samples || !(1..=MAX_SAMPLES).contains(&self.samples) {
             return Err(RenderError::Samples(self.samples));
         }
         let rays = scene.camera.pixel_rays(size.0, size.1);
-        render_rows(scene, size, progress, |x, y| self.pixel(scene, &rays, (x, y), side))
-    }
-
-    /// The mean of a pixel's samples, summed in f64.
-    fn pixel(&self, scene: &Scene, rays: &PixelRays, (x, y): (u32, u32), side: u32) -> Shaded {
-        let centre = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
-        let (mut radiance, mut specular, mut coverage) = ([0.0_f64; 3], [0.0_f64; 3], 0.0_f64);
-        for row in 0..side {
-            for column in 0..side {
-                let jitter = jitter(x, y, row * side + column);
-                let cell = (DVec2::new(f64::from(column), f64::from(row)) + jitter) / f64::from(side);
-                let at = centre + DVec2::new(filter_quantile(cell.x), filter_quantile(cell.y));
-                let sample = self.sample(scene, rays, at);
-                for channel in 0..3 {
-                    radiance[channel] += f64::from(sample.radiance[channel]);
-                    specular[channel] += f64::from(sample.specular[channel]);
-                }
-                coverage += f64::from(sample.coverage);
+        render_rows_of_each(shadings.len(), scene, size, progress, |x, y, means| {
+            let mut sums = vec![Sum::default(); shadings.len()];
+            for at in sample_places((x, y), side) {
+                self.add_sample(&mut sums, shadings, scene, &rays.ray(at.x, at.y));
             }
-        }
-        let mean = |sum: f64| (sum / f64::from(side * side)) as f32;
-        Shaded { radiance: radiance.map(mean), specular: specular.map(mean), coverage: mean(coverage) }
+            means.iter_mut().zip(&sums).for_each(|(mean, sum)| *mean = sum.mean(self.samples));
+        })
     }
 
+    /// Adds what a ray sees, shaded by each model, to its sum.
     #[inline]
-    fn sample(&self, scene: &Scene, rays: &PixelRays, at: DVec2) -> Shaded {
-        let ray = rays.ray(at.x, at.y);
-        let Some(hit) = scene.shape.hit(&ray) else { return Shaded::background(scene) };
+    fn add_sample(&self, sums: &mut [Sum], shadings: &[Shading], scene: &Scene, ray: &Ray) {
+        let Some(hit) = scene.shape.hit(ray) else {
+            let background = Shaded::background(scene);
+            return sums.iter_mut().for_each(|sum| sum.add(&background));
+        };
         let slope = self.slopes.at(hit.uv * scene.repeats, self.wrap, self.reconstruction);
-        let surface = self.shading.surface_of_slope(slope, &self.options);
-        Shaded::lit(scene, &ray, &hit, &surface, &self.options)
+        for (sum, shading) in sums.iter_mut().zip(shadings) {
+            let surface = shading.surface_of_slope(slope, &self.options);
+            sum.add(&Shaded::lit(scene, ray, &hit, &surface, &self.options));
+        }
     }
+}
+
+/// Samples of a pixel, added up in f64.
+#[derive(Clone, Copy, Default)]
+struct Sum {
+    radiance: [f64; 3],
+    specular: [f64; 3],
+    coverage: f64,
+}
+
+impl Sum {
+    fn add(&mut self, sample: &Shaded) {
+        for channel in 0..3 {
+            self.radiance[channel] += f64::from(sample.radiance[channel]);
+            self.specular[channel] += f64::from(sample.specular[channel]);
+        }
+        self.coverage += f64::from(sample.coverage);
+    }
+
+    fn mean(&self, samples: u32) -> Shaded {
+        let mean = |sum: f64| (sum / f64::from(samples)) as f32;
+        Shaded {
+            radiance: self.radiance.map(mean),
+            specular: self.specular.map(mean),
+            coverage: mean(self.coverage),
+        }
+    }
+}
+
+/// Where the samples of a pixel lie, `side` times `side` of them, in pixels of the picture.
+fn sample_places((x, y): (u32, u32), side: u32) -> impl Iterator<Item = DVec2> {
+    let centre = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+    let cells = (0..side).flat_map(move |row| (0..side).map(move |column| (column, row)));
+    cells.map(move |(column, row)| {
+        let jitter = jitter(x, y, row * side + column);
+        let cell = (DVec2::new(f64::from(column), f64::from(row)) + jitter) / f64::from(side);
+        centre + DVec2::new(filter_quantile(cell.x), filter_quantile(cell.y))
+    })
 }
 
 /// The place, in pixels from the centre, that the pixel filter stays below with this probability.

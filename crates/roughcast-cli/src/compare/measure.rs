@@ -1,0 +1,260 @@
+//! One map in one view: truths, every method with every filter, and how far each is from the truth of its base lobe.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use anyhow::Result;
+use indicatif::ProgressBar;
+use roughcast::shading::Shading;
+use roughcast_io::picture::Srgb8Picture;
+use roughcast_scene::metrics::{DEFAULT_PIXELS_PER_DEGREE, energy_error, flicker, hdr_flip, rmse};
+use roughcast_scene::render::{Method, ShadingTextures, Truth};
+use roughcast_scene::{
+    Filter, Light, Picture, Reconstruction, Sampler, Scene, Shape, SlopeMap, View, slow_move,
+};
+
+use super::colour_scale::error_picture;
+use super::results::Row;
+use super::subject::Subject;
+use crate::display::{exposure_of, shown};
+use crate::method::{TextureOptions, bake_for};
+use crate::scene_args::{SceneArgs, ShadingArgs, Size};
+
+/// How all maps and views are compared.
+pub struct Settings<'a> {
+    pub scene: &'a SceneArgs,
+    pub shape: Arc<Shape>,
+    pub shading: &'a ShadingArgs,
+    pub filters: Vec<Filter>,
+    pub size: Size,
+    /// Samples a pixel of the truths.
+    pub samples: u32,
+    /// Frames by which flicker is measured; none without it.
+    pub frames: u32,
+}
+
+/// What came of one map in one view.
+pub struct Comparison {
+    pub view: View,
+    pub lights: Vec<Light>,
+    /// The truth of each base lobe, in the order of the models.
+    pub truths: Vec<(Shading, Srgb8Picture)>,
+    /// By model, then by filter.
+    pub trials: Vec<Trial>,
+    /// Truth, ordinary bump mapping and LEAN side by side, while the camera moves; empty without flicker.
+    pub animation: Vec<Srgb8Picture>,
+}
+
+/// One method with one filter.
+pub struct Trial {
+    pub row: Row,
+    /// The root mean square error in parts of the truth's brightest value.
+    pub error_of_peak: f64,
+    pub picture: Srgb8Picture,
+    /// The errors of FLIP.
+    pub error: Srgb8Picture,
+}
+
+/// The truths of a view, frame by frame.
+struct Truths {
+    lobes: Vec<Shading>,
+    /// For every lobe its frames.
+    frames: Vec<Vec<Picture>>,
+}
+
+/// Work is counted in samples of a truth with all lobes; a pixel of a method is worth so many, its filtering included ...
+const METHOD_PIXEL: u64 = 3;
+/// ... and a pixel of FLIP's, over all exposures, so many.
+const FLIP_PIXEL: u64 = 60;
+
+impl Settings<'_> {
+    /// The work of one view, in the bar's steps.
+    pub fn work(&self) -> u64 {
+        let trials = (Shading::ALL.len() * self.filters.len()) as u64;
+        let frame = u64::from(self.samples) + METHOD_PIXEL * trials;
+        u64::from(self.size.height) * (frame * u64::from(self.frame_count()) + FLIP_PIXEL * trials)
+    }
+
+    /// The frame without a move is the picture itself.
+    fn frame_count(&self) -> u32 {
+        self.frames.max(1)
+    }
+
+    /// The filter of pictures that stand for a method: the best, where there are several.
+    pub fn main_filter(&self) -> Filter {
+        let anisotropic = self.filters.iter().find(|filter| **filter == Filter::Anisotropic);
+        *anisotropic.or(self.filters.last()).expect("the command line gives at least one")
+    }
+
+    /// Compares all methods on a map in a view.
+    pub fn compare(&self, subject: &Subject, view: View, bar: &ProgressBar) -> Result<Comparison> {
+        let texels = (subject.image.width(), subject.image.height());
+        let scene =
+            self.scene.view(view, Arc::clone(&self.shape), texels, self.size, self.shading.material());
+        let lights = scene.lights.clone();
+        let moves = slow_move(&scene, self.frame_count());
+        let truths = self.truths(subject, &moves, bar)?;
+        let exposure = exposure_of(&truths.of(Shading::Lean)[0]);
+
+        let mut trials = Vec::new();
+        let mut moving = vec![truths.of(Shading::Lean).iter().map(|frame| shown(frame, exposure)).collect()];
+        // Models that share a layout share its textures; one layout is held at a time.
+        for models in Shading::ALL.chunk_by(|a, b| a.layout() == b.layout()) {
+            let arrays = bake_for(models[0], &subject.image, &subject.options, self.texture_options())?;
+            for shading in models {
+                let textures = ShadingTextures::new(*shading, &arrays)?;
+                for filter in &self.filters {
+                    let sampler =
+                        Sampler { filter: *filter, wrap: subject.options.wrap, ..Sampler::default() };
+                    let method =
+                        Method { textures: &textures, sampler, options: self.shading.lobe_options() };
+                    let frames = self.frames_of(&method, &moves, bar)?;
+                    let row = self.row(subject, view, *shading, *filter);
+                    trials.push(self.judge(row, &frames, truths.of(*shading), exposure, bar)?);
+                    let is_shown = matches!(shading, Shading::BlinnPhong | Shading::Lean);
+                    if is_shown && *filter == self.main_filter() {
+                        moving.push(frames.iter().map(|frame| shown(frame, exposure)).collect());
+                    }
+                }
+            }
+        }
+        let animation = if self.frames > 0 { side_by_side(&moving) } else { Vec::new() };
+        Ok(Comparison { view, lights, truths: truths.stills(exposure), trials, animation })
+    }
+
+    fn texture_options(&self) -> TextureOptions {
+        TextureOptions {
+            bits: self.shading.bits,
+            lobe: self.shading.lobe,
+            specular_power: self.shading.specular_power,
+        }
+    }
+
+    fn truths(&self, subject: &Subject, moves: &[Scene], bar: &ProgressBar) -> Result<Truths> {
+        let slopes = SlopeMap::of(&subject.image, &subject.options)?;
+        let truth = Truth {
+            shading: Shading::Lean,
+            slopes: &slopes,
+            reconstruction: Reconstruction::Linear,
+            wrap: subject.options.wrap,
+            options: self.shading.lobe_options(),
+            samples: self.samples,
+        };
+        let mut lobes: Vec<Shading> = Vec::new();
+        for lobe in Shading::ALL.iter().map(|shading| shading.base_lobe()) {
+            if !lobes.contains(&lobe) {
+                lobes.push(lobe);
+            }
+        }
+        let watch = steps(bar, u64::from(self.samples));
+        let mut frames = vec![Vec::new(); lobes.len()];
+        for scene in moves {
+            let pictures = truth.render_each(&lobes, scene, (self.size.width, self.size.height), &watch)?;
+            frames.iter_mut().zip(pictures).for_each(|(frames, picture)| frames.push(picture));
+        }
+        Ok(Truths { lobes, frames })
+    }
+
+    fn frames_of(&self, method: &Method<'_>, moves: &[Scene], bar: &ProgressBar) -> Result<Vec<Picture>> {
+        let watch = steps(bar, METHOD_PIXEL);
+        let size = (self.size.width, self.size.height);
+        moves.iter().map(|scene| Ok(method.render(scene, size, &watch)?)).collect()
+    }
+
+    /// A row of the results, its numbers still missing.
+    fn row(&self, subject: &Subject, view: View, method: Shading, filter: Filter) -> Row {
+        Row {
+            map: subject.name.clone(),
+            scene: self.scene.scene.name(),
+            view,
+            method,
+            filter,
+            rmse: 0.0,
+            flip: 0.0,
+            energy: 0.0,
+            flicker: None,
+        }
+    }
+
+    /// Measures a method's frames against the truth's.
+    fn judge(
+        &self,
+        row: Row,
+        frames: &[Picture],
+        truth: &[Picture],
+        exposure: f32,
+        bar: &ProgressBar,
+    ) -> Result<Trial> {
+        let (picture, still) = (&frames[0], &truth[0]);
+        let error = rmse(picture, still)?;
+        let flip = hdr_flip(picture, still, DEFAULT_PIXELS_PER_DEGREE)?;
+        bar.inc(FLIP_PIXEL * u64::from(self.size.height));
+        let peak = still.radiance.iter().flatten().fold(0.0_f32, |peak, value| peak.max(*value));
+        Ok(Trial {
+            row: Row {
+                rmse: error,
+                flip: flip.mean,
+                energy: energy_error(picture, still)?,
+                flicker: if self.frames > 0 { Some(flicker(frames, truth)?) } else { None },
+                ..row
+            },
+            error_of_peak: error / f64::from(peak),
+            picture: shown(picture, exposure),
+            error: error_picture(flip.width, &flip.errors),
+        })
+    }
+}
+
+impl Comparison {
+    /// What came of a method with one of the filters that were tried.
+    pub fn trial(&self, method: Shading, filter: Filter) -> &Trial {
+        let found = self.trials.iter().find(|trial| trial.row.method == method && trial.row.filter == filter);
+        found.expect("every method was tried with every filter")
+    }
+
+    /// The truth of a method's base lobe.
+    pub fn truth(&self, method: Shading) -> &Srgb8Picture {
+        let found = self.truths.iter().find(|(lobe, _)| *lobe == method.base_lobe());
+        &found.expect("there is a truth of every base lobe").1
+    }
+}
+
+impl Truths {
+    /// The frames of the truth that a method is compared with.
+    fn of(&self, shading: Shading) -> &[Picture] {
+        let place = self.lobes.iter().position(|lobe| *lobe == shading.base_lobe());
+        &self.frames[place.expect("there is a truth of every base lobe")]
+    }
+
+    fn stills(&self, exposure: f32) -> Vec<(Shading, Srgb8Picture)> {
+        let stills = self.frames.iter().map(|frames| shown(&frames[0], exposure));
+        self.lobes.iter().copied().zip(stills).collect()
+    }
+}
+
+/// Moves the bar by so many steps for every row.
+fn steps(bar: &ProgressBar, each: u64) -> impl Fn(usize, usize) -> ControlFlow<()> + Sync {
+    move |_, _| {
+        bar.inc(each);
+        ControlFlow::Continue(())
+    }
+}
+
+/// Pixels between pictures.
+const GAP: u32 = 4;
+
+/// Sequences of equal length and size as one, side by side.
+fn side_by_side(sequences: &[Vec<Srgb8Picture>]) -> Vec<Srgb8Picture> {
+    let frame = |i: usize| {
+        let pictures: Vec<&Srgb8Picture> = sequences.iter().map(|sequence| &sequence[i]).collect();
+        let width = pictures.iter().map(|picture| picture.width + GAP).sum::<u32>() - GAP;
+        let mut frame = Srgb8Picture::black(width, pictures[0].height);
+        let mut x = 0;
+        for picture in pictures {
+            frame.paste(picture, x, 0);
+            x += picture.width + GAP;
+        }
+        frame
+    };
+    (0..sequences[0].len()).map(frame).collect()
+}

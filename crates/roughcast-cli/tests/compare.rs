@@ -1,0 +1,185 @@
+//! `compare`: rows, page, and what is said where there can be none.
+
+mod common;
+
+use std::path::{Path, PathBuf};
+
+use common::{Outcome, data, names, run, scratch, text};
+use serde_json::Value;
+
+/// Small pictures, few samples: seconds, and still enough for LEAN to win.
+const QUICK: [&str; 4] = ["--size", "64x48", "--samples", "16"];
+const METHODS: [&str; 9] =
+    ["phong", "blinn-phong", "beckmann", "off-centre", "lean", "clean", "toksvig", "variance", "ggx"];
+/// The keys of a row, in their order.
+const KEYS: [&str; 9] = ["map", "scene", "view", "method", "filter", "rmse", "flip", "energy", "flicker"];
+/// Grooves and wool, each in two views.
+const LIMIT_VIEWS: usize = 4;
+
+/// A real normal map.
+fn map() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/rock_normal.png")
+}
+
+fn compare(output: &Path, further: &[&str]) -> Outcome {
+    compare_map(&map(), output, further)
+}
+
+fn compare_map(map: &Path, output: &Path, further: &[&str]) -> Outcome {
+    run(["compare", text(map), "-o", text(output)].iter().chain(&QUICK).chain(further))
+}
+
+fn rows(folder: &Path) -> Vec<Value> {
+    let text = std::fs::read_to_string(folder.join("results.json")).expect("the results are there");
+    serde_json::from_str(&text).expect("a list of rows")
+}
+
+/// The number of the row that has these values.
+#[track_caller]
+fn number(rows: &[Value], [map, view, method, filter]: [&str; 4], key: &str) -> f64 {
+    let fits = |row: &&Value| {
+        row["map"] == map && row["view"] == view && row["method"] == method && row["filter"] == filter
+    };
+    let found: Vec<&Value> = rows.iter().filter(fits).collect();
+    let [row] = found[..] else { panic!("{} rows of {map}, {view}, {method}, {filter}", found.len()) };
+    row[key].as_f64().unwrap_or_else(|| panic!("{key} of {row}"))
+}
+
+#[test]
+fn every_method_filter_and_view_has_its_row_and_lean_wins_from_afar() {
+    let folder = scratch();
+    // A folder below one that is not there, either.
+    let report = folder.path().join("deep/report");
+    let outcome = compare(&report, &["--frames", "3"]).expect_success();
+    assert!(outcome.stderr.is_empty(), "{}", outcome.stderr);
+    assert!(outcome.stdout.contains("rock_normal.png, far: ordinary bump mapping"), "{}", outcome.stdout);
+    assert_eq!(names(&report), ["index.html", "results.json"]);
+
+    let rows = rows(&report);
+    assert_eq!(rows.len(), (4 + LIMIT_VIEWS) * METHODS.len() * 2);
+    for row in &rows {
+        let keys: Vec<&String> = row.as_object().expect("a row is an object").keys().collect();
+        assert_eq!(keys, KEYS);
+        assert_eq!(row["scene"], "plane");
+        let number =
+            |key: &str| row[key].as_f64().filter(|n| n.is_finite()).unwrap_or_else(|| panic!("{row}"));
+        assert!(number("rmse") > 0.0 && (0.0..=1.0).contains(&number("flip")), "{row}");
+        assert!(number("energy") >= -1.0 && number("flicker") >= 0.0, "{row}");
+    }
+    for (map, views) in [
+        ("rock_normal.png", &["near", "mid", "far", "grazing"][..]),
+        ("v-groove", &["mid", "far"]),
+        ("wool", &["mid", "far"]),
+    ] {
+        for view in views {
+            for method in METHODS {
+                for filter in ["trilinear", "anisotropic"] {
+                    number(&rows, [map, view, method, filter], "rmse");
+                }
+            }
+        }
+    }
+
+    let of = |method: &str, key: &str| number(&rows, ["rock_normal.png", "far", method, "anisotropic"], key);
+    assert!(of("lean", "rmse") < 0.5 * of("blinn-phong", "rmse"), "LEAN is not the better from afar");
+    assert!(of("lean", "flip") < of("blinn-phong", "flip"));
+    // Mip-mapped normals turn rough stone into a mirror; LEAN keeps the light where it is.
+    assert!(of("lean", "energy").abs() < of("blinn-phong", "energy").abs());
+}
+
+#[test]
+fn lean_misses_grooves_by_more_than_it_misses_stone_and_the_page_says_so() {
+    let folder = scratch();
+    let outcome = compare(folder.path(), &["--views", "far", "--filters", "ewa", "--frames", "0", "--json"]);
+    let printed = outcome.expect_success().json();
+    let rows = rows(folder.path());
+    assert_eq!(printed, Value::Array(rows.clone()));
+    assert_eq!(rows.len(), (1 + LIMIT_VIEWS) * METHODS.len());
+    assert!(rows.iter().all(|row| row["flicker"].is_null() && row["filter"] == "ewa"));
+
+    let page = std::fs::read_to_string(folder.path().join("index.html")).expect("the page is there");
+    let (_, limit) = page.split_once("What LEAN cannot do").expect("a section on LEAN's limit");
+    let misplaced = |row: &str| -> f64 {
+        let (_, cells) = limit.split_once(&format!("<td>{row}</td><td>")).expect("a row of the table");
+        cells.split(" %").next().expect("a number").parse().expect("a number")
+    };
+    let (stone, grooves) = (misplaced("rock_normal.png, far"), misplaced("v-groove, far"));
+    assert!(grooves > 2.0 * stone && grooves > 20.0, "grooves {grooves} %, stone {stone} %");
+    assert!(misplaced("wool, far") > stone, "wool {}, stone {stone}", misplaced("wool, far"));
+}
+
+#[test]
+fn the_page_needs_no_other_file_and_has_every_picture() {
+    let folder = scratch();
+    compare(folder.path(), &["--views", "mid,mid", "--filters", "trilinear", "--frames", "2"])
+        .expect_success();
+    let page = std::fs::read_to_string(folder.path().join("index.html")).expect("the page is there");
+    for foreign in ["http:", "https:", "src=\"/", "href", "<link", "<script", "url(", "@import"] {
+        assert!(!page.contains(foreign), "the page has {foreign}");
+    }
+    let pictures = page.matches("src=\"data:image/png;base64,").count();
+    // The scale; two distributions of each map; then for each view the moving picture, and truth, picture and errors of every
+    // method.
+    assert_eq!(pictures, 1 + 2 * 3 + (1 + LIMIT_VIEWS) * (1 + 3 * METHODS.len()));
+    assert_eq!(page.matches("src=").count(), pictures);
+    for setting in ["16 bits", "256", "paper", "64x48", "16 samples a pixel", "towards "] {
+        assert!(page.contains(setting), "the page does not say {setting}");
+    }
+}
+
+#[test]
+fn the_same_command_gives_the_same_results() {
+    let folder = scratch();
+    let [a, b] = ["a", "b"].map(|name| folder.path().join(name));
+    for output in [&a, &b] {
+        compare(output, &["--scene", "sphere", "--views", "grazing", "--frames", "2"]).expect_success();
+    }
+    for name in ["results.json", "index.html"] {
+        let read = |folder: &Path| std::fs::read(folder.join(name)).expect("it was written");
+        assert!(read(&a) == read(&b), "{name} differs");
+    }
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused_in_one_line_and_leaves_nothing() {
+    let folder = scratch();
+    let output = folder.path().join("report");
+    let colour = data("models/BoomBox/BoomBox_emissive.png");
+    compare_map(&colour, &output, &[]).expect_refusal(1, &colour);
+    let missing = folder.path().join("missing.png");
+    compare_map(&missing, &output, &[]).expect_refusal(1, &missing);
+    let bunny = data("models/meshes/bunny_decimated_bgfx.obj");
+    compare(&output, &["--scene", text(&bunny)]).expect_refusal(2, &bunny);
+    // A light from below leaves no highlight to compare.
+    let dark = compare(&output, &["--views", "far", "--light", "0,-1,0"]);
+    assert_eq!(dark.code, Some(1), "{}", dark.stderr);
+    assert!(dark.stderr.lines().count() == 1 && dark.stderr.contains("highlight"), "{}", dark.stderr);
+    assert!(names(folder.path()).is_empty(), "{:?}", names(folder.path()));
+
+    std::fs::write(&output, "a file").expect("a file");
+    compare(&output, &[]).expect_refusal(2, &output);
+    let below = output.join("report");
+    compare(&below, &[]).expect_refusal(2, &below);
+    assert_eq!(std::fs::read(&output).expect("it is there"), b"a file");
+}
+
+#[test]
+fn command_lines_that_make_no_sense_are_refused() {
+    let folder = scratch();
+    let output = folder.path().join("report");
+    let refused = |arguments: &[&str], words: &str| {
+        run(["compare", text(&map()), "-o", text(&output)].iter().chain(arguments)).expect_usage_error(words);
+    };
+    refused(&["--views", "close"], "grazing");
+    refused(&["--views", ""], "grazing");
+    refused(&["--filters", "lanczos"], "trilinear");
+    refused(&["--samples", "5"], "square");
+    refused(&["--samples", "0"], "square");
+    refused(&["--frames", "1"], "2 or more");
+    refused(&["--frames", "-3"], "frames");
+    refused(&["--size", "0x0"], "no pixels");
+    refused(&["--size", "4096x4096"], "--frames");
+    refused(&["--camera", "near"], "--camera");
+    refused(&["--specular-power", "0"], "above zero");
+    assert!(names(folder.path()).is_empty());
+}

@@ -1,0 +1,120 @@
+// What the fragment shaders of all models share. Beside it stand the library's functions, `sampled`, and the model's own
+// `ModelSurface`, `surface_at` and `lobe_of`.
+
+struct SceneView {
+    clip_from_world: mat4x4f,   // depth falls from 1 at the near plane to 0 at the far one
+    eye: vec3f,
+    repeats: f32,               // of the textures over texture coordinates from 0 to 1
+    albedo: vec3f,
+    light_count: u32,
+    ambient: vec3f,
+    specular: vec3f,
+}
+
+struct SceneLight {
+    place: vec4f,       // unit vector towards the light, 0; or its position, 1
+    irradiance: vec3f,  // on a surface that faces it, of a point at a distance of one
+}
+
+struct Sampling {
+    detail: f32,            // levels added to the hardware's; or the level, where it is fixed
+    roughness_channel: u32, // of the second texture
+}
+
+@group(0) @binding(0) var<uniform> scene_view: SceneView;
+@group(0) @binding(1) var<storage, read> scene_lights: array<SceneLight>;
+@group(1) @binding(0) var<uniform> lobe_options: LobeOptions;
+@group(1) @binding(1) var<uniform> map_packing: Packing;
+@group(1) @binding(2) var<uniform> sampling: Sampling;
+@group(1) @binding(3) var map_sampler: sampler;
+
+struct Varyings {
+    @builtin(position) clip: vec4f,
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) tangent: vec4f,
+    @location(3) uv: vec2f,
+}
+
+@vertex
+fn project(
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) tangent: vec4f,
+    @location(3) uv: vec2f,
+) -> Varyings {
+    let clip = scene_view.clip_from_world * vec4f(position, 1.0);
+    return Varyings(clip, position, normal, tangent, uv * scene_view.repeats);
+}
+
+// Unit vector, or another where the vector is zero.
+fn unit_or(v: vec3f, other: vec3f) -> vec3f {
+    let squared = dot(v, v);
+    return select(other, v * inverseSqrt(squared), squared > 0.0);
+}
+
+// Any unit vector across a unit vector.
+fn across(n: vec3f) -> vec3f {
+    let axis = select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), abs(n.x) > 0.5);
+    return normalize(cross(axis, n));
+}
+
+// The shading frame as columns: tangent, bitangent, normal. Interpolation has left it neither of unit length nor
+// orthogonal. A back side shows glTF's double-sided material: all three axes are reversed.
+fn world_from_tangent(fragment: Varyings, towards_eye: vec3f, front: bool) -> mat3x3f {
+    let side = select(-1.0, 1.0, front);
+    let normal = unit_or(fragment.normal, side * towards_eye);
+    let in_plane = fragment.tangent.xyz - dot(fragment.tangent.xyz, normal) * normal;
+    let tangent = unit_or(in_plane, across(normal));
+    let handedness = select(-1.0, 1.0, fragment.tangent.w >= 0.0);
+    return mat3x3f(side * tangent, side * handedness * cross(normal, tangent), side * normal);
+}
+
+struct LightAt {
+    towards: vec3f,
+    irradiance: vec3f,
+}
+
+// Unit vector towards a light and the irradiance of a surface that faces it, at a point.
+fn light_at(light: SceneLight, position: vec3f) -> LightAt {
+    if light.place.w == 0.0 {
+        return LightAt(light.place.xyz, light.irradiance);
+    }
+    let to_light = light.place.xyz - position;
+    // A light within the surface itself lights it from nowhere.
+    let squared = max(dot(to_light, to_light), 1e-30);
+    return LightAt(to_light * inverseSqrt(squared), light.irradiance / squared);
+}
+
+struct Parts {
+    @location(0) radiance: vec4f,   // alpha: coverage
+    @location(1) specular: vec4f,   // the part of the radiance that the specular lobes made
+}
+
+fn shaded(fragment: Varyings, front: bool) -> Parts {
+    let surface = surface_at(fragment.uv);
+    let towards_eye = normalize(scene_view.eye - fragment.position);
+    let frame = world_from_tangent(fragment, towards_eye, front);
+    let view = towards_eye * frame;
+    var diffuse = ambient_radiance(scene_view.albedo, scene_view.ambient);
+    var specular = vec3f(0.0);
+    for (var i = 0u; i < scene_view.light_count; i++) {
+        let light = light_at(scene_lights[i], fragment.position);
+        let towards = light.towards * frame;
+        let lobe = lobe_of(surface.lobe, view, towards);
+        diffuse += diffuse_radiance(surface.normal, scene_view.albedo, towards, light.irradiance);
+        specular +=
+            specular_radiance(lobe, scene_view.specular, view, towards, light.irradiance, lobe_options);
+    }
+    return Parts(vec4f(diffuse + specular, 1.0), vec4f(specular, 1.0));
+}
+
+@fragment
+fn radiance(fragment: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    return shaded(fragment, front).radiance;
+}
+
+@fragment
+fn parts(fragment: Varyings, @builtin(front_facing) front: bool) -> Parts {
+    return shaded(fragment, front);
+}

@@ -1,0 +1,269 @@
+//! The real-time renderer: the scenes and the shading models of the CPU's, with the GPU's own texture filters.
+//!
+//! A [`Renderer`] draws into one kind of target: a window's surface, an offscreen texture, or a [`Picture`] that is read
+//! back. What it draws is put together of a [`Geometry`] and [`GpuTextures`], each uploaded once, into a [`Drawing`], whose
+//! view may change every frame.
+//!
+//! ```text
+//! let mut renderer = Renderer::new(&gpu, RenderTarget::Colour(surface_format)).await?;
+//! let geometry = Geometry::new(&gpu, &scene.shape, MAX_DETAIL).await?;
+//! let textures = GpuTextures::new(&gpu, Shading::Lean, &baked.arrays).await?;
+//! let mut drawing = renderer.prepare(&geometry, &textures, &DrawOptions::default()).await?;
+//! // every frame
+//! drawing.set_view(&renderer, &scene, (width, height)).await?;
+//! drawing.draw(&mut encoder, &Views { colour, specular: None, depth }, None);
+//! ```
+//!
+//! [`Picture`]: roughcast_scene::Picture
+
+mod geometry;
+mod headless;
+mod pipeline;
+mod sampling;
+mod shader;
+mod textures;
+mod uniforms;
+
+use std::collections::HashMap;
+
+use roughcast::shading::LobeOptions;
+use roughcast_scene::{Sampler, Scene};
+
+pub use geometry::Geometry;
+pub use headless::render;
+pub use shader::{Detail, ShaderKey, shader_source};
+pub use textures::GpuTextures;
+
+use crate::{Gpu, GpuError};
+use geometry::upload;
+use pipeline::{BindGroups, create_layouts, create_pipeline};
+use sampling::Sampling;
+use uniforms::{LIGHT_WORDS, VIEW_WORDS, light_words, view_words};
+
+/// What is rendered to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RenderTarget {
+    /// One colour target of this format: radiance, and coverage as alpha. Nothing is clipped or encoded but by the format.
+    Colour(wgpu::TextureFormat),
+    /// Two colour targets of single floats: radiance and coverage, and the part of the radiance that specular lobes made.
+    Parts,
+}
+
+/// The format of the first target of [`RenderTarget::Parts`], and of the second.
+pub const PARTS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+
+/// The format of the depth target, which is reversed: 1 at the near plane, 0 at the far one.
+pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+impl RenderTarget {
+    fn formats(self) -> Vec<wgpu::TextureFormat> {
+        match self {
+            Self::Colour(format) => vec![format],
+            Self::Parts => vec![PARTS_FORMAT; 2],
+        }
+    }
+
+    fn fragment_shader(self) -> &'static str {
+        match self {
+            Self::Colour(_) => "radiance",
+            Self::Parts => "parts",
+        }
+    }
+}
+
+/// How a model is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DrawOptions {
+    /// The texture filter. Hardware has three of them: nearest, trilinear and anisotropic with up to 16 taps.
+    pub sampler: Sampler,
+    /// The lobe. What the textures say of themselves goes before what is said here.
+    pub lobe: LobeOptions,
+}
+
+/// Draws scenes into one kind of target. Shaders are compiled at their first use and kept.
+#[derive(Debug)]
+pub struct Renderer {
+    gpu: Gpu,
+    target: RenderTarget,
+    /// Of the view; those of the maps depend on their number.
+    view_layout: wgpu::BindGroupLayout,
+    map_layouts: Vec<wgpu::BindGroupLayout>,
+    pipelines: HashMap<ShaderKey, wgpu::RenderPipeline>,
+}
+
+/// The views of textures that a frame is drawn into, all of one size and of the formats of the renderer's target: wgpu
+/// refuses others.
+#[derive(Clone, Copy, Debug)]
+pub struct Views<'a> {
+    /// The colour target.
+    pub colour: &'a wgpu::TextureView,
+    /// The second target of [`RenderTarget::Parts`]; None for other targets.
+    pub specular: Option<&'a wgpu::TextureView>,
+    /// Of [`DEPTH_FORMAT`].
+    pub depth: &'a wgpu::TextureView,
+}
+
+/// A shape with a model's textures, ready to be drawn.
+#[derive(Debug)]
+pub struct Drawing {
+    pipeline: wgpu::RenderPipeline,
+    geometry: Geometry,
+    maps: wgpu::BindGroup,
+    view: wgpu::Buffer,
+    lights: wgpu::Buffer,
+    scene: wgpu::BindGroup,
+    background: [f32; 3],
+}
+
+impl Renderer {
+    /// A renderer for targets of this kind.
+    ///
+    /// # Errors
+    /// [`GpuError::Format`] where the device cannot render to the format; [`GpuError::Feature`] where its shaders cannot
+    /// read lists of lights.
+    pub async fn new(gpu: &Gpu, target: RenderTarget) -> Result<Self, GpuError> {
+        for format in target.formats() {
+            gpu.require_format(format, wgpu::TextureUsages::RENDER_ATTACHMENT)?;
+        }
+        if gpu.limits.max_storage_buffers_per_shader_stage == 0 {
+            let instead = "render on the CPU (--cpu)";
+            return Err(GpuError::Feature { feature: "storage buffers in shaders", instead });
+        }
+        let (view_layout, map_layouts) = gpu.checked("the layouts of a renderer", create_layouts).await?;
+        Ok(Self { gpu: gpu.clone(), target, view_layout, map_layouts, pipelines: HashMap::new() })
+    }
+
+    /// The device.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// What is rendered to.
+    pub fn target(&self) -> RenderTarget {
+        self.target
+    }
+
+    /// Makes a shape and textures ready to be drawn. [`Drawing::set_view`] has to follow.
+    ///
+    /// # Errors
+    /// [`GpuError::OnlyOnCpu`] for a filter that hardware does not have; [`GpuError::Refused`] where the driver does not
+    /// compile the shader.
+    pub async fn prepare(
+        &mut self,
+        geometry: &Geometry,
+        textures: &GpuTextures,
+        options: &DrawOptions,
+    ) -> Result<Drawing, GpuError> {
+        let sampling = Sampling::new(&options.sampler)?;
+        let key = ShaderKey { shading: textures.shading, lobe: textures.lobe, detail: sampling.detail };
+        let pipeline = self.pipeline(key).await?;
+        let groups = BindGroups { gpu: &self.gpu, view_layout: &self.view_layout };
+        let maps = groups.maps(self.map_layout(textures.views.len()), textures, options, &sampling).await?;
+        let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        let view =
+            upload(&self.gpu, "the view of a scene", bytemuck::cast_slice(&[0_u32; VIEW_WORDS]), usage)
+                .await?;
+        let lights = self.lights(&light_words(&[])).await?;
+        let scene = groups.scene(&view, &lights).await?;
+        let geometry = geometry.clone();
+        Ok(Drawing { pipeline, geometry, maps, view, lights, scene, background: [0.0; 3] })
+    }
+
+    fn map_layout(&self, textures: usize) -> &wgpu::BindGroupLayout {
+        &self.map_layouts[textures - 1]
+    }
+
+    async fn pipeline(&mut self, key: ShaderKey) -> Result<wgpu::RenderPipeline, GpuError> {
+        if let Some(pipeline) = self.pipelines.get(&key) {
+            return Ok(pipeline.clone());
+        }
+        let layouts = [&self.view_layout, self.map_layout(key.shading.inputs(key.lobe).len())];
+        let pipeline = create_pipeline(&self.gpu, key, self.target, layouts).await?;
+        self.pipelines.insert(key, pipeline.clone());
+        Ok(pipeline)
+    }
+
+    async fn lights(&self, words: &[u32]) -> Result<wgpu::Buffer, GpuError> {
+        let (bytes, limit) = (size_of_val(words) as u64, self.gpu.limits.max_storage_buffer_binding_size);
+        if bytes > limit {
+            return Err(GpuError::BufferTooLarge { what: "the lights of a scene", bytes, limit });
+        }
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+        upload(&self.gpu, "the lights of a scene", bytemuck::cast_slice(words), usage).await
+    }
+}
+
+impl Drawing {
+    /// Sets camera, lights, material, repeats and background of the next frames, in a target of `size` pixels. The scene's
+    /// shape is that of the geometry; it only tells here where the depths lie.
+    ///
+    /// # Errors
+    /// [`GpuError::Scene`] where the camera shows nothing or the size is zero; and where so many lights do not fit.
+    pub async fn set_view(
+        &mut self,
+        renderer: &Renderer,
+        scene: &Scene,
+        size: (u32, u32),
+    ) -> Result<(), GpuError> {
+        headless::check_size(size)?;
+        scene.camera.validate().map_err(roughcast_scene::render::RenderError::from)?;
+        let words = light_words(&scene.lights);
+        if self.lights.size() < size_of_val(words.as_slice()) as u64 {
+            // Room for twice as many, so that lights added one by one do not cost a buffer each.
+            let mut room = words.clone();
+            room.resize(words.len().next_power_of_two().max(LIGHT_WORDS), 0);
+            let lights = renderer.lights(&room).await?;
+            let groups = BindGroups { gpu: &renderer.gpu, view_layout: &renderer.view_layout };
+            self.scene = groups.scene(&self.view, &lights).await?;
+            self.lights = lights;
+        } else {
+            renderer.gpu.queue.write_buffer(&self.lights, 0, bytemuck::cast_slice(&words));
+        }
+        let view = view_words(scene, size);
+        renderer.gpu.queue.write_buffer(&self.view, 0, bytemuck::cast_slice(&view));
+        self.background = scene.background;
+        Ok(())
+    }
+
+    /// Encodes a pass that clears the views to the background and draws. The time it takes is written where
+    /// `timestamps` says, such as [`crate::Span::of_render_pass`].
+    pub fn draw(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        views: &Views<'_>,
+        timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    ) {
+        let [r, g, b] = self.background.map(f64::from);
+        let target = |view, clear| {
+            Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
+            })
+        };
+        let mut colours = vec![target(views.colour, wgpu::Color { r, g, b, a: 0.0 })];
+        colours.extend(views.specular.map(|view| target(view, wgpu::Color::TRANSPARENT)));
+        let descriptor = wgpu::RenderPassDescriptor {
+            label: Some("scene"),
+            color_attachments: &colours,
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: views.depth,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(0.0),
+                    store: wgpu::StoreOp::Discard,
+                }),
+                stencil_ops: None,
+            }),
+            timestamp_writes: timestamps,
+            ..Default::default()
+        };
+        let mut pass = encoder.begin_render_pass(&descriptor);
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.scene, &[]);
+        pass.set_bind_group(1, &self.maps, &[]);
+        pass.set_vertex_buffer(0, self.geometry.vertices.slice(..));
+        pass.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..self.geometry.index_count, 0, 0..1);
+    }
+}

@@ -1,0 +1,149 @@
+//! Pipelines and bind groups.
+
+use super::geometry::{VERTEX_LAYOUT, upload};
+use super::sampling::Sampling;
+use super::shader::{FIRST_TEXTURE, ShaderKey, shader_source};
+use super::textures::GpuTextures;
+use super::{DEPTH_FORMAT, DrawOptions, RenderTarget};
+use crate::{Gpu, GpuError};
+
+/// No model samples more textures.
+const MAX_TEXTURES: u32 = 3;
+
+/// The layout of the view's group, and those of the maps' groups with one texture and more.
+pub(super) fn create_layouts(device: &wgpu::Device) -> (wgpu::BindGroupLayout, Vec<wgpu::BindGroupLayout>) {
+    let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
+    let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    let uniform = buffer(wgpu::BufferBindingType::Uniform);
+    let storage = buffer(wgpu::BufferBindingType::Storage { read_only: true });
+    let (both, fragment) = (wgpu::ShaderStages::VERTEX_FRAGMENT, wgpu::ShaderStages::FRAGMENT);
+    let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
+        device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+    };
+    let view = layout("view", &[entry(0, both, uniform), entry(1, fragment, storage)]);
+    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+    let texture = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: true },
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    let mut entries = [uniform, uniform, uniform, sampler].map(|ty| entry(0, fragment, ty)).to_vec();
+    for (binding, entry) in entries.iter_mut().enumerate() {
+        entry.binding = binding as u32;
+    }
+    let maps = (0..MAX_TEXTURES).map(|index| {
+        entries.push(entry(FIRST_TEXTURE + index, fragment, texture));
+        layout("maps", &entries)
+    });
+    (view, maps.collect())
+}
+
+/// The pipeline of a model.
+pub(super) async fn create_pipeline(
+    gpu: &Gpu,
+    key: ShaderKey,
+    target: RenderTarget,
+    [view, maps]: [&wgpu::BindGroupLayout; 2],
+) -> Result<wgpu::RenderPipeline, GpuError> {
+    let source = shader_source(key).map_err(|error| GpuError::Shape(error.to_string()))?;
+    let targets: Vec<_> = target.formats().into_iter().map(|format| Some(format.into())).collect();
+    let make = |device: &wgpu::Device| {
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(key.shading.name()),
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        });
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("scene"),
+            bind_group_layouts: &[Some(view), Some(maps)],
+            immediate_size: 0,
+        });
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(key.shading.name()),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("project"),
+                compilation_options: Default::default(),
+                buffers: &[Some(VERTEX_LAYOUT)],
+            },
+            // Both sides are drawn: shapes have two.
+            primitive: wgpu::PrimitiveState { front_face: wgpu::FrontFace::Ccw, ..Default::default() },
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: DEPTH_FORMAT,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(wgpu::CompareFunction::Greater),
+                stencil: Default::default(),
+                bias: Default::default(),
+            }),
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(target.fragment_shader()),
+                compilation_options: Default::default(),
+                targets: &targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    };
+    gpu.checked("a model's shader", make).await
+}
+
+/// Makes bind groups.
+pub(super) struct BindGroups<'a> {
+    pub gpu: &'a Gpu,
+    pub view_layout: &'a wgpu::BindGroupLayout,
+}
+
+impl BindGroups<'_> {
+    /// The view and the lights.
+    pub async fn scene(
+        &self,
+        view: &wgpu::Buffer,
+        lights: &wgpu::Buffer,
+    ) -> Result<wgpu::BindGroup, GpuError> {
+        let resources = [view.as_entire_binding(), lights.as_entire_binding()];
+        self.group("the view of a scene", self.view_layout, resources).await
+    }
+
+    /// The textures and how they are read.
+    pub async fn maps(
+        &self,
+        layout: &wgpu::BindGroupLayout,
+        textures: &GpuTextures,
+        options: &DrawOptions,
+        sampling: &Sampling,
+    ) -> Result<wgpu::BindGroup, GpuError> {
+        let usage = wgpu::BufferUsages::UNIFORM;
+        let lobe = textures.options(options.lobe).to_words();
+        let lobe = upload(self.gpu, "the options of a lobe", bytemuck::cast_slice(&lobe), usage).await?;
+        let packing = textures.packing.to_array();
+        let packing =
+            upload(self.gpu, "the packing of textures", bytemuck::cast_slice(&packing), usage).await?;
+        let detail = [sampling.value.to_bits(), textures.roughness_channel, 0, 0];
+        let detail = upload(self.gpu, "the sampling", bytemuck::cast_slice(&detail), usage).await?;
+        let descriptor = sampling.descriptor();
+        let sampler = self.gpu.checked("a sampler", |device| device.create_sampler(&descriptor)).await?;
+        let fixed = [lobe.as_entire_binding(), packing.as_entire_binding(), detail.as_entire_binding()];
+        let resources = fixed
+            .into_iter()
+            .chain([wgpu::BindingResource::Sampler(&sampler)])
+            .chain(textures.views.iter().map(wgpu::BindingResource::TextureView));
+        self.group("the maps of a model", layout, resources).await
+    }
+
+    /// A group of these resources, bound from 0 on.
+    async fn group<'r>(
+        &self,
+        what: &'static str,
+        layout: &wgpu::BindGroupLayout,
+        resources: impl IntoIterator<Item = wgpu::BindingResource<'r>>,
+    ) -> Result<wgpu::BindGroup, GpuError> {
+        let entries: Vec<_> = (0..)
+            .zip(resources)
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+            .collect();
+        let descriptor = wgpu::BindGroupDescriptor { label: Some(what), layout, entries: &entries };
+        self.gpu.checked(what, |device| device.create_bind_group(&descriptor)).await
+    }
+}

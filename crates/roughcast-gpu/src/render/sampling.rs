@@ -1,0 +1,110 @@
+//! Texture filters of the hardware.
+
+use roughcast::Wrap;
+use roughcast_scene::{Filter, Sampler};
+
+use super::shader::Detail;
+use crate::GpuError;
+
+/// Taps that anisotropic filtering may take: as many as WebGPU knows.
+const MAX_TAPS: u16 = 16;
+/// The biases that WGSL's `textureSampleBias` takes.
+const BIASES: (f64, f64) = (-16.0, 15.99);
+/// Beyond the last level of any texture.
+const LAST_LEVEL: f64 = 32.0;
+
+/// A sampler of the CPU's as the hardware has it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Sampling {
+    /// Where the level of detail comes from.
+    pub detail: Detail,
+    /// The level, or what is added to it.
+    pub value: f32,
+    filter: Filter,
+    wrap: Wrap,
+}
+
+impl Sampling {
+    pub fn new(sampler: &Sampler) -> Result<Self, GpuError> {
+        let Sampler { filter, level, mip_bias, wrap } = *sampler;
+        let level = match filter {
+            // The CPU's, which has no footprint: of level 0, or of the level nearest to the one given.
+            Filter::Nearest => Some(level.unwrap_or(0.0).round()),
+            Filter::Trilinear | Filter::Anisotropic => level,
+            Filter::Ewa | Filter::SummedArea => {
+                return Err(GpuError::OnlyOnCpu(format!(
+                    "graphics hardware has no texture filter '{filter}': render with it on the CPU, or choose nearest, \
+                     trilinear or anisotropic"
+                )));
+            }
+        };
+        let (detail, value) = match level {
+            // As on the CPU, what is not a number is the finest level.
+            Some(level) => (Detail::Fixed, if level > 0.0 { level.min(LAST_LEVEL) } else { 0.0 }),
+            None => (Detail::Derivatives, mip_bias.clamp(BIASES.0, BIASES.1)),
+        };
+        Ok(Self { detail, value: value as f32, filter, wrap })
+    }
+
+    /// Samplers with anisotropy need derivatives; at a fixed level they are trilinear ones, as on the CPU.
+    pub fn descriptor(&self) -> wgpu::SamplerDescriptor<'static> {
+        let address = match self.wrap {
+            Wrap::Repeat => wgpu::AddressMode::Repeat,
+            Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
+            Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
+        };
+        let (texels, levels) = match self.filter {
+            Filter::Nearest => (wgpu::FilterMode::Nearest, wgpu::MipmapFilterMode::Nearest),
+            _ => (wgpu::FilterMode::Linear, wgpu::MipmapFilterMode::Linear),
+        };
+        let anisotropic = self.filter == Filter::Anisotropic && self.detail == Detail::Derivatives;
+        wgpu::SamplerDescriptor {
+            label: Some("maps"),
+            address_mode_u: address,
+            address_mode_v: address,
+            mag_filter: texels,
+            min_filter: texels,
+            mipmap_filter: levels,
+            anisotropy_clamp: if anisotropic { MAX_TAPS } else { 1 },
+            ..Default::default()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sampling(filter: Filter, level: Option<f64>, mip_bias: f64) -> Sampling {
+        let sampler = Sampler { filter, level, mip_bias, ..Sampler::default() };
+        Sampling::new(&sampler).expect("the hardware has it")
+    }
+
+    #[test]
+    fn the_filters_of_the_cpu_are_refused_by_name() {
+        for filter in [Filter::Ewa, Filter::SummedArea] {
+            let sampler = Sampler { filter, ..Sampler::default() };
+            let line = Sampling::new(&sampler).expect_err("no hardware has it").to_string();
+            assert!(line.contains(filter.name()) && line.contains("CPU"), "{line}");
+        }
+    }
+
+    #[test]
+    fn levels_and_biases_are_those_that_the_hardware_takes() {
+        let nearest = sampling(Filter::Nearest, None, 3.0);
+        assert_eq!((nearest.detail, nearest.value), (Detail::Fixed, 0.0));
+        assert_eq!(sampling(Filter::Nearest, Some(1.6), 0.0).value, 2.0);
+        assert_eq!(sampling(Filter::Trilinear, Some(-1.0), 9.0).value, 0.0);
+        assert_eq!(sampling(Filter::Trilinear, Some(f64::NAN), 9.0).value, 0.0);
+        let biased = sampling(Filter::Trilinear, None, 1.5);
+        assert_eq!((biased.detail, biased.value), (Detail::Derivatives, 1.5));
+        assert_eq!(sampling(Filter::Trilinear, None, 1e9).value, 15.99);
+    }
+
+    #[test]
+    fn anisotropy_needs_derivatives() {
+        assert_eq!(sampling(Filter::Anisotropic, None, 0.0).descriptor().anisotropy_clamp, MAX_TAPS);
+        assert_eq!(sampling(Filter::Anisotropic, Some(0.0), 0.0).descriptor().anisotropy_clamp, 1);
+        assert_eq!(sampling(Filter::Trilinear, None, 0.0).descriptor().anisotropy_clamp, 1);
+    }
+}

@@ -1,0 +1,72 @@
+//! What the shaders are told of a scene, as the words of their structs.
+
+use roughcast_scene::{Bounds, Light, Scene};
+
+/// Words of WGSL's `SceneView`.
+pub(super) const VIEW_WORDS: usize = 32;
+/// Words of WGSL's `SceneLight`.
+pub(super) const LIGHT_WORDS: usize = 8;
+
+/// The near plane lies no nearer than this part of the distance to the far one. Depths are reversed floats, whose
+/// relative precision is the same everywhere, so this costs none.
+const NEAREST: f64 = 1e-5;
+/// Planes are this part farther out than the shape, so that rounding clips none of it.
+const MARGIN: f64 = 1e-3;
+
+/// WGSL's `SceneView`, for a picture of this size.
+pub(super) fn view_words(scene: &Scene, size: (u32, u32)) -> [u32; VIEW_WORDS] {
+    let material = &scene.material;
+    let eye = scene.camera.eye.as_vec3().to_array();
+    let mut words = [0; VIEW_WORDS];
+    put(&mut words, 0, &clip_from_world(scene, size));
+    put(&mut words, 16, &eye);
+    put(&mut words, 19, &[scene.repeats as f32]);
+    put(&mut words, 20, &material.albedo);
+    words[23] = scene.lights.len() as u32;
+    put(&mut words, 24, &material.ambient);
+    put(&mut words, 28, &material.specular);
+    words
+}
+
+fn put(words: &mut [u32], at: usize, values: &[f32]) {
+    for (word, value) in words[at..].iter_mut().zip(values) {
+        *word = value.to_bits();
+    }
+}
+
+/// Columns of the matrix, with depth 1 at the near plane and 0 at the far one.
+fn clip_from_world(scene: &Scene, (width, height): (u32, u32)) -> [f32; 16] {
+    let (near, far) = depth_range(scene.shape.bounds(), scene);
+    let aspect = f64::from(width) / f64::from(height);
+    let mut columns = scene.camera.clip_from_world(aspect, near, far).to_cols_array();
+    // In f64, before rounding: w - z of single floats would have lost what the reversal is for.
+    for column in columns.chunks_exact_mut(4) {
+        column[2] = column[3] - column[2];
+    }
+    columns.map(|value| value as f32)
+}
+
+/// Distances of the near and the far plane, between which all of the shape in front of the eye lies.
+fn depth_range(bounds: Bounds, scene: &Scene) -> (f64, f64) {
+    let forward = (scene.camera.target - scene.camera.eye).normalize();
+    let middle = (bounds.centre - scene.camera.eye).dot(forward);
+    let radius = bounds.radius * (1.0 + MARGIN);
+    // Where the shape lies behind the eye nothing is seen, with whatever planes.
+    let far = (middle + radius).max(radius);
+    ((middle - radius).max(NEAREST * far), far)
+}
+
+/// WGSL's `SceneLight`s; at least one, since no buffer may be empty.
+pub(super) fn light_words(lights: &[Light]) -> Vec<u32> {
+    let mut words = vec![0; LIGHT_WORDS * lights.len().max(1)];
+    for (words, light) in words.chunks_exact_mut(LIGHT_WORDS).zip(lights) {
+        let (place, kind, irradiance) = match light {
+            Light::Directional { towards, irradiance } => (towards, 0.0, irradiance),
+            Light::Point { position, intensity } => (position, 1.0, intensity),
+        };
+        put(words, 0, &place.as_vec3().to_array());
+        put(words, 3, &[kind]);
+        put(words, 4, irradiance);
+    }
+    words
+}

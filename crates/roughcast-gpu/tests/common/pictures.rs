@@ -1,0 +1,151 @@
+//! Pictures of the CPU and of the GPU compared.
+
+use roughcast::shading::LobeOptions;
+use roughcast::texture::TextureArray;
+use roughcast_gpu::render::{DrawOptions, Geometry, GpuTextures, RenderTarget, Renderer, render};
+use roughcast_gpu::{Gpu, GpuError};
+use roughcast_scene::render::{Method, ShadingTextures, unwatched};
+use roughcast_scene::{Picture, Sampler, Scene, Shape};
+
+use roughcast::shading::Shading;
+
+/// A picture by the CPU.
+pub fn by_cpu(
+    scene: &Scene,
+    shading: Shading,
+    maps: &[TextureArray],
+    options: &DrawOptions,
+    size: (u32, u32),
+) -> Picture {
+    let textures = ShadingTextures::new(shading, maps).expect("the maps are the model's");
+    let DrawOptions { sampler, lobe } = *options;
+    Method { textures: &textures, sampler, options: lobe }.render(scene, size, &unwatched).expect("a picture")
+}
+
+/// The same by the GPU; the geometry is the scene's.
+pub struct GpuPictures {
+    pub renderer: Renderer,
+    pub geometry: Geometry,
+}
+
+impl GpuPictures {
+    /// `detail` is that of the shape's triangles.
+    pub fn new(gpu: &Gpu, scene: &Scene, detail: u32) -> Self {
+        let renderer = pollster::block_on(Renderer::new(gpu, RenderTarget::Parts)).expect("a renderer");
+        let geometry = pollster::block_on(Geometry::new(gpu, &scene.shape, detail)).expect("a shape");
+        Self { renderer, geometry }
+    }
+
+    pub fn render(
+        &mut self,
+        scene: &Scene,
+        shading: Shading,
+        maps: &[TextureArray],
+        options: &DrawOptions,
+        size: (u32, u32),
+    ) -> Result<Picture, GpuError> {
+        pollster::block_on(async {
+            let textures = GpuTextures::new(self.renderer.gpu(), shading, maps).await?;
+            let mut drawing = self.renderer.prepare(&self.geometry, &textures, options).await?;
+            render(&self.renderer, &mut drawing, scene, size).await
+        })
+    }
+}
+
+pub fn options(sampler: Sampler, lobe: LobeOptions) -> DrawOptions {
+    DrawOptions { sampler, lobe }
+}
+
+/// How far two pictures are apart.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Apart {
+    /// Largest difference of a channel, in parts of the larger of the value and of a hundredth of the brightest value.
+    pub largest: f64,
+    /// Where it is.
+    pub place: String,
+    /// Mean of the absolute differences over the mean radiance.
+    pub mean: f64,
+    /// Relative difference of the sum of the specular light.
+    pub energy: f64,
+    /// Pixels that were compared.
+    pub pixels: usize,
+    /// Covered pixels of the first picture.
+    pub covered: usize,
+}
+
+/// Of the brightest value, the part below which differences are not relative to the value any more.
+const DARK: f64 = 0.01;
+
+/// Compares radiance and specular parts at the pixels that `compared` chooses.
+pub fn apart(cpu: &Picture, gpu: &Picture, compared: impl Fn(usize) -> bool) -> Apart {
+    assert_eq!((cpu.width, cpu.height), (gpu.width, gpu.height));
+    let values = |picture: &Picture, i: usize| {
+        let [r, s] = [picture.radiance[i], picture.specular[i]];
+        [r[0], r[1], r[2], s[0], s[1], s[2]].map(f64::from)
+    };
+    let brightest = (0..cpu.len()).flat_map(|i| values(cpu, i)).fold(0.0, f64::max);
+    let mut apart = Apart {
+        largest: 0.0,
+        place: String::new(),
+        mean: 0.0,
+        energy: 0.0,
+        pixels: 0,
+        covered: cpu.coverage.iter().filter(|c| **c > 0.0).count(),
+    };
+    let (mut differences, mut radiance) = (0.0, 0.0);
+    let mut energy = [0.0, 0.0];
+    for i in (0..cpu.len()).filter(|i| compared(*i)) {
+        apart.pixels += 1;
+        let (a, b) = (values(cpu, i), values(gpu, i));
+        for (channel, (a, b)) in a.into_iter().zip(b).enumerate() {
+            let difference = (a - b).abs() / a.max(DARK * brightest);
+            // Not a number is far from everything.
+            if difference.is_nan() || difference > apart.largest {
+                apart.largest = if difference.is_nan() { f64::INFINITY } else { difference };
+                apart.place =
+                    format!("({}, {}) channel {channel}: {a:e} and {b:e}", i % cpu.width, i / cpu.width);
+            }
+            if channel < 3 {
+                differences += (a - b).abs();
+                radiance += a;
+            } else {
+                energy[0] += a;
+                energy[1] += b;
+            }
+        }
+    }
+    apart.mean = differences / radiance;
+    apart.energy = energy[1] / energy[0] - 1.0;
+    apart
+}
+
+/// Whether the pixels all about are covered alike in both pictures: not at a silhouette, where a rounding decides.
+pub fn inside(cpu: &Picture, gpu: &Picture, i: usize) -> bool {
+    let (width, height) = (cpu.width, cpu.height);
+    let (x, y) = (i % width, i / width);
+    let (columns, rows) =
+        (x.saturating_sub(1)..=(x + 1).min(width - 1), y.saturating_sub(1)..=(y + 1).min(height - 1));
+    let own = cpu.coverage[i];
+    rows.flat_map(|y| columns.clone().map(move |x| y * width + x))
+        .all(|j| cpu.coverage[j] == own && gpu.coverage[j] == own)
+}
+
+/// The least cosine between view and surface, below which flat triangles are seen too obliquely to stand for round shapes:
+/// where they lie a little lower, the eye meets them somewhere else.
+const OBLIQUE: f64 = 0.3;
+/// From the poles of a sphere, in parts of the map's height, where triangles do not have the direction of its tangent.
+const POLE: f64 = 0.1;
+
+/// Whether the middle of a pixel shows a place where flat triangles stand for the shape, and where a rounding does not
+/// decide which texel is the nearest: at least `margin` texels from the edges of its texel, of maps of `side` texels.
+pub fn well_placed(scene: &Scene, (width, height): (u32, u32), i: usize, side: f64, margin: f64) -> bool {
+    let (x, y) = (i % width as usize, i / width as usize);
+    let ray = scene.camera.ray(x as f64 + 0.5, y as f64 + 0.5, width, height);
+    let Some(hit) = scene.shape.hit(&ray) else { return false };
+    let round = matches!(*scene.shape, Shape::Sphere(_) | Shape::Torus(_));
+    let at_pole = matches!(*scene.shape, Shape::Sphere(_)) && !(POLE..1.0 - POLE).contains(&hit.uv.y);
+    let at = hit.uv * scene.repeats * side;
+    let from_edge = (at - at.round()).abs().min_element();
+    let oblique = round && -hit.geometric_normal.dot(ray.direction) < OBLIQUE;
+    from_edge >= margin && !oblique && !at_pole
+}

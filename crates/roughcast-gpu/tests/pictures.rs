@@ -1,0 +1,248 @@
+//! Pictures of the same scenes by the CPU and by the GPU.
+
+mod common;
+
+use common::gpu;
+use common::pictures::{Apart, GpuPictures, apart, by_cpu, inside, options, well_placed};
+use common::scenes::{SIDE, SIZE, SPECULAR_POWER, maps, maps_with, scene, scenes};
+use roughcast::shading::{BaseLobe, Form, LobeOptions, Shading};
+use roughcast::texture::TextureArray;
+use roughcast::{BakeOptions, Bits, Lobe, RoughnessTexture, Wrap};
+use roughcast_gpu::render::DrawOptions;
+use roughcast_scene::{Filter, Picture, Plane, Sampler, Scene, Shape, Sphere, Torus, View};
+
+/// Squares of round shapes along v. Their triangles lie within 2e-5 of the shape.
+const DETAIL: u32 = 256;
+
+/// With one texel a pixel, no filter and the same lobes, what is left is single against double floats: directions and
+/// texture coordinates are off by a few 1e-7 (a mesh far smaller than one, ten times as much), and a lobe's flank makes some
+/// ten times that of it; the largest measured is 2e-4. The values compared are relative, down to a hundredth of the brightest.
+const SAME_TEXELS: f64 = 1e-3;
+/// On round shapes also flat triangles against round surfaces: the eye meets the triangle up to 6e-5 beside the point of the
+/// round shape, where the bumps' frame has turned as much. Largest measured: 8e-3; it falls as the triangles do.
+const SAME_TEXELS_ROUND: f64 = 2e-2;
+/// Of the covered pixels, the least part that must be far enough from edges of texels and silhouettes to be compared so.
+const COMPARED: f64 = 0.7;
+/// Texels from an edge within which a rounding decides which texel is taken.
+const EDGE: f64 = 0.02;
+
+/// Mean difference where texels are interpolated at a known level: graphics hardware weighs them in steps of 1/256, so slopes
+/// are off by up to 1/512 of a texel's difference to the next. A driver with exact weights stays below 1e-5.
+const INTERPOLATED: f64 = 2e-3;
+/// Mean difference where the hardware also finds the level of detail: from differences over 2x2 pixels, along the pixel's
+/// sides where the CPU takes the ellipse's axis (up to half a level more), and with a rough logarithm. Largest measured: 1.3e-2.
+const OWN_LEVEL: f64 = 2.5e-2;
+/// Mean difference with anisotropic filters, whose taps drivers choose as they like. Largest measured: 0.1.
+const OWN_TAPS: f64 = 0.15;
+/// Of the highlight's energy with anisotropic filters, for models that keep it whatever the filter. Largest measured: 0.014.
+const ENERGY: f64 = 0.03;
+
+const FORMS: [(Form, BaseLobe); 2] = [(Form::Paper, BaseLobe::Facet), (Form::Normalised, BaseLobe::Plane)];
+
+fn lobe(form: Form, base: BaseLobe) -> LobeOptions {
+    LobeOptions { specular_power: SPECULAR_POWER, form, base, ..LobeOptions::default() }
+}
+
+fn unfiltered() -> Sampler {
+    Sampler { filter: Filter::Nearest, level: Some(0.0), ..Sampler::default() }
+}
+
+fn with_filter(filter: Filter) -> DrawOptions {
+    let sampler = Sampler { filter, ..Sampler::default() };
+    options(sampler, lobe(Form::Normalised, BaseLobe::Plane))
+}
+
+/// Every model with its maps; GGX also with an anisotropy texture and with packed roughness.
+fn models() -> Vec<(Shading, Vec<TextureArray>)> {
+    let mut models: Vec<_> = Shading::ALL.iter().map(|s| (*s, maps(*s, Bits::Half))).collect();
+    let pbr = BakeOptions { layout: Shading::Ggx.layout(), bits: Bits::Eight, ..BakeOptions::default() };
+    models.push((Shading::Ggx, maps_with(BakeOptions { lobe: Lobe::Anisotropic, ..pbr })));
+    models
+        .push((Shading::Ggx, maps_with(BakeOptions { roughness_texture: RoughnessTexture::Packed, ..pbr })));
+    models
+}
+
+/// Where one texel and one surface decide a pixel.
+fn apart_within_texels(scene: &Scene, cpu: &Picture, gpu: &Picture) -> Apart {
+    compare(scene, cpu, gpu, EDGE)
+}
+
+fn compare(scene: &Scene, cpu: &Picture, gpu: &Picture, edge: f64) -> Apart {
+    let apart = apart(cpu, gpu, |i| inside(cpu, gpu, i) && well_placed(scene, SIZE, i, SIDE as f64, edge));
+    assert!(apart.pixels as f64 > COMPARED * apart.covered as f64, "too few pixels are compared: {apart:?}");
+    apart
+}
+
+#[test]
+fn unfiltered_pictures_of_every_model_and_shape_are_the_same() {
+    let gpu = gpu();
+    let models = models();
+    for (place, (name, scene)) in scenes(View::Near).iter().enumerate() {
+        let mut pictures = GpuPictures::new(&gpu, scene, DETAIL);
+        let round = matches!(*scene.shape, Shape::Sphere(_) | Shape::Torus(_));
+        let allowed = if round { SAME_TEXELS_ROUND } else { SAME_TEXELS };
+        for (index, (shading, maps)) in models.iter().enumerate() {
+            // Each model in one form on a shape and in the other on the next.
+            let (form, base) = FORMS[(place + index) % 2];
+            let draw = options(unfiltered(), lobe(form, base));
+            let cpu = by_cpu(scene, *shading, maps, &draw, SIZE);
+            let gpu = pictures.render(scene, *shading, maps, &draw, SIZE).expect("a picture");
+            let apart = apart_within_texels(scene, &cpu, &gpu);
+            assert!(apart.largest < allowed, "{name}, {shading} ({index}), {form}: {apart:?}");
+            assert!(apart.covered > 1000, "{name}: {apart:?}");
+        }
+    }
+}
+
+#[test]
+fn interpolated_pictures_agree_at_a_known_level() {
+    let gpu = gpu();
+    for (name, scene) in scenes(View::Mid) {
+        let mut pictures = GpuPictures::new(&gpu, &scene, DETAIL);
+        for level in [0.0, 1.5, 3.0] {
+            for shading in [Shading::Lean, Shading::OffCentre, Shading::Ggx] {
+                let sampler = Sampler { filter: Filter::Trilinear, level: Some(level), ..Sampler::default() };
+                let draw = options(sampler, lobe(Form::Normalised, BaseLobe::Plane));
+                let apart = both(&mut pictures, &scene, shading, &draw);
+                assert!(apart.mean < INTERPOLATED, "{name}, {shading}, level {level}: {apart:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn trilinear_pictures_agree_in_the_mean_with_and_without_a_bias() {
+    let gpu = gpu();
+    for (name, scene) in scenes(View::Mid) {
+        let mut pictures = GpuPictures::new(&gpu, &scene, DETAIL);
+        for (shading, bias) in Shading::ALL.iter().zip([0.0, 0.0, 1.0].into_iter().cycle()) {
+            let sampler = Sampler { filter: Filter::Trilinear, mip_bias: bias, ..Sampler::default() };
+            let draw = options(sampler, lobe(Form::Normalised, BaseLobe::Plane));
+            let apart = both(&mut pictures, &scene, *shading, &draw);
+            assert!(apart.mean < OWN_LEVEL, "{name}, {shading}, bias {bias}: {apart:?}");
+        }
+    }
+}
+
+#[test]
+fn anisotropic_pictures_agree_in_the_mean_and_moments_keep_the_highlights_energy() {
+    let gpu = gpu();
+    for view in [View::Mid, View::Grazing] {
+        for (name, scene) in scenes(view) {
+            let mut pictures = GpuPictures::new(&gpu, &scene, DETAIL);
+            for shading in [Shading::Lean, Shading::Clean, Shading::BlinnPhong] {
+                let apart = both(&mut pictures, &scene, shading, &with_filter(Filter::Anisotropic));
+                assert!(apart.mean < OWN_TAPS, "{view}, {name}, {shading}: {apart:?}");
+                let keeps_energy = matches!(shading, Shading::Lean | Shading::Clean);
+                assert!(!keeps_energy || apart.energy.abs() < ENERGY, "{view}, {name}, {shading}: {apart:?}");
+            }
+        }
+    }
+}
+
+/// The picture by both, with maps of half floats.
+fn both(pictures: &mut GpuPictures, scene: &Scene, shading: Shading, draw: &DrawOptions) -> Apart {
+    let maps = maps(shading, Bits::Half);
+    let cpu = by_cpu(scene, shading, &maps, draw, SIZE);
+    let gpu = pictures.render(scene, shading, &maps, draw, SIZE).expect("a picture");
+    compare(scene, &cpu, &gpu, 0.0)
+}
+
+#[test]
+fn the_comparisons_fail_when_they_should() {
+    let scene = scene(Shape::Plane(Plane::default()), View::Mid);
+    let mut pictures = GpuPictures::new(&gpu(), &scene, 4);
+    let unfiltered = options(unfiltered(), lobe(Form::Normalised, BaseLobe::Plane));
+    let cpu = |shading, draw: &DrawOptions| by_cpu(&scene, shading, &maps(shading, Bits::Half), draw, SIZE);
+    let mut gpu = |shading, draw: &DrawOptions| {
+        pictures.render(&scene, shading, &maps(shading, Bits::Half), draw, SIZE).expect("a picture")
+    };
+    let lean = gpu(Shading::Lean, &unfiltered);
+    let same = apart_within_texels(&scene, &cpu(Shading::Lean, &unfiltered), &lean);
+    assert!(same.largest < SAME_TEXELS, "{same:?}");
+    // Another model, another form, a base that differs by a hundredth, a picture that is shifted by a pixel.
+    let mut darker = unfiltered;
+    darker.lobe.specular_power *= 1.01;
+    let mut paper = unfiltered;
+    paper.lobe.form = Form::Paper;
+    let mut shifted = cpu(Shading::Lean, &unfiltered);
+    shifted.radiance.rotate_right(1);
+    shifted.specular.rotate_right(1);
+    let others = [
+        cpu(Shading::BlinnPhong, &unfiltered),
+        cpu(Shading::Lean, &paper),
+        cpu(Shading::Lean, &darker),
+        shifted,
+    ];
+    for (index, other) in others.iter().enumerate() {
+        let apart = apart_within_texels(&scene, other, &lean);
+        assert!(apart.largest > SAME_TEXELS_ROUND, "{index}: {apart:?}");
+    }
+    // The means, too, see another filter, another level, another wrap, and another model.
+    let at = |level, wrap| {
+        let sampler = Sampler { filter: Filter::Trilinear, level: Some(level), wrap, ..Sampler::default() };
+        options(sampler, unfiltered.lobe)
+    };
+    let interpolated = gpu(Shading::Lean, &at(1.0, Wrap::Repeat));
+    for other in [at(1.1, Wrap::Repeat), at(1.0, Wrap::Mirror), unfiltered] {
+        let apart = compare(&scene, &cpu(Shading::Lean, &other), &interpolated, 0.0);
+        assert!(apart.mean > INTERPOLATED, "{other:?}: {apart:?}");
+    }
+    let other = cpu(Shading::Clean, &at(1.0, Wrap::Repeat));
+    assert!(compare(&scene, &other, &interpolated, 0.0).mean > INTERPOLATED);
+    let broken = Picture { radiance: vec![[f32::NAN; 3]; lean.len()], ..lean.clone() };
+    assert_eq!(apart_within_texels(&scene, &lean, &broken).largest, f64::INFINITY);
+}
+
+#[test]
+fn round_shapes_are_approached_as_their_triangles_shrink() {
+    let gpu = gpu();
+    let scene = scene(Shape::Torus(Torus::default()), View::Near);
+    let draw = options(unfiltered(), lobe(Form::Normalised, BaseLobe::Plane));
+    let maps = maps(Shading::Lean, Bits::Half);
+    let cpu = by_cpu(&scene, Shading::Lean, &maps, &draw, SIZE);
+    let [coarse, fine] = [64, 256].map(|detail| {
+        let mut pictures = GpuPictures::new(&gpu, &scene, detail);
+        let gpu = pictures.render(&scene, Shading::Lean, &maps, &draw, SIZE).expect("a picture");
+        apart_within_texels(&scene, &cpu, &gpu).mean
+    });
+    // Four times as many triangles each way: a sixteenth, where nothing but their flatness differs.
+    assert!(coarse > 8.0 * fine, "{coarse:e} and {fine:e}");
+}
+
+#[test]
+fn every_format_and_wrap_is_read_as_the_cpu_reads_it() {
+    let gpu = gpu();
+    // Far enough for the map to repeat.
+    let scene = scene(Shape::Plane(Plane::default()), View::Mid);
+    assert!(scene.repeats > 1.5, "{}", scene.repeats);
+    let mut pictures = GpuPictures::new(&gpu, &scene, 4);
+    for bits in [Bits::Eight, Bits::Sixteen, Bits::Half, Bits::Float] {
+        for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+            let sampler = Sampler { wrap, ..unfiltered() };
+            let draw = options(sampler, lobe(Form::Normalised, BaseLobe::Plane));
+            let maps = maps(Shading::Lean, bits);
+            let cpu = by_cpu(&scene, Shading::Lean, &maps, &draw, SIZE);
+            let gpu = pictures.render(&scene, Shading::Lean, &maps, &draw, SIZE).expect("a picture");
+            let apart = apart_within_texels(&scene, &cpu, &gpu);
+            assert!(apart.largest < SAME_TEXELS, "{bits}, {wrap}: {apart:?}");
+        }
+    }
+}
+
+#[test]
+fn no_light_and_many_lights_give_their_sum() {
+    let gpu = gpu();
+    let mut scene = scene(Shape::Sphere(Sphere), View::Near);
+    let mut pictures = GpuPictures::new(&gpu, &scene, DETAIL);
+    let light = scene.lights[1];
+    let draw = options(unfiltered(), lobe(Form::Normalised, BaseLobe::Plane));
+    for count in [0, 1, 3, 300] {
+        scene.lights = vec![light; count];
+        let maps = maps(Shading::Clean, Bits::Half);
+        let cpu = by_cpu(&scene, Shading::Clean, &maps, &draw, SIZE);
+        let gpu = pictures.render(&scene, Shading::Clean, &maps, &draw, SIZE).expect("a picture");
+        let apart = apart_within_texels(&scene, &cpu, &gpu);
+        assert!(apart.largest < SAME_TEXELS_ROUND, "{count} lights: {apart:?}");
+    }
+}

@@ -1,0 +1,208 @@
+//! Runs functions of the WGSL library on the GPU and compares what they give with their Rust twins.
+
+use std::fmt::Write;
+
+use roughcast::shading::{LobeOptions, wgsl};
+use roughcast::texture::Packing;
+use roughcast_gpu::Gpu;
+use roughcast_gpu::read_back::read_buffer;
+use wgpu::util::DeviceExt;
+
+/// Words of the packing and of the options before the arguments of a case.
+const PACKING_WORDS: usize = 12;
+const OPTION_WORDS: usize = 8;
+/// Cases run together.
+const WORKGROUP: u32 = 64;
+
+/// A function with its arguments laid out as words.
+pub struct Twin {
+    /// The WGSL function's name.
+    pub name: &'static str,
+    /// What it gives.
+    pub gives: Gives,
+    /// A WGSL statement that calls it with `f(i)`, `f2(i)`, ... of the arguments, `o()` the options and `p()` the packing, and
+    /// writes what it gives.
+    pub call: &'static str,
+    /// Arguments of a case.
+    pub arguments: fn(&mut crate::inputs::Inputs) -> Vec<f32>,
+    /// The Rust twin; where Rust has it only inside of others, the formula in f64.
+    pub rust: fn(&[f32], &LobeOptions, &Packing) -> Vec<f32>,
+}
+
+/// What a function gives, where that decides how far roundings on the way bear on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Gives {
+    /// Numbers by themselves.
+    Numbers,
+    /// The six words of a Gaussian, whose determinant is a small difference of products.
+    Gaussian,
+    /// The eight words of a facet of GGX, whose tangent is a small difference of vectors.
+    Ggx,
+}
+
+/// One call.
+pub struct Case {
+    pub packing: Packing,
+    pub options: LobeOptions,
+    pub arguments: Vec<f32>,
+}
+
+/// The whole library as Rust has it.
+pub fn library() -> String {
+    let names: Vec<&str> = wgsl::MODULES.iter().map(|module| module.name).collect();
+    wgsl::library(&names).expect("these are all modules")
+}
+
+/// What a library's twin gives for each case, on the GPU.
+pub async fn run(gpu: &Gpu, library: &str, twin: &Twin, cases: &[Case]) -> Vec<Vec<f32>> {
+    let outputs = (twin.rust)(&cases[0].arguments, &cases[0].options, &cases[0].packing).len();
+    let words: Vec<u32> = cases.iter().flat_map(words).collect();
+    let stride = words.len() / cases.len();
+    let source = source(library, twin, [stride, outputs, cases.len()]);
+    let pipeline = gpu
+        .checked("a test's shader", |device| {
+            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(twin.name),
+                source: wgpu::ShaderSource::Wgsl(source.into()),
+            });
+            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(twin.name),
+                layout: None,
+                module: &module,
+                entry_point: Some("main"),
+                compilation_options: Default::default(),
+                cache: None,
+            })
+        })
+        .await
+        .unwrap_or_else(|error| panic!("{}: {error}", twin.name));
+    let storage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
+    let input = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: None,
+        contents: bytemuck::cast_slice(&words),
+        usage: storage,
+    });
+    let output = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: (cases.len() * outputs * size_of::<f32>()) as u64,
+        usage: storage,
+        mapped_at_creation: false,
+    });
+    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout: &pipeline.get_bind_group_layout(0),
+        entries: &[
+            wgpu::BindGroupEntry { binding: 0, resource: input.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 1, resource: output.as_entire_binding() },
+        ],
+    });
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.dispatch_workgroups((cases.len() as u32).div_ceil(WORKGROUP), 1, 1);
+    }
+    gpu.queue.submit([encoder.finish()]);
+    let bytes = read_buffer(gpu, &output).await.expect("results");
+    let values: Vec<f32> = bytemuck::pod_collect_to_vec(&bytes);
+    values.chunks_exact(outputs).map(<[f32]>::to_vec).collect()
+}
+
+fn words(case: &Case) -> Vec<u32> {
+    let packing = case.packing.to_array().map(f32::to_bits);
+    let arguments = case.arguments.iter().map(|value| value.to_bits());
+    packing.into_iter().chain(case.options.to_words()).chain(arguments).collect()
+}
+
+fn source(library: &str, twin: &Twin, [stride, outputs, cases]: [usize; 3]) -> String {
+    let mut source = format!("{library}\n{}\n", include_str!("harness.wgsl"));
+    let _ = write!(
+        source,
+        "const OPTION_WORDS: u32 = {OPTION_WORDS}u;\n\
+         @compute @workgroup_size({WORKGROUP})\n\
+         fn main(@builtin(global_invocation_id) id: vec3u) {{\n    \
+         if id.x >= {cases}u {{\n        return;\n    }}\n    \
+         input_at = id.x * {stride}u + {}u;\n    output_at = id.x * {outputs}u;\n    {}\n}}\n",
+        PACKING_WORDS + OPTION_WORDS,
+        twin.call
+    );
+    source
+}
+
+/// A function may give what its twin gives for arguments that are off by so many units in their last place: it rounds
+/// its intermediate results, each by half a unit or, for quotients and roots of GPUs, by up to 2.5, and no more than a few of
+/// them bear on the result together.
+const ARGUMENT_ULPS: f32 = 8.0;
+
+/// Where intermediate results of the size of one cancel, the result may be off by so many units of one.
+const CANCELLED_ULPS: f32 = 4.0;
+
+/// And be off by this part of its value: `exp` of a GPU is off by 3 + 2 |x| units (Vulkan), here of |x| <= 87, and `log` near 1
+/// by 2^-21, which an exponent of at most 430 (beyond it nothing is left where `log` is used) doubles into 1e-4.
+const RELATIVE: f32 = 1e-4;
+
+/// What is smaller than this counts as nothing: GPUs may flush what is no normal single float to zero, here or in a
+/// product on the way.
+const FLUSHED: f32 = 1e-36;
+
+/// The first result that is not what the Rust twin gives, in words.
+pub fn first_difference(twin: &Twin, cases: &[Case], results: &[Vec<f32>]) -> Option<String> {
+    cases.iter().zip(results).find_map(|(case, got)| {
+        let (wanted, allowed) = wanted_and_allowed(twin, case);
+        // Not a number is never close, and what may be anything is not tested.
+        let close = |i: &usize| (got[*i] - wanted[*i]).abs() <= allowed[*i] && allowed[*i].is_finite();
+        let wrong = (0..wanted.len()).find(|i| !close(i))?;
+        Some(format!(
+            "{} gives {:e} and not {:e} +- {:e} as number {wrong}, for {:?} with {:?}",
+            twin.name, got[wrong], wanted[wrong], allowed[wrong], case.arguments, case.options
+        ))
+    })
+}
+
+/// What the Rust twin gives, and how far from it each result may be.
+pub fn wanted_and_allowed(twin: &Twin, case: &Case) -> (Vec<f32>, Vec<f32>) {
+    let rust = |arguments: &[f32]| (twin.rust)(arguments, &case.options, &case.packing);
+    let wanted = rust(&case.arguments);
+    let mut allowed = tolerances(&rust, &case.arguments, &wanted);
+    let cancelled = cancellation(twin.gives, &wanted);
+    allowed.iter_mut().zip(cancelled).for_each(|(allowed, more)| *allowed += more);
+    (wanted, allowed)
+}
+
+/// What roundings before a subtraction leave in its result, which moving the arguments does not show.
+fn cancellation(gives: Gives, wanted: &[f32]) -> Vec<f32> {
+    let unit = CANCELLED_ULPS * f32::EPSILON;
+    let mut left = vec![0.0; wanted.len()];
+    match gives {
+        Gives::Numbers => {}
+        Gives::Gaussian => {
+            let [xx, yy, xy] = [wanted[2], wanted[3], wanted[4]];
+            let determinant = unit * (xx * yy + xy * xy).abs();
+            // The repair adds about determinant / trace to the variances.
+            let variance = determinant / (xx + yy).abs().max(f32::MIN_POSITIVE);
+            (left[2], left[3], left[5]) = (variance, variance, 2.0 * determinant);
+        }
+        // The part of a direction in the surface's plane that is across the normal is no shorter than the normal's z.
+        Gives::Ggx => left[4..7].fill(unit / wanted[2]),
+    }
+    left
+}
+
+/// How far each result moves when the arguments do.
+fn tolerances(rust: &impl Fn(&[f32]) -> Vec<f32>, arguments: &[f32], wanted: &[f32]) -> Vec<f32> {
+    let mut allowed: Vec<f32> = wanted.iter().map(|value| RELATIVE * value.abs() + FLUSHED).collect();
+    let mut moved = arguments.to_vec();
+    for i in 0..arguments.len() {
+        let mut farthest = vec![0.0_f32; wanted.len()];
+        for side in [1.0, -1.0] {
+            moved[i] = arguments[i] * (1.0 + side * ARGUMENT_ULPS * f32::EPSILON);
+            for ((farthest, value), wanted) in farthest.iter_mut().zip(rust(&moved)).zip(wanted) {
+                *farthest = farthest.max((value - wanted).abs());
+            }
+        }
+        moved[i] = arguments[i];
+        allowed.iter_mut().zip(farthest).for_each(|(allowed, farthest)| *allowed += farthest);
+    }
+    allowed
+}

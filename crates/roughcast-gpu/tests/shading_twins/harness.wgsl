@@ -1,0 +1,91 @@
+// Runs one function of the library for many cases: words in, words out. The entry points are made by the harness.
+
+@group(0) @binding(0) var<storage, read> input_words: array<u32>;
+@group(0) @binding(1) var<storage, read_write> output_words: array<u32>;
+
+var<private> input_at: u32;
+var<private> output_at: u32;
+
+fn f(i: u32) -> f32 {
+    return bitcast<f32>(input_words[input_at + i]);
+}
+
+fn f2(i: u32) -> vec2f {
+    return vec2f(f(i), f(i + 1u));
+}
+
+fn f3(i: u32) -> vec3f {
+    return vec3f(f2(i), f(i + 2u));
+}
+
+fn f4(i: u32) -> vec4f {
+    return vec4f(f3(i), f(i + 3u));
+}
+
+// The options stand before the arguments.
+fn o() -> LobeOptions {
+    let i = input_at - OPTION_WORDS;
+    return LobeOptions(
+        bitcast<f32>(input_words[i]),
+        input_words[i + 1u],
+        input_words[i + 2u],
+        input_words[i + 3u],
+        input_words[i + 4u],
+        input_words[i + 5u],
+    );
+}
+
+// And the packing before the options.
+fn p() -> Packing {
+    let before = input_at;
+    input_at = before - OPTION_WORDS - 12u;
+    let packing = Packing(f2(0u), f2(2u), f2(4u), f2(6u), f2(8u), f2(10u));
+    input_at = before;
+    return packing;
+}
+
+fn put(value: f32) {
+    output_words[output_at] = bitcast<u32>(value);
+    output_at += 1u;
+}
+
+fn put2(v: vec2f) {
+    put(v.x);
+    put(v.y);
+}
+
+fn put3(v: vec3f) {
+    put2(v.xy);
+    put(v.z);
+}
+
+fn put_facet(surface: BumpFacet) {
+    put3(surface.normal);
+    put(surface.specular_power);
+}
+
+fn put_gaussian(surface: SlopeGaussian) {
+    put2(surface.mean);
+    put2(surface.variance);
+    put(surface.covariance);
+    put(surface.det);
+}
+
+fn put_ggx(surface: GgxSurface) {
+    put3(surface.normal);
+    put(surface.alpha_along);
+    put3(surface.tangent);
+    put(surface.alpha_across);
+}
+
+fn facet(i: u32) -> BumpFacet {
+    return BumpFacet(f3(i), f(i + 3u));
+}
+
+fn gaussian(i: u32) -> SlopeGaussian {
+    return SlopeGaussian(f2(i), f2(i + 2u), f(i + 4u), f(i + 5u));
+}
+
+fn ggx(i: u32) -> GgxSurface {
+    return GgxSurface(f3(i), f(i + 3u), f3(i + 4u), f(i + 7u));
+}

@@ -1,0 +1,220 @@
+//! Arguments for the twins: what shading meets, and the extremes of it.
+
+use roughcast::Slope;
+use roughcast::shading::{
+    BaseLobe, Form, LobeOptions, Repair, SlopeGaussian, bump_facet, ggx_surface, ggx_surface_of_normal,
+    slope_gaussian,
+};
+use roughcast::texture::{Base, Packing, RoughnessStored};
+use roughcast::{Covariance, Moments};
+
+/// A source of arguments, the same in every run.
+pub struct Inputs {
+    state: u64,
+    pub options: LobeOptions,
+    pub packing: Packing,
+}
+
+/// Unsigned texels of slopes up to 2, and floats.
+const SCALED: Packing = Packing {
+    slope: [4.0, -2.0],
+    second: [4.0, 0.0],
+    mixed: [8.0, -4.0],
+    trace: [8.0, 0.0],
+    variance: [0.5, 0.0],
+    unit: [2.0, -1.0],
+};
+
+impl Inputs {
+    pub fn new(seed: u64) -> Self {
+        Self { state: seed, options: LobeOptions::default(), packing: Packing::IDENTITY }
+    }
+
+    /// Options and packing of the next case.
+    pub fn next_case(&mut self) {
+        let power = match self.below(4) {
+            0 => [1.0, 2.0, 13.0, 13_777.0, 16_384.0][self.below(5)],
+            _ => 2.0_f32.powf(self.between(0.0, 14.0)),
+        };
+        self.options = LobeOptions {
+            specular_power: power,
+            form: Form::ALL[self.below(2)],
+            base: BaseLobe::ALL[self.below(2)],
+            repair: Repair::ALL[self.below(2)],
+            base_in_maps: [Base::None, Base::None, Base::Baked][self.below(3)],
+            roughness_stored: RoughnessStored::ALL[self.below(RoughnessStored::ALL.len())],
+        };
+        self.packing = [Packing::IDENTITY, SCALED][self.below(2)];
+    }
+
+    /// In 0 .. 1 (splitmix64).
+    pub fn unit(&mut self) -> f32 {
+        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.state ^ (self.state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 40) as f32 / (1_u64 << 24) as f32
+    }
+
+    pub fn below(&mut self, n: usize) -> usize {
+        (self.unit() * n as f32) as usize
+    }
+
+    pub fn between(&mut self, low: f32, high: f32) -> f32 {
+        low + (high - low) * self.unit()
+    }
+
+    /// Of any size between, both signs.
+    pub fn of_any_size(&mut self, smallest: f32, largest: f32) -> f32 {
+        let size = self.between(smallest.log2(), largest.log2()).exp2();
+        if self.below(2) == 0 { size } else { -size }
+    }
+
+    /// A unit vector above the surface; one in eight nearly in it, one in sixteen the normal, one in sixteen below. Of
+    /// some the length is off by a few roundings, as a vertex shader leaves it.
+    pub fn direction(&mut self) -> [f32; 3] {
+        let z = match self.below(16) {
+            0 => return [0.0, 0.0, 1.0],
+            1 => -self.unit(),
+            2 | 3 => self.between(-20.0, -7.0).exp2(),
+            _ => self.unit(),
+        };
+        let angle = self.between(0.0, std::f32::consts::TAU);
+        let r = (1.0 - z * z).max(0.0).sqrt();
+        let error = 1.0 + f32::EPSILON * self.between(-4.0, 4.0);
+        [r * angle.cos() * error, r * angle.sin() * error, z * error]
+    }
+
+    /// A filtered normal: of any length up to one, some steep, some zero, some into the surface.
+    pub fn normal(&mut self) -> [f32; 3] {
+        let slope = self.slope();
+        let length = self.between(0.05, 1.0) / (1.0 + slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
+        match self.below(24) {
+            0 => [0.0; 3],
+            1 => [0.6, -0.3, -0.2],
+            2 => [0.0, 0.0, 1.0],
+            _ => [slope[0] * length, slope[1] * length, length],
+        }
+    }
+
+    /// A slope: mostly below one, some up to 128, the steepest that there are, some zero.
+    pub fn slope(&mut self) -> [f32; 2] {
+        match self.below(10) {
+            0 => [0.0; 2],
+            1 => [self.of_any_size(1.0, 128.0), self.of_any_size(1e-3, 128.0)],
+            _ => [self.between(-1.0, 1.0), self.between(-1.0, 1.0)],
+        }
+    }
+
+    /// A covariance: round, long in any direction, of rank one, zero, and, one in ten, one of no distribution.
+    pub fn covariance(&mut self) -> [f32; 3] {
+        let a = self.of_any_size(1e-6, 1.0).abs();
+        match self.below(10) {
+            0 => [0.0; 3],
+            1 => [a, 0.0, 0.0],
+            2 => {
+                let b = self.of_any_size(1e-3, 1.0);
+                [a, a * b * b, a * b]
+            }
+            3 => [self.of_any_size(1e-6, 0.1), self.of_any_size(1e-6, 0.1), self.of_any_size(1e-6, 0.1)],
+            4 => [a, a, 0.0],
+            _ => {
+                let b = self.of_any_size(1e-6, 1.0).abs();
+                let correlation = self.between(-0.999, 0.999);
+                [a, b, correlation * (a * b).sqrt()]
+            }
+        }
+    }
+
+    /// A stored quantity whose value this is.
+    pub fn stored(value: f32, [scale, offset]: [f32; 2]) -> f32 {
+        (value - offset) / scale
+    }
+
+    /// LEAN's texels of some moments.
+    pub fn lean(&mut self) -> Vec<f32> {
+        let ([x, y], [xx, yy, xy], normal) = (self.slope(), self.covariance(), self.normal());
+        let moments = Moments::from_mean_and_covariance(Slope { x, y }, Covariance { xx, yy, xy });
+        let Packing { slope, second, mixed, unit, .. } = self.packing;
+        vec![
+            Self::stored(normal[0], unit),
+            Self::stored(normal[1], unit),
+            normal[2],
+            Self::stored(moments.xy, mixed),
+            Self::stored(x, slope),
+            Self::stored(y, slope),
+            Self::stored(moments.xx, second),
+            Self::stored(moments.yy, second),
+        ]
+    }
+
+    /// A facet's words, and a pair of directions whose half vector is near its normal.
+    pub fn facet_lobe(&mut self) -> Vec<f32> {
+        let facet = bump_facet(self.normal(), self.options.specular_power);
+        let [view, light] = self.directions(facet.normal, self.options.specular_power.sqrt().recip());
+        [&facet.normal[..], &[facet.specular_power], &view, &light].concat()
+    }
+
+    /// The same for a Gaussian of slopes.
+    pub fn gaussian_lobe(&mut self) -> Vec<f32> {
+        let ([x, y], [xx, yy, xy]) = (self.slope(), self.covariance());
+        let base = 1.0 / self.options.specular_power;
+        let covariance = Covariance { xx: xx + base, yy: yy + base, xy };
+        let gaussian = slope_gaussian(Slope { x, y }, covariance, &self.options);
+        let [view, light] = self.directions([x, y, 1.0], covariance.trace().max(0.0).sqrt());
+        [&gaussian_words(&gaussian)[..], &view, &light].concat()
+    }
+
+    /// The same for GGX.
+    pub fn ggx_lobe(&mut self) -> Vec<f32> {
+        let surface = if self.below(2) == 0 {
+            ggx_surface_of_normal(self.normal(), &self.options)
+        } else {
+            let words = self.material();
+            let [normal, anisotropy] = [0, 5].map(|i| std::array::from_fn(|j| words[i + j]));
+            ggx_surface(normal, words[4], anisotropy, &self.packing, &self.options)
+        };
+        let [view, light] = self.directions(surface.normal, surface.alpha_across);
+        let along = [surface.alpha_along];
+        [&surface.normal[..], &along, &surface.tangent, &[surface.alpha_across], &view, &light].concat()
+    }
+
+    /// Texels of a material: normal, roughness and anisotropy.
+    pub fn material(&mut self) -> Vec<f32> {
+        let normal = self.normal();
+        let unit = self.packing.unit;
+        let z = if self.below(3) == 0 { 0.0 } else { normal[2] };
+        let roughness = match self.options.roughness_stored {
+            RoughnessStored::SpecularPower => self.of_any_size(1.0, 1e5).abs(),
+            _ => self.unit(),
+        };
+        let [x, y] = match self.below(8) {
+            0 => [0.0, 0.0],
+            _ => [self.between(-1.0, 1.0), self.between(-1.0, 1.0)],
+        };
+        let stored = |value| Self::stored(value, unit);
+        let strength = self.unit();
+        let normal = [stored(normal[0]), stored(normal[1]), stored(z), 1.0];
+        [&normal[..], &[roughness], &[stored(x), stored(y), strength, 1.0]].concat()
+    }
+
+    /// Directions to viewer and light. Three in four have a half vector about `axis`, at a few of its widths or less,
+    /// since anywhere else a narrow lobe is zero.
+    fn directions(&mut self, axis: [f32; 3], width: f32) -> [[f32; 3]; 2] {
+        let view = self.direction();
+        if self.below(4) == 0 {
+            return [view, self.direction()];
+        }
+        let spread = [self.between(-4.0, 4.0) * width, self.between(-4.0, 4.0) * width];
+        let z = axis[2].max(1e-3);
+        let half = [axis[0] / z + spread[0], axis[1] / z + spread[1], 1.0];
+        let length = half.iter().map(|h| h * h).sum::<f32>().sqrt();
+        let half = half.map(|h| h / length);
+        let cosine: f32 = half.iter().zip(view).map(|(h, v)| h * v).sum();
+        [view, std::array::from_fn(|i| 2.0 * cosine * half[i] - view[i])]
+    }
+}
+
+pub fn gaussian_words(gaussian: &SlopeGaussian) -> [f32; 6] {
+    let SlopeGaussian { mean, covariance, determinant } = *gaussian;
+    [mean.x, mean.y, covariance.xx, covariance.yy, covariance.xy, determinant]
+}

@@ -1,0 +1,424 @@
+//! Every function of the WGSL library beside its Rust twin.
+
+use roughcast::shading::*;
+use roughcast::texture::{Packing, RoughnessStored};
+use roughcast::{Covariance, Slope, variance_from_stored};
+
+use crate::harness::{Gives, Twin};
+use crate::inputs::{Inputs, gaussian_words};
+
+fn v3(a: &[f32]) -> [f32; 3] {
+    [a[0], a[1], a[2]]
+}
+
+fn v4(a: &[f32]) -> [f32; 4] {
+    [a[0], a[1], a[2], a[3]]
+}
+
+fn slope(a: &[f32]) -> Slope {
+    Slope { x: a[0], y: a[1] }
+}
+
+fn covariance(a: &[f32]) -> Covariance {
+    Covariance { xx: a[0], yy: a[1], xy: a[2] }
+}
+
+fn covariance_words(Covariance { xx, yy, xy }: Covariance) -> Vec<f32> {
+    vec![xx, yy, xy]
+}
+
+fn facet(a: &[f32]) -> BumpFacet {
+    BumpFacet { normal: v3(a), specular_power: a[3] }
+}
+
+fn facet_words(facet: BumpFacet) -> Vec<f32> {
+    [&facet.normal[..], &[facet.specular_power]].concat()
+}
+
+fn gaussian(a: &[f32]) -> SlopeGaussian {
+    SlopeGaussian { mean: slope(a), covariance: covariance(&a[2..]), determinant: a[5] }
+}
+
+fn ggx(a: &[f32]) -> GgxSurface {
+    GgxSurface { normal: v3(a), alpha_along: a[3], tangent: v3(&a[4..]), alpha_across: a[7] }
+}
+
+fn ggx_words(ggx: GgxSurface) -> Vec<f32> {
+    [&ggx.normal[..], &[ggx.alpha_along], &ggx.tangent, &[ggx.alpha_across]].concat()
+}
+
+fn normalized(v: [f64; 3]) -> Vec<f32> {
+    let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    v.iter().map(|x| (x / length) as f32).collect()
+}
+
+/// A number that a function returns alone.
+fn one(value: f32) -> Vec<f32> {
+    vec![value]
+}
+
+fn view_and_light(inputs: &mut Inputs) -> Vec<f32> {
+    [inputs.direction(), inputs.direction()].concat()
+}
+
+fn axis_and_direction(inputs: &mut Inputs) -> Vec<f32> {
+    let words = inputs.facet_lobe();
+    let exponent = inputs.options.specular_power;
+    [&words[..3], &words[4..7], &[exponent]].concat()
+}
+
+fn normal(inputs: &mut Inputs) -> Vec<f32> {
+    inputs.normal().to_vec()
+}
+
+/// Toksvig's texel.
+fn toksvig(inputs: &mut Inputs) -> Vec<f32> {
+    let unit = inputs.packing.unit;
+    let mut words: Vec<f32> = inputs.normal().iter().map(|value| Inputs::stored(*value, unit)).collect();
+    words.push(inputs.unit());
+    words
+}
+
+fn clean(inputs: &mut Inputs) -> Vec<f32> {
+    let ([x, y], Packing { slope, trace, .. }) = (inputs.slope(), inputs.packing);
+    // One in a few is rounded to below the mean's own square.
+    let variance = inputs.of_any_size(1e-6, 1.0).max(-1e-4);
+    let stored = [Inputs::stored(x, slope), Inputs::stored(y, slope)];
+    [&stored[..], &[Inputs::stored(x * x + y * y + variance, trace), 1.0]].concat()
+}
+
+fn variance(inputs: &mut Inputs) -> Vec<f32> {
+    let ([x, y], [xx, yy, _]) = (inputs.slope(), inputs.covariance());
+    let Packing { slope, variance, .. } = inputs.packing;
+    [(x, slope), (y, slope), (xx, variance), (yy, variance)].map(|(v, pair)| Inputs::stored(v, pair)).to_vec()
+}
+
+fn lobe_and_light(inputs: &mut Inputs) -> Vec<f32> {
+    let lobe = inputs.of_any_size(1e-6, 1e6).abs();
+    let colours: Vec<f32> = (0..6).map(|_| inputs.unit()).collect();
+    [&[lobe][..], &colours[..3], &view_and_light(inputs), &colours[3..]].concat()
+}
+
+fn surface_twins() -> Vec<Twin> {
+    vec![
+        Twin {
+            name: "phong_surface",
+            gives: Gives::Numbers,
+            call: "put_facet(phong_surface(f3(0u), o()));",
+            arguments: normal,
+            rust: |a, o, _| facet_words(phong_surface(v3(a), o)),
+        },
+        Twin {
+            name: "blinn_phong_surface",
+            gives: Gives::Numbers,
+            call: "put_facet(blinn_phong_surface(f3(0u), o()));",
+            arguments: normal,
+            rust: |a, o, _| facet_words(blinn_phong_surface(v3(a), o)),
+        },
+        Twin {
+            name: "beckmann_surface",
+            gives: Gives::Numbers,
+            call: "put_facet(beckmann_surface(f3(0u), o()));",
+            arguments: normal,
+            rust: |a, o, _| facet_words(beckmann_surface(v3(a), o)),
+        },
+        Twin {
+            name: "off_centre_surface",
+            gives: Gives::Gaussian,
+            call: "put_gaussian(off_centre_surface(f3(0u), o()));",
+            arguments: normal,
+            rust: |a, o, _| gaussian_words(&off_centre_surface(v3(a), o)).to_vec(),
+        },
+        Twin {
+            name: "lean_surface",
+            gives: Gives::Gaussian,
+            call: "put_gaussian(lean_surface(f4(0u), f4(4u), p(), o()));",
+            arguments: Inputs::lean,
+            rust: |a, o, p| gaussian_words(&lean_surface(v4(a), v4(&a[4..]), p, o)).to_vec(),
+        },
+        Twin {
+            name: "clean_surface",
+            gives: Gives::Gaussian,
+            call: "put_gaussian(clean_surface(f4(0u), p(), o()));",
+            arguments: clean,
+            rust: |a, o, p| gaussian_words(&clean_surface(v4(a), p, o)).to_vec(),
+        },
+        Twin {
+            name: "toksvig_normal",
+            gives: Gives::Numbers,
+            call: "put3(toksvig_normal(f4(0u), p()));",
+            arguments: toksvig,
+            rust: |a, _, p| toksvig_normal(v4(a), p).to_vec(),
+        },
+        Twin {
+            name: "toksvig_surface",
+            gives: Gives::Numbers,
+            call: "put_facet(toksvig_surface(f4(0u), p(), o()));",
+            arguments: toksvig,
+            rust: |a, o, p| facet_words(toksvig_surface(v4(a), p, o)),
+        },
+        Twin {
+            name: "variance_surface",
+            gives: Gives::Gaussian,
+            call: "put_gaussian(variance_surface(f4(0u), p(), o()));",
+            arguments: variance,
+            rust: |a, o, p| gaussian_words(&variance_surface(v4(a), p, o)).to_vec(),
+        },
+        Twin {
+            name: "ggx_surface",
+            gives: Gives::Ggx,
+            call: "put_ggx(ggx_surface(f4(0u), f(4u), f4(5u), p(), o()));",
+            arguments: Inputs::material,
+            rust: |a, o, p| ggx_words(ggx_surface(v4(a), a[4], v4(&a[5..]), p, o)),
+        },
+        Twin {
+            name: "ggx_surface_of_normal",
+            gives: Gives::Ggx,
+            call: "put_ggx(ggx_surface_of_normal(f3(0u), o()));",
+            arguments: normal,
+            rust: |a, o, _| ggx_words(ggx_surface_of_normal(v3(a), o)),
+        },
+        Twin {
+            name: "ggx_normal",
+            gives: Gives::Numbers,
+            call: "put3(ggx_normal(f4(0u), p()));",
+            arguments: Inputs::material,
+            rust: |a, _, p| ggx_normal(v4(a), p).to_vec(),
+        },
+        Twin {
+            name: "ggx_facet",
+            gives: Gives::Ggx,
+            call: "put_ggx(ggx_facet(f3(0u), f2(3u), f(5u), f(6u)));",
+            arguments: |inputs| {
+                let normal = unit_normal(inputs.normal());
+                [&normal[..], &inputs.slope(), &[inputs.unit(), inputs.unit()]].concat()
+            },
+            rust: |a, _, _| {
+                let n = [a[0], a[1], a[2]].map(f64::from);
+                let [x, y] =
+                    if a[3] == 0.0 && a[4] == 0.0 { [1.0, 0.0] } else { [a[3], a[4]].map(f64::from) };
+                let along = n[0] * x + n[1] * y;
+                let tangent = normalized([x - along * n[0], y - along * n[1], -along * n[2]]);
+                [&a[..3], &[a[5]], &tangent, &[a[6]]].concat()
+            },
+        },
+    ]
+}
+
+fn lobe_twins() -> Vec<Twin> {
+    vec![
+        Twin {
+            name: "phong_lobe",
+            gives: Gives::Numbers,
+            call: "put(phong_lobe(facet(0u), f3(4u), f3(7u), o()));",
+            arguments: |inputs| {
+                let mut words = inputs.facet_lobe();
+                // About the reflected ray the lobe has four times the variance of one about the half vector.
+                words[3] *= 0.25;
+                words
+            },
+            rust: |a, o, _| one(phong_lobe(&facet(a), v3(&a[4..]), v3(&a[7..]), o)),
+        },
+        Twin {
+            name: "blinn_phong_lobe",
+            gives: Gives::Numbers,
+            call: "put(blinn_phong_lobe(facet(0u), f3(4u), f3(7u), o()));",
+            arguments: Inputs::facet_lobe,
+            rust: |a, o, _| one(blinn_phong_lobe(&facet(a), v3(&a[4..]), v3(&a[7..]), o)),
+        },
+        Twin {
+            name: "beckmann_lobe",
+            gives: Gives::Numbers,
+            call: "put(beckmann_lobe(facet(0u), f3(4u), f3(7u), o()));",
+            arguments: Inputs::facet_lobe,
+            rust: |a, o, _| one(beckmann_lobe(&facet(a), v3(&a[4..]), v3(&a[7..]), o)),
+        },
+        Twin {
+            name: "toksvig_lobe",
+            gives: Gives::Numbers,
+            call: "put(toksvig_lobe(facet(0u), f3(4u), f3(7u), o()));",
+            arguments: Inputs::facet_lobe,
+            rust: |a, o, _| one(toksvig_lobe(&facet(a), v3(&a[4..]), v3(&a[7..]), o)),
+        },
+        Twin {
+            name: "off_centre_lobe",
+            gives: Gives::Numbers,
+            call: "put(off_centre_lobe(gaussian(0u), f3(6u), f3(9u), o()));",
+            arguments: Inputs::gaussian_lobe,
+            rust: |a, o, _| one(off_centre_lobe(&gaussian(a), v3(&a[6..]), v3(&a[9..]), o)),
+        },
+        Twin {
+            name: "lean_lobe",
+            gives: Gives::Numbers,
+            call: "put(lean_lobe(gaussian(0u), f3(6u), f3(9u), o()));",
+            arguments: Inputs::gaussian_lobe,
+            rust: |a, o, _| one(lean_lobe(&gaussian(a), v3(&a[6..]), v3(&a[9..]), o)),
+        },
+        Twin {
+            name: "clean_lobe",
+            gives: Gives::Numbers,
+            call: "put(clean_lobe(gaussian(0u), f3(6u), f3(9u), o()));",
+            arguments: Inputs::gaussian_lobe,
+            rust: |a, o, _| one(clean_lobe(&gaussian(a), v3(&a[6..]), v3(&a[9..]), o)),
+        },
+        Twin {
+            name: "variance_lobe",
+            gives: Gives::Numbers,
+            call: "put(variance_lobe(gaussian(0u), f3(6u), f3(9u), o()));",
+            arguments: Inputs::gaussian_lobe,
+            rust: |a, o, _| one(variance_lobe(&gaussian(a), v3(&a[6..]), v3(&a[9..]), o)),
+        },
+        Twin {
+            name: "gaussian_lobe",
+            gives: Gives::Numbers,
+            call: "put(gaussian_lobe(gaussian(0u), f3(6u), f3(9u), o()));",
+            arguments: Inputs::gaussian_lobe,
+            rust: |a, o, _| one(gaussian_lobe(&gaussian(a), v3(&a[6..]), v3(&a[9..]), o)),
+        },
+        Twin {
+            name: "ggx_lobe",
+            gives: Gives::Numbers,
+            call: "put(ggx_lobe(ggx(0u), f3(8u), f3(11u), o()));",
+            arguments: Inputs::ggx_lobe,
+            rust: |a, o, _| one(ggx_lobe(&ggx(a), v3(&a[8..]), v3(&a[11..]), o)),
+        },
+    ]
+}
+
+fn part_twins() -> Vec<Twin> {
+    vec![
+        Twin {
+            name: "both_above",
+            gives: Gives::Numbers,
+            call: "put(select(0.0, 1.0, both_above(f3(0u), f3(3u))));",
+            arguments: view_and_light,
+            rust: |a, _, _| one(f32::from(u8::from(a[2] > LEAST_HEIGHT && a[5] > LEAST_HEIGHT))),
+        },
+        Twin {
+            name: "unit_normal",
+            gives: Gives::Numbers,
+            call: "put3(unit_normal(f3(0u)));",
+            arguments: normal,
+            rust: |a, _, _| unit_normal(v3(a)).to_vec(),
+        },
+        Twin {
+            name: "bump_facet",
+            gives: Gives::Numbers,
+            call: "put_facet(bump_facet(f3(0u), f(3u)));",
+            arguments: |inputs| [&inputs.normal()[..], &[inputs.options.specular_power]].concat(),
+            rust: |a, _, _| facet_words(bump_facet(v3(a), a[3])),
+        },
+        Twin {
+            name: "bump_normal",
+            gives: Gives::Numbers,
+            call: "put3(bump_normal(f4(0u), p()));",
+            arguments: |inputs| inputs.lean()[..4].to_vec(),
+            rust: |a, _, p| bump_normal(v4(a), p).to_vec(),
+        },
+        Twin {
+            name: "log_one_plus",
+            gives: Gives::Numbers,
+            call: "put(log_one_plus(f(0u)));",
+            arguments: |inputs| vec![inputs.of_any_size(1e-12, 1e12).abs()],
+            rust: |a, _, _| one(f64::from(a[0]).ln_1p() as f32),
+        },
+        Twin {
+            name: "cosine_power",
+            gives: Gives::Numbers,
+            call: "put(cosine_power(f3(0u), f3(3u), f(6u)));",
+            arguments: axis_and_direction,
+            rust: |a, _, _| one(cosine_power(v3(a), v3(&a[3..]), a[6])),
+        },
+        Twin {
+            name: "cosine_lobe",
+            gives: Gives::Numbers,
+            call: "put(cosine_lobe(f3(0u), f3(3u), f(6u), o().form));",
+            arguments: axis_and_direction,
+            rust: |a, o, _| one(cosine_lobe(v3(a), v3(&a[3..]), a[6], o.form)),
+        },
+        Twin {
+            name: "base_covariance",
+            gives: Gives::Numbers,
+            call: "put3(base_covariance(f2(0u), o()));",
+            arguments: |inputs| inputs.slope().to_vec(),
+            rust: |a, o, _| covariance_words(base_covariance(slope(a), o)),
+        },
+        Twin {
+            name: "base_to_add",
+            gives: Gives::Numbers,
+            call: "put3(base_to_add(f2(0u), o()));",
+            arguments: |inputs| inputs.slope().to_vec(),
+            rust: |a, o, _| covariance_words(base_to_add(slope(a), o)),
+        },
+        Twin {
+            name: "positive_semidefinite",
+            gives: Gives::Numbers,
+            call: "put3(positive_semidefinite(f3(0u)));",
+            arguments: |inputs| inputs.covariance().to_vec(),
+            rust: |a, _, _| covariance_words(covariance(a).positive_semidefinite()),
+        },
+        Twin {
+            name: "slope_gaussian",
+            gives: Gives::Gaussian,
+            call: "put_gaussian(slope_gaussian(f2(0u), f3(2u), o()));",
+            arguments: |inputs| [&inputs.slope()[..], &inputs.covariance()].concat(),
+            rust: |a, o, _| gaussian_words(&slope_gaussian(slope(a), covariance(&a[2..]), o)).to_vec(),
+        },
+        Twin {
+            name: "variance_from_stored",
+            gives: Gives::Numbers,
+            call: "put(variance_from_stored(f(0u), o().roughness_stored));",
+            arguments: |inputs| vec![inputs.material()[4]],
+            rust: |a, o, _| {
+                let power = o.roughness_stored == RoughnessStored::SpecularPower;
+                let stored = if power { a[0].max(LEAST_STORED_POWER) } else { a[0] };
+                one(variance_from_stored(stored, o.roughness_stored))
+            },
+        },
+        Twin {
+            name: "slope_normal",
+            gives: Gives::Numbers,
+            call: "put3(slope_normal(f2(0u)));",
+            arguments: |inputs| inputs.slope().to_vec(),
+            rust: |a, _, _| slope_normal(slope(a)).to_vec(),
+        },
+        Twin {
+            name: "schlick",
+            gives: Gives::Numbers,
+            call: "put(schlick(f(0u), f(1u)));",
+            arguments: |inputs| vec![inputs.unit(), inputs.between(-0.1, 1.1)],
+            rust: |a, _, _| one(schlick(a[0], a[1])),
+        },
+        Twin {
+            name: "ambient_radiance",
+            gives: Gives::Numbers,
+            call: "put3(ambient_radiance(f3(0u), f3(3u)));",
+            arguments: |inputs| (0..6).map(|_| inputs.unit()).collect(),
+            rust: |a, _, _| ambient_radiance(v3(a), v3(&a[3..])).to_vec(),
+        },
+        Twin {
+            name: "diffuse_radiance",
+            gives: Gives::Numbers,
+            call: "put3(diffuse_radiance(f3(0u), f3(3u), f3(6u), f3(9u)));",
+            arguments: |inputs| {
+                let colours: Vec<f32> = (0..6).map(|_| inputs.unit()).collect();
+                [&inputs.normal()[..], &colours[..3], &inputs.direction(), &colours[3..]].concat()
+            },
+            rust: |a, _, _| diffuse_radiance(v3(a), v3(&a[3..]), v3(&a[6..]), v3(&a[9..])).to_vec(),
+        },
+        Twin {
+            name: "specular_radiance",
+            gives: Gives::Numbers,
+            call: "put3(specular_radiance(f(0u), f3(1u), f3(4u), f3(7u), f3(10u), o()));",
+            arguments: lobe_and_light,
+            rust: |a, o, _| {
+                specular_radiance(a[0], v3(&a[1..]), v3(&a[4..]), v3(&a[7..]), v3(&a[10..]), o).to_vec()
+            },
+        },
+    ]
+}
+
+/// All twins.
+pub fn twins() -> Vec<Twin> {
+    [part_twins(), surface_twins(), lobe_twins()].into_iter().flatten().collect()
+}
