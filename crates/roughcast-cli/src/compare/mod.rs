@@ -150,10 +150,9 @@ impl Args {
             );
             return Err(UsageError(line).into());
         }
-        if let Some(existing) = self.output.ancestors().find(|folder| folder.exists()) {
-            if !existing.is_dir() {
-                return Err(usage(&self.output, "a file is where the folder should be: name another folder"));
-            }
+        let existing = self.output.ancestors().find(|folder| folder.exists());
+        if existing.is_some_and(|existing| !existing.is_dir()) {
+            return Err(usage(&self.output, "a file is where the folder should be: name another folder"));
         }
         if self.output.is_dir() {
             for name in FILES {
