@@ -14,7 +14,7 @@ pub struct Page {
 const STYLE: &str = "\
 :root{color-scheme:light dark}body{font:15px/1.5 system-ui,sans-serif;max-width:1500px;margin:2em auto;padding:0 1em}
 h1,h2,h3{line-height:1.2}table{border-collapse:collapse;margin:.5em 0 1.5em}
-th,td{padding:.2em .8em;border-bottom:1px solid #8884;text-align:right}th:first-child,td:first-child{text-align:left}
+th,td{padding:.2em .8em;border-bottom:1px solid #8884;text-align:right}th:first-child,td:first-child,.text{text-align:left}
 .row{display:flex;flex-wrap:wrap;gap:12px;margin:.5em 0 1.5em}figure{margin:0}figcaption{font-size:13px;opacity:.8}
 img{display:block;image-rendering:pixelated;max-width:100%}.holds{color:#178a3a}.fails{color:#c62828;font-weight:bold}
 ";
@@ -47,6 +47,15 @@ impl Page {
             Verdict::Fails => ("fails", "does not hold"),
         };
         self.push(format_args!("<p>{} <b class=\"{class}\">{word}</b></p>\n", escaped(text)));
+    }
+
+    /// A list of names and what they stand for.
+    pub fn list(&mut self, entries: &[(&str, String)]) {
+        let entry = |(name, text): &(&str, String)| {
+            format!("<tr><th>{}</th><td class=\"text\">{}</td></tr>\n", escaped(name), escaped(text))
+        };
+        let entries: String = entries.iter().map(entry).collect();
+        self.push(format_args!("<table>\n{entries}</table>\n"));
     }
 
     /// A table. The first column is text, the others are numbers.
@@ -88,7 +97,7 @@ impl Page {
     fn png(&mut self, (width, height): (u32, u32), bytes: &[u8], caption: &str) {
         let (caption, data) = (escaped(caption), BASE64.encode(bytes));
         self.push(format_args!(
-            "<figure><img width=\"{width}\" height=\"{height}\" alt=\"{caption}\" src=\"data:image/png;base64,{data}\">\
+            "<figure style=\"width:max({width}px,10em)\"><img width=\"{width}\" height=\"{height}\" alt=\"{caption}\" src=\"data:image/png;base64,{data}\">\
              <figcaption>{caption}</figcaption></figure>\n"
         ));
     }

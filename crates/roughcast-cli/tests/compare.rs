@@ -118,8 +118,9 @@ fn the_page_needs_no_other_file_and_has_every_picture() {
         assert!(!page.contains(foreign), "the page has {foreign}");
     }
     let pictures = page.matches("src=\"data:image/png;base64,").count();
-    // The scale; then for each view the moving picture, and truth, picture and errors of every method.
-    assert_eq!(pictures, 1 + (1 + LIMIT_VIEWS) * (1 + 3 * METHODS.len()));
+    // The scale; two distributions of each map; then for each view the moving picture, and truth, picture and errors of every
+    // method.
+    assert_eq!(pictures, 1 + 2 * 3 + (1 + LIMIT_VIEWS) * (1 + 3 * METHODS.len()));
     assert_eq!(page.matches("src=").count(), pictures);
     for setting in ["16 bits", "256", "paper", "64x48", "16 samples a pixel", "towards "] {
         assert!(page.contains(setting), "the page does not say {setting}");

@@ -98,7 +98,7 @@ fn a_colour_target_shows_the_radiance_that_the_picture_has() {
     assert!(nanoseconds[0].nanoseconds.is_some_and(|ns| ns > 0.0), "{nanoseconds:?}");
     let bytes = block_on(read_back::read_texture(&gpu, &colour, 0)).expect("pixels");
     let got: Vec<[half::f16; 4]> = bytemuck::pod_collect_to_vec(&bytes);
-    assert!(want.coverage.iter().any(|c| *c == 1.0));
+    assert!(want.coverage.contains(&1.0));
     for (i, got) in got.iter().enumerate() {
         let [r, g, b, a] = got.map(half::f16::to_f32);
         assert_eq!(a, want.coverage[i]);

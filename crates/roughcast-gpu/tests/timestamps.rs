@@ -49,6 +49,7 @@ fn bandwidths_are_those_of_the_bytes_that_have_to_move() {
     // 16 texels of 4 bytes in; 16 + 4 + 1 texels of 8 bytes in two textures out.
     assert_eq!(baked.bytes, 16 * 4 + 2 * 21 * 8);
     let copied = block_on(copy_bandwidth(&gpu, 1 << 22)).expect("measured");
-    assert_eq!(copied.bytes, 1 << 22);
+    // 2^17 texels of 16 bytes, in rows of 368: a part of one more row.
+    assert!(copied.bytes >= 1 << 22 && copied.bytes < (1 << 22) + 2 * 368 * 16, "{copied:?}");
     assert!(copied.bytes_per_second() > 1e6 && baked.bytes_per_second() > 0.0, "{copied:?} {baked:?}");
 }

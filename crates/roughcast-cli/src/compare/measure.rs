@@ -7,9 +7,7 @@ use anyhow::Result;
 use indicatif::ProgressBar;
 use roughcast::shading::Shading;
 use roughcast_io::picture::Srgb8Picture;
-use roughcast_scene::metrics::{
-    DEFAULT_PIXELS_PER_DEGREE, energy_error, flicker, hdr_flip, misplaced_light, rmse,
-};
+use roughcast_scene::metrics::{DEFAULT_PIXELS_PER_DEGREE, energy_error, flicker, hdr_flip, rmse};
 use roughcast_scene::render::{Method, ShadingTextures, Truth};
 use roughcast_scene::{
     Filter, Light, Picture, Reconstruction, Sampler, Scene, Shape, SlopeMap, View, slow_move,
@@ -50,8 +48,6 @@ pub struct Comparison {
 /// One method with one filter.
 pub struct Trial {
     pub row: Row,
-    /// The part of the highlight's light that is in the wrong place.
-    pub misplaced: f64,
     /// The root mean square error in parts of the truth's brightest value.
     pub error_of_peak: f64,
     pub picture: Srgb8Picture,
@@ -202,7 +198,6 @@ impl Settings<'_> {
                 flicker: if self.frames > 0 { Some(flicker(frames, truth)?) } else { None },
                 ..row
             },
-            misplaced: misplaced_light(picture, still)?,
             error_of_peak: error / f64::from(peak),
             picture: shown(picture, exposure),
             error: error_picture(flip.width, &flip.errors),

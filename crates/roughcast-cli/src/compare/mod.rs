@@ -2,6 +2,7 @@
 //! LEAN cannot do.
 
 mod colour_scale;
+mod distribution;
 mod measure;
 mod page;
 mod results;
@@ -15,6 +16,7 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result};
 use clap::ValueHint;
+use indicatif::ProgressBar;
 use roughcast_io::{AtomicFile, AtomicSet};
 use roughcast_scene::render::MAX_SAMPLES;
 use roughcast_scene::{Filter, View};
@@ -24,6 +26,7 @@ use crate::args::{REPORT, SourceArgs, one_of};
 use crate::input::read_map;
 use crate::scene_args::{SHADING, SceneArgs, ShadingArgs, Size, size};
 use crate::{UsageError, progress, say, say_json, usage, warn};
+use distribution::Distribution;
 use measure::{Comparison, Settings};
 use subject::Subject;
 
@@ -120,12 +123,12 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         samples: args.samples,
         frames: args.frames,
     };
-    let comparisons = compare(&settings, &subjects)?;
-    write(&args.output, &settings, &subjects, &comparisons)?;
+    let compared = compare(&settings, subjects)?;
+    write(&args.output, &settings, &compared)?;
     if args.json {
-        say_json(&results(&comparisons))?;
+        say_json(&results(&compared))?
     } else {
-        summarise(&args.output, &settings, &subjects, &comparisons)?;
+        summarise(&args.output, &settings, &compared)?
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -167,43 +170,47 @@ fn without_repeats<T: PartialEq + Copy>(list: &[T]) -> Vec<T> {
     once
 }
 
-/// For every subject its comparisons, one a view.
-fn compare(settings: &Settings<'_>, subjects: &[Subject]) -> Result<Vec<Vec<Comparison>>> {
-    let views = subjects.iter().map(|subject| subject.views.len() as u64).sum::<u64>();
-    let bar = progress::timed_bar(views * settings.work());
-    let compare = |subject: &Subject, view: View| {
-        bar.set_message(format!("{}, {view}", subject.name));
-        let context = || format!("{}, {view} view", subject.name);
-        settings.compare(subject, view, &bar).with_context(context)
-    };
-    let of_subject = |subject: &Subject| subject.views.iter().map(|view| compare(subject, *view)).collect();
-    let comparisons = subjects.iter().map(of_subject).collect();
-    bar.finish_and_clear();
-    comparisons
+/// A map and what came of it.
+struct Compared {
+    subject: Subject,
+    /// One for each of its views.
+    comparisons: Vec<Comparison>,
+    distribution: Distribution,
 }
 
-/// The rows of all comparisons.
-fn results(comparisons: &[Vec<Comparison>]) -> Value {
-    comparisons
-        .iter()
-        .flatten()
-        .flat_map(|comparison| &comparison.trials)
-        .map(|trial| trial.row.json())
-        .collect()
+fn compare(settings: &Settings<'_>, subjects: [Subject; 3]) -> Result<Vec<Compared>> {
+    let views = subjects.iter().map(|subject| subject.views.len() as u64).sum::<u64>();
+    let bar = progress::timed_bar(views * settings.work());
+    let compared = subjects.into_iter().map(|subject| compare_views(settings, subject, &bar)).collect();
+    bar.finish_and_clear();
+    compared
+}
+
+fn compare_views(settings: &Settings<'_>, subject: Subject, bar: &ProgressBar) -> Result<Compared> {
+    let compare = |view: &View| {
+        bar.set_message(format!("{}, {view}", subject.name));
+        let context = || format!("{}, {view} view", subject.name);
+        settings.compare(&subject, *view, bar).with_context(context)
+    };
+    let comparisons = subject.views.iter().map(compare).collect::<Result<_>>()?;
+    let distribution = Distribution::of(&subject.image, &subject.options, settings.shading.specular_power)
+        .with_context(|| subject.name.clone())?;
+    Ok(Compared { subject, comparisons, distribution })
+}
+
+/// The rows of all maps and views.
+fn results(compared: &[Compared]) -> Value {
+    let trials = compared.iter().flat_map(|map| &map.comparisons).flat_map(|comparison| &comparison.trials);
+    trials.map(|trial| trial.row.json()).collect()
 }
 
 /// What is written into the folder.
 const FILES: [&str; 2] = ["index.html", "results.json"];
 
 /// Both files, or none.
-fn write(
-    folder: &Path,
-    settings: &Settings<'_>,
-    subjects: &[Subject],
-    comparisons: &[Vec<Comparison>],
-) -> Result<()> {
-    let page = page::page(settings, subjects, comparisons);
-    let rows = serde_json::to_string_pretty(&results(comparisons)).expect("rows are plain data") + "\n";
+fn write(folder: &Path, settings: &Settings<'_>, compared: &[Compared]) -> Result<()> {
+    let page = page::page(settings, compared);
+    let rows = serde_json::to_string_pretty(&results(compared)).expect("rows are plain data") + "\n";
     fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     let mut set = AtomicSet::new();
     for (name, text) in FILES.into_iter().zip([page, rows]) {
@@ -217,17 +224,12 @@ fn write(
 }
 
 /// A line for every map and view: LEAN against ordinary bump mapping.
-fn summarise(
-    folder: &Path,
-    settings: &Settings<'_>,
-    subjects: &[Subject],
-    comparisons: &[Vec<Comparison>],
-) -> Result<()> {
-    say(&format!("root mean square error, {}:", settings.main_filter()))?;
-    for (subject, comparisons) in subjects.iter().zip(comparisons) {
+fn summarise(folder: &Path, settings: &Settings<'_>, compared: &[Compared]) -> Result<()> {
+    let filter = settings.main_filter();
+    say(&format!("root mean square error, {filter}:"))?;
+    for Compared { subject, comparisons, .. } in compared {
         for comparison in comparisons {
-            let [ordinary, lean] =
-                page::PAIR.map(|method| comparison.trial(method, settings.main_filter()).row.rmse);
+            let [ordinary, lean] = page::PAIR.map(|method| comparison.trial(method, filter).row.rmse);
             let (name, view) = (&subject.name, comparison.view);
             say(&format!("  {name}, {view}: ordinary bump mapping {ordinary:.4}, LEAN {lean:.4}"))?;
         }

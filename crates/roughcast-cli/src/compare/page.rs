@@ -4,8 +4,10 @@ use roughcast::Named;
 use roughcast::shading::Shading;
 use roughcast_scene::{Light, View};
 
+use super::Compared;
 use super::colour_scale::legend;
 use super::measure::{Comparison, Settings, Trial};
+use super::results::Row;
 use super::subject::Subject;
 use crate::html::Page;
 
@@ -15,33 +17,29 @@ pub const PAIR: [Shading; 2] = [Shading::BlinnPhong, Shading::Lean];
 /// Frames a second of the animations.
 const FRAMES_PER_SECOND: u16 = 8;
 
-/// The whole report.
-pub fn page(settings: &Settings<'_>, subjects: &[Subject], comparisons: &[Vec<Comparison>]) -> String {
-    let given = &subjects[0];
-    let mut page = Page::new(&format!("roughcast compare: {}", given.name));
+/// The whole report; the first map is the one given.
+pub fn page(settings: &Settings<'_>, compared: &[Compared]) -> String {
+    let (given, others) = compared.split_first().expect("a map was given");
+    let mut page = Page::new(&format!("roughcast compare: {}", given.subject.name));
     page.paragraph(
         "Every shading model, with every texture filter, against the truth of its own base lobe: many rays a pixel, each \
          shaded at the finest level, in the same form and with the same energy. All numbers are taken on linear radiance, \
          before any tone curve.",
     );
-    how_it_was_made(&mut page, settings, subjects, &comparisons[0]);
-    overview(&mut page, settings, subjects, comparisons);
-    page.heading(2, &given.name);
-    for comparison in &comparisons[0] {
-        view(&mut page, settings, given, comparison);
-    }
-    limits(&mut page, settings, subjects, comparisons);
-    for (subject, comparisons) in subjects.iter().zip(comparisons).skip(1) {
+    how_it_was_made(&mut page, settings, given);
+    overview(&mut page, settings, compared);
+    limits(&mut page, settings, compared);
+    page.heading(2, &given.subject.name);
+    given.comparisons.iter().for_each(|comparison| view(&mut page, settings, &given.subject, comparison));
+    for Compared { subject, comparisons, .. } in others {
         page.heading(2, &subject.name);
         page.paragraph(&format!("{}.", subject.about));
-        for comparison in comparisons {
-            view(&mut page, settings, subject, comparison);
-        }
+        comparisons.iter().for_each(|comparison| view(&mut page, settings, subject, comparison));
     }
     page.finish()
 }
 
-fn how_it_was_made(page: &mut Page, settings: &Settings<'_>, subjects: &[Subject], of_given: &[Comparison]) {
+fn how_it_was_made(page: &mut Page, settings: &Settings<'_>, given: &Compared) {
     let (shading, size) = (settings.shading, settings.size);
     let flicker = match settings.frames {
         0 => "not measured".to_owned(),
@@ -50,7 +48,7 @@ fn how_it_was_made(page: &mut Page, settings: &Settings<'_>, subjects: &[Subject
     let numbers =
         |[r, g, b]: [f32; 3]| if r == g && g == b { format!("{r}") } else { format!("{r}, {g}, {b}") };
     let mut rows = vec![
-        ("map", format!("{}: {}", subjects[0].name, subjects[0].about)),
+        ("map", format!("{}: {}", given.subject.name, given.subject.about)),
         ("scene", settings.scene.scene.name()),
         ("textures of the methods", format!("{} bits", shading.bits.name())),
         ("specular power s", format!("{}", shading.specular_power)),
@@ -70,18 +68,17 @@ fn how_it_was_made(page: &mut Page, settings: &Settings<'_>, subjects: &[Subject
         ),
     ];
     if settings.scene.lights.is_empty() {
-        let each = of_given.iter().map(|c| format!("{}: {}", c.view, lights(&c.lights)));
+        let each = given.comparisons.iter().map(|c| format!("{}: {}", c.view, lights(&c.lights)));
         rows.push(("light, placed for the view", each.collect::<Vec<_>>().join("; ")));
     } else {
         rows.push(("light", lights(&settings.scene.lights)));
     }
-    let rows: Vec<_> = rows.into_iter().map(|(name, value)| vec![name.to_owned(), value]).collect();
-    page.table(&["setting", "value"], &rows);
+    page.list(&rows);
     page.paragraph(
         "RMSE is the root mean square error in radiance. FLIP is the mean of HDR-FLIP, 0 to 1: the difference that a viewer \
          sees who flips between two pictures. Energy is the relative error of the highlight's light. Flicker is the variance \
-         over time in excess of the truth's, in radiance squared. Misplaced is the part of the highlight's light that lies where \
-         the truth has less of it, whatever its brightness: its shape alone. Pixels count that the surface covers fully.",
+         over time in excess of the truth's, in radiance squared. Pixels count that the surface covers fully. The pictures of a \
+         view share one exposure.",
     );
     page.begin_row();
     page.picture(&legend(256, 12), "FLIP in the error pictures, from 0 to 1");
@@ -97,15 +94,14 @@ fn lights(lights: &[Light]) -> String {
 }
 
 /// Ordinary bump mapping against LEAN, and who was best, for every map and view.
-fn overview(page: &mut Page, settings: &Settings<'_>, subjects: &[Subject], comparisons: &[Vec<Comparison>]) {
+fn overview(page: &mut Page, settings: &Settings<'_>, compared: &[Compared]) {
     page.heading(2, "Ordinary bump mapping against LEAN");
     let filter = settings.main_filter();
     let mut rows = Vec::new();
-    for (subject, comparisons) in subjects.iter().zip(comparisons) {
+    for Compared { subject, comparisons, .. } in compared {
         for comparison in comparisons {
             let [ordinary, lean] = PAIR.map(|method| comparison.trial(method, filter));
             let best = sorted(&comparison.trials)[0];
-            let flicker = |trial: &Trial| trial.row.flicker.map_or("-".to_owned(), |f| format!("{f:.2e}"));
             rows.push(vec![
                 format!("{}, {}", subject.name, comparison.view),
                 format!("{:.4}", ordinary.row.rmse),
@@ -113,8 +109,8 @@ fn overview(page: &mut Page, settings: &Settings<'_>, subjects: &[Subject], comp
                 format!("{:.2}", lean.row.rmse / ordinary.row.rmse),
                 format!("{:.3}", ordinary.row.flip),
                 format!("{:.3}", lean.row.flip),
-                flicker(ordinary),
-                flicker(lean),
+                flicker(&ordinary.row),
+                flicker(&lean.row),
                 format!("{}, {}", best.row.method, best.row.filter),
             ]);
         }
@@ -149,14 +145,11 @@ fn view(page: &mut Page, settings: &Settings<'_>, subject: &Subject, comparison:
     page.heading(3, &format!("{}, {view} view: {}", subject.name, span(view)));
     if !comparison.animation.is_empty() {
         page.begin_row();
-        let [ordinary, lean] = PAIR.map(|method| {
-            let trial = comparison.trial(method, settings.main_filter());
-            trial.row.flicker.map_or(String::new(), |flicker| format!("flicker {flicker:.2e}"))
-        });
+        let filter = settings.main_filter();
+        let [ordinary, lean] = PAIR.map(|method| flicker(&comparison.trial(method, filter).row));
         let caption = format!(
-            "While the camera moves: truth (off-centre Beckmann); ordinary bump mapping (blinn-phong, {filter}), {ordinary}; \
-             LEAN ({filter}), {lean}",
-            filter = settings.main_filter()
+            "While the camera moves: truth (off-centre Beckmann); ordinary bump mapping (blinn-phong, {filter}), flicker \
+             {ordinary}; LEAN ({filter}), flicker {lean}"
         );
         page.animation(&comparison.animation, FRAMES_PER_SECOND, &caption);
         page.end_row();
@@ -181,12 +174,11 @@ fn table(page: &mut Page, comparison: &Comparison) {
             format!("{:.5}", numbers.rmse),
             format!("{:.4}", numbers.flip),
             format!("{:+.1} %", 100.0 * numbers.energy),
-            numbers.flicker.map_or("-".to_owned(), |flicker| format!("{flicker:.2e}")),
-            format!("{:.1} %", 100.0 * trial.misplaced),
+            flicker(numbers),
         ]
     };
     let rows: Vec<_> = sorted(&comparison.trials).iter().map(row).collect();
-    page.table(&["method, filter", "truth", "RMSE", "FLIP", "energy", "flicker", "misplaced"], &rows);
+    page.table(&["method, filter", "truth", "RMSE", "FLIP", "energy", "flicker"], &rows);
 }
 
 /// The truth of a model, and for every filter the model's picture and its errors.
@@ -202,28 +194,58 @@ fn pictures(page: &mut Page, settings: &Settings<'_>, comparison: &Comparison, m
     page.end_row();
 }
 
+fn flicker(row: &Row) -> String {
+    match row.flicker {
+        None => "-".to_owned(),
+        Some(0.0) => "0".to_owned(),
+        Some(flicker) => format!("{flicker:.2e}"),
+    }
+}
+
 /// What LEAN cannot do, with the numbers.
-fn limits(page: &mut Page, settings: &Settings<'_>, subjects: &[Subject], comparisons: &[Vec<Comparison>]) {
+fn limits(page: &mut Page, settings: &Settings<'_>, compared: &[Compared]) {
     page.heading(2, "What LEAN cannot do");
     page.paragraph(
-        "LEAN knows mean and covariance of the slopes under a pixel: one Gaussian, with one direction. Where slopes come in \
-         separate groups, as in sharp V grooves (two) or along the threads of a woven cloth (two directions that cross), the true \
-         highlight has as many parts, and LEAN smears one over all of them: also where the truth is dark. Its energy is right, \
-         its shape is not, and neither more bits nor a better filter mend that.",
+        "LEAN knows the mean and the covariance of the slopes under a pixel: one Gaussian, with one direction. Where slopes come \
+         in separate groups, as in sharp V grooves (two) or along the threads of a woven cloth (two directions that cross), the \
+         true highlight has as many parts, and LEAN has one that covers them all, brightest where the truth may be dark. Neither \
+         more bits nor a better filter mend that.",
     );
-    let filter = settings.main_filter();
-    let mut rows = Vec::new();
-    for (subject, comparisons) in subjects.iter().zip(comparisons) {
-        for comparison in comparisons {
-            let lean = comparison.trial(Shading::Lean, filter);
-            rows.push(vec![
-                format!("{}, {}", subject.name, comparison.view),
-                format!("{:.1} %", 100.0 * lean.misplaced),
-                format!("{:.1} %", 100.0 * lean.error_of_peak),
-                format!("{:+.1} %", 100.0 * lean.row.energy),
-            ]);
-        }
+    page.paragraph(&format!(
+        "The highlight of a whole map, as a pixel has it that holds all of the map, over h.xy / h.z, base roughness included (s = \
+         {}). Misplaced is the part of the light that LEAN has where the truth has less.",
+        settings.shading.specular_power
+    ));
+    page.begin_row();
+    for Compared { subject, distribution, .. } in compared {
+        let [truth, lean] = distribution.pictures();
+        let (name, reach) = (&subject.name, distribution.reach);
+        page.picture(&truth, &format!("{name}: truth, slopes from -{reach:.2} to {reach:.2}"));
+        page.picture(&lean, &format!("{name}: LEAN, {} misplaced", percent(distribution.misplaced)));
     }
-    page.paragraph(&format!("LEAN with {filter} filtering against its truth:"));
-    page.table(&["map, view", "misplaced light", "RMSE / truth's brightest", "energy"], &rows);
+    page.end_row();
+    let rows: Vec<_> = compared.iter().flat_map(|map| limit_rows(map, settings)).collect();
+    page.paragraph(&format!("LEAN with {} filtering in the views:", settings.main_filter()));
+    page.table(&["map, view", "misplaced, whole map", "RMSE / truth's brightest", "energy"], &rows);
+    page.paragraph(
+        "Where texels are magnified, as in the near view, LEAN is duller than the truth: between two texels it finds the slopes of \
+         both, and takes them for roughness, while the truth is a surface that bends from the one to the other.",
+    );
+}
+
+fn limit_rows(map: &Compared, settings: &Settings<'_>) -> Vec<Vec<String>> {
+    let row = |comparison: &Comparison| {
+        let lean = comparison.trial(Shading::Lean, settings.main_filter());
+        vec![
+            format!("{}, {}", map.subject.name, comparison.view),
+            percent(map.distribution.misplaced),
+            percent(lean.error_of_peak),
+            format!("{:+.1} %", 100.0 * lean.row.energy),
+        ]
+    };
+    map.comparisons.iter().map(row).collect()
+}
+
+fn percent(part: f64) -> String {
+    format!("{:.1} %", 100.0 * part)
 }

@@ -2,8 +2,17 @@
 
 use roughcast::{BakeOptions, Image, Samples, SourceOptions};
 
+use super::bindings::Bindings;
+use super::compute::{Dispatch, begin_pass, compute_pipeline};
+use super::target::level_view;
 use super::{BakePath, GpuBaker};
-use crate::{Gpu, GpuError, Timestamps};
+use crate::{Gpu, GpuError, Span, Timestamps};
+
+const COPY: &str = include_str!("copy.wgsl");
+
+/// Bytes of a copied texel, and texels along each side of what a workgroup copies.
+const COPY_TEXEL: u64 = 16;
+const COPY_TILE: u64 = 16;
 
 /// Runs that are measured, after one that warms up; the middle one counts.
 const RUNS: u32 = 9;
@@ -45,37 +54,54 @@ pub async fn bake_bandwidth(
     let bytes = image.samples().len() as u64 + written;
     let nanoseconds = measure(gpu, |encoder, span| {
         baker.encode(encoder, Some(span));
-        Ok(())
     })
     .await?;
     Ok(Bandwidth { nanoseconds, bytes })
 }
 
-/// Copies from buffer to buffer so that `bytes` are moved in all: half of them read, half written.
+/// Copies from texture to texture in a compute pass, so that `bytes` or a little more are moved in all: half of them read,
+/// half written.
 ///
 /// # Errors
-/// [`GpuError::Feature`] without timestamps outside of passes; [`GpuError`] where the buffers do not fit into memory.
+/// [`GpuError::Feature`] without timestamps; [`GpuError`] where the textures do not fit into memory.
 pub async fn copy_bandwidth(gpu: &Gpu, bytes: u64) -> Result<Bandwidth, GpuError> {
-    let size = (bytes / 2).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT).max(wgpu::COPY_BUFFER_ALIGNMENT);
-    let descriptor =
-        |usage| wgpu::BufferDescriptor { label: Some("copy"), size, usage, mapped_at_creation: false };
+    let texels = (bytes / 2).div_ceil(COPY_TEXEL).max(1);
+    let width = texels.isqrt().next_multiple_of(COPY_TILE);
+    let height = texels.div_ceil(width);
+    let side = |texels: u64| u32::try_from(texels).unwrap_or(u32::MAX);
+    let descriptor = |usage| wgpu::TextureDescriptor {
+        label: Some("copy"),
+        size: wgpu::Extent3d { width: side(width), height: side(height), depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba32Uint,
+        usage,
+        view_formats: &[],
+    };
     let what = "a copy to measure";
-    let from = gpu.create_buffer(what, &descriptor(wgpu::BufferUsages::COPY_SRC)).await?;
-    let to = gpu.create_buffer(what, &descriptor(wgpu::BufferUsages::COPY_DST)).await?;
-    let nanoseconds = measure(gpu, |encoder, span| {
-        span.begin_outside_passes(gpu, encoder)?;
-        encoder.copy_buffer_to_buffer(&from, 0, &to, 0, size);
-        span.end_outside_passes(gpu, encoder)
-    })
-    .await?;
-    Ok(Bandwidth { nanoseconds, bytes: 2 * size })
+    let from = gpu.create_texture(what, &descriptor(wgpu::TextureUsages::TEXTURE_BINDING)).await?;
+    let to = gpu.create_texture(what, &descriptor(wgpu::TextureUsages::STORAGE_BINDING)).await?;
+    let (from, to) = (level_view(&from, 0), level_view(&to, 0));
+    let mut bindings = Bindings::new(wgpu::ShaderStages::COMPUTE);
+    let declaration = "@group(0) @binding(0) var source: texture_2d<u32>;\n";
+    bindings.declared_texture(declaration, wgpu::TextureSampleType::Uint, &from);
+    bindings.storage_texture("copied", wgpu::TextureFormat::Rgba32Uint, &to);
+    let source = [bindings.wgsl(), COPY].concat();
+    let (pipeline, bindings) = gpu
+        .checked("the pipeline of a copy", |device| {
+            let (layout, group) = bindings.make(device);
+            (compute_pipeline(device, &layout, &source, "copy"), group)
+        })
+        .await?;
+    let groups = (side(width.div_ceil(COPY_TILE)), side(height.div_ceil(COPY_TILE)));
+    let copy = Dispatch { pipeline, bindings, groups };
+    let nanoseconds = measure(gpu, |encoder, span| copy.encode(&mut begin_pass(encoder, Some(span)))).await?;
+    Ok(Bandwidth { nanoseconds, bytes: 2 * width * height * COPY_TEXEL })
 }
 
 /// The middle time of several runs, each submitted on its own.
-async fn measure(
-    gpu: &Gpu,
-    encode: impl Fn(&mut wgpu::CommandEncoder, &crate::Span) -> Result<(), GpuError>,
-) -> Result<f64, GpuError> {
+async fn measure(gpu: &Gpu, encode: impl Fn(&mut wgpu::CommandEncoder, &Span)) -> Result<f64, GpuError> {
     let coarse = GpuError::Feature {
         feature: "clock that is fine enough to measure this",
         instead: "measure something larger",
@@ -85,7 +111,7 @@ async fn measure(
     for run in 0..=RUNS {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let span = timestamps.span("run").ok_or_else(|| coarse.clone())?;
-        encode(&mut encoder, &span)?;
+        encode(&mut encoder, &span);
         timestamps.resolve(&mut encoder);
         gpu.queue.submit([encoder.finish()]);
         let measured = timestamps.read(gpu).await?;

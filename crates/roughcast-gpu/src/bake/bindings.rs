@@ -74,6 +74,7 @@ impl<'a> Bindings<'a> {
         let word = match format {
             wgpu::TextureFormat::Rgba8Unorm => "rgba8unorm",
             wgpu::TextureFormat::Rgba16Unorm => "rgba16unorm",
+            wgpu::TextureFormat::Rgba32Uint => "rgba32uint",
             _ => "rgba16float",
         };
         self.declare(&format!("var {name}: texture_storage_2d<{word}, write>"));

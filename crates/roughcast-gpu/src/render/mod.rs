@@ -91,7 +91,8 @@ pub struct Renderer {
     pipelines: HashMap<ShaderKey, wgpu::RenderPipeline>,
 }
 
-/// The views of textures that a frame is drawn into, all of one size.
+/// The views of textures that a frame is drawn into, all of one size and of the formats of the renderer's target: wgpu
+/// refuses others.
 #[derive(Clone, Copy, Debug)]
 pub struct Views<'a> {
     /// The colour target.

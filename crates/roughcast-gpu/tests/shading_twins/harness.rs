@@ -149,17 +149,25 @@ const FLUSHED: f32 = 1e-36;
 /// The first result that is not what the Rust twin gives, in words.
 pub fn first_difference(twin: &Twin, cases: &[Case], results: &[Vec<f32>]) -> Option<String> {
     cases.iter().zip(results).find_map(|(case, got)| {
-        let rust = |arguments: &[f32]| (twin.rust)(arguments, &case.options, &case.packing);
-        let wanted = rust(&case.arguments);
-        let mut allowed = tolerances(&rust, &case.arguments, &wanted);
-        let cancelled = cancellation(twin.gives, &wanted);
-        allowed.iter_mut().zip(cancelled).for_each(|(allowed, more)| *allowed += more);
-        let worst = (0..wanted.len()).find(|i| !((got[*i] - wanted[*i]).abs() <= allowed[*i]))?;
+        let (wanted, allowed) = wanted_and_allowed(twin, case);
+        // Not a number is never close, and what may be anything is not tested.
+        let close = |i: &usize| (got[*i] - wanted[*i]).abs() <= allowed[*i] && allowed[*i].is_finite();
+        let wrong = (0..wanted.len()).find(|i| !close(i))?;
         Some(format!(
-            "{} gives {:e} and not {:e} +- {:e} as number {worst}, for {:?} with {:?}",
-            twin.name, got[worst], wanted[worst], allowed[worst], case.arguments, case.options
+            "{} gives {:e} and not {:e} +- {:e} as number {wrong}, for {:?} with {:?}",
+            twin.name, got[wrong], wanted[wrong], allowed[wrong], case.arguments, case.options
         ))
     })
+}
+
+/// What the Rust twin gives, and how far from it each result may be.
+pub fn wanted_and_allowed(twin: &Twin, case: &Case) -> (Vec<f32>, Vec<f32>) {
+    let rust = |arguments: &[f32]| (twin.rust)(arguments, &case.options, &case.packing);
+    let wanted = rust(&case.arguments);
+    let mut allowed = tolerances(&rust, &case.arguments, &wanted);
+    let cancelled = cancellation(twin.gives, &wanted);
+    allowed.iter_mut().zip(cancelled).for_each(|(allowed, more)| *allowed += more);
+    (wanted, allowed)
 }
 
 /// What roundings before a subtraction leave in its result, which moving the arguments does not show.

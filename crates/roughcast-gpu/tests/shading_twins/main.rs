@@ -9,7 +9,7 @@ mod table;
 use std::collections::BTreeSet;
 
 use common::gpu;
-use harness::{Case, Twin, first_difference, library, run};
+use harness::{Case, Twin, first_difference, library, run, wanted_and_allowed};
 use inputs::Inputs;
 use pollster::block_on;
 use roughcast::shading::wgsl;
@@ -75,6 +75,25 @@ fn the_cases_of_every_lobe_see_its_highlight() {
         let value = |case: &Case| (twin.rust)(&case.arguments, &case.options, &case.packing)[0];
         let bright = cases.iter().filter(|case| value(case) > 1e-6).count();
         assert!(bright as f64 > LEAST * CASES as f64, "{}: {bright}", twin.name);
+    }
+}
+
+#[test]
+fn few_results_may_be_far_off() {
+    // Differences of the moments of steep slopes are ill-conditioned, as is the z of a flat normal that follows from its x and
+    // y: one case in ten has such. Of the lobes it is fewer than one in a hundred.
+    const FAR: f32 = 0.01;
+    const FEW: f64 = 0.2;
+    for twin in twins() {
+        let (mut results, mut far) = (0_u32, 0_u32);
+        for case in cases(&twin) {
+            let (wanted, allowed) = wanted_and_allowed(&twin, &case);
+            for (wanted, allowed) in wanted.iter().zip(&allowed).filter(|(wanted, _)| wanted.abs() > 1e-6) {
+                results += 1;
+                far += u32::from(*allowed > FAR * wanted.abs());
+            }
+        }
+        assert!(f64::from(far) < FEW * f64::from(results), "{}: {far} of {results}", twin.name);
     }
 }
 

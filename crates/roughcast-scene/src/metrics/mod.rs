@@ -5,13 +5,11 @@ mod energy;
 mod flicker;
 mod flip;
 mod flip_filters;
-mod misplaced;
 mod rmse;
 
 pub use energy::energy_error;
 pub use flicker::flicker;
 pub use flip::{DEFAULT_PIXELS_PER_DEGREE, FlipMap, hdr_flip, ldr_flip};
-pub use misplaced::misplaced_light;
 pub use rmse::rmse;
 
 use crate::Picture;

@@ -1,0 +1,10 @@
+// A plain copy from texture to texture, 16 bytes a texel: what a bake is measured against.
+//
+// Defined elsewhere: the bindings source and copied.
+
+@compute @workgroup_size(16, 16)
+fn copy(@builtin(global_invocation_id) id: vec3u) {
+    if all(id.xy < textureDimensions(source)) {
+        textureStore(copied, id.xy, textureLoad(source, id.xy, 0));
+    }
+}
