@@ -176,7 +176,7 @@ fn command_lines_that_make_no_sense_are_refused() {
     refused(&["--samples", "5"], "square");
     refused(&["--samples", "0"], "square");
     refused(&["--frames", "1"], "2 or more");
-    refused(&["--frames", "-3"], "frames");
+    refused(&["--frames", "few"], "2 or more");
     refused(&["--size", "0x0"], "no pixels");
     refused(&["--size", "4096x4096"], "--frames");
     refused(&["--camera", "near"], "--camera");
