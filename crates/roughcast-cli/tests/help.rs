@@ -5,7 +5,8 @@ mod common;
 use common::{Outcome, command, run};
 use roughcast::texture::Layout;
 
-const SUBCOMMANDS: [&str; 7] = ["bake", "info", "unpack", "precision", "render", "figures", "shader"];
+const SUBCOMMANDS: [&str; 8] =
+    ["bake", "info", "unpack", "precision", "render", "compare", "figures", "shader"];
 
 fn help(subcommand: &str, flag: &str) -> String {
     let output = command([subcommand, flag]).env("COLUMNS", "80").output().expect("the program starts");
@@ -82,6 +83,7 @@ fn the_documented_options_exist() {
         ("info", &["json", "max-pixels", "green"][..]),
         ("unpack", &["output", "max-pixels"]),
         ("precision", &["specular-power", "json", "max-slope"]),
+        ("compare", &["views", "filters", "samples", "frames", "scene", "reconstruction", "json"]),
         ("shader", &["lang", "output", "json"]),
     ] {
         let text = help(subcommand, "-h");

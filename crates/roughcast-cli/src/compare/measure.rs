@@ -29,6 +29,8 @@ pub struct Settings<'a> {
     pub size: Size,
     /// Samples a pixel of the truths.
     pub samples: u32,
+    /// What the truths' surface is between texels.
+    pub reconstruction: Reconstruction,
     /// Frames by which flicker is measured; none without it.
     pub frames: u32,
 }
@@ -135,7 +137,7 @@ impl Settings<'_> {
         let truth = Truth {
             shading: Shading::Lean,
             slopes: &slopes,
-            reconstruction: Reconstruction::Linear,
+            reconstruction: self.reconstruction,
             wrap: subject.options.wrap,
             options: self.shading.lobe_options(),
             samples: self.samples,

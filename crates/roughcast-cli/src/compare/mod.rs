@@ -19,7 +19,7 @@ use clap::ValueHint;
 use indicatif::ProgressBar;
 use roughcast_io::{AtomicFile, AtomicSet};
 use roughcast_scene::render::MAX_SAMPLES;
-use roughcast_scene::{Filter, View};
+use roughcast_scene::{Filter, Reconstruction, View};
 use serde_json::Value;
 
 use crate::args::{REPORT, SourceArgs, one_of};
@@ -63,6 +63,11 @@ pub struct Args {
     /// Samples a pixel of the truths: a square number up to 4096
     #[arg(long, value_name = "N", default_value = "64", value_parser = samples)]
     samples: u32,
+
+    /// What the surface is between texels, in truth: slopes interpolated, which smooths bumps that change from texel to
+    /// texel; or a facet a texel, whose moments are exactly the map's
+    #[arg(long, default_value = "linear", value_parser = one_of::<Reconstruction>())]
+    reconstruction: Reconstruction,
 
     /// Width and height of the pictures in pixels
     #[arg(long, value_name = "WxH", default_value = "256x192", value_parser = size)]
@@ -121,6 +126,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         filters: without_repeats(&args.filters),
         size: args.size,
         samples: args.samples,
+        reconstruction: args.reconstruction,
         frames: args.frames,
     };
     let compared = compare(&settings, subjects)?;

@@ -55,6 +55,7 @@ fn how_it_was_made(page: &mut Page, settings: &Settings<'_>, given: &Compared) {
         ("form of the lobes", shading.form.name().to_owned()),
         ("base lobe in the surface", shading.base.name().to_owned()),
         ("truth", format!("{} samples a pixel, Gaussian pixel filter, float slopes", settings.samples)),
+        ("its surface between texels", settings.reconstruction.name().to_owned()),
         ("pictures", format!("{}x{} pixels", size.width, size.height)),
         ("flicker", flicker),
         (
@@ -208,8 +209,8 @@ fn limits(page: &mut Page, settings: &Settings<'_>, compared: &[Compared]) {
     page.paragraph(
         "LEAN knows the mean and the covariance of the slopes under a pixel: one Gaussian, with one direction. Where slopes come \
          in separate groups, as in sharp V grooves (two) or along the threads of a woven cloth (two directions that cross), the \
-         true highlight has as many parts, and LEAN has one that covers them all, brightest where the truth may be dark. Neither \
-         more bits nor a better filter mend that.",
+         true highlight has as many parts or is lopsided, and LEAN has one round or oval part that covers them all, brightest where \
+         the truth may be dark. Neither more bits nor a better filter mend that.",
     );
     page.paragraph(&format!(
         "The highlight of a whole map, as a pixel has it that holds all of the map, over h.xy / h.z, base roughness included (s = \
