@@ -21,7 +21,7 @@ use crate::method::{TextureOptions, bake_for};
 use crate::output::is_same_file;
 use crate::painter::{GpuPainter, MethodPainter, Painter, TruthPainter};
 use crate::scene_args::{CameraArgs, SHADING, SceneArgs, ShadingArgs, Size, size};
-use crate::{UsageError, progress, usage, warn};
+use crate::{UsageError, progress, say, usage, warn};
 
 /// Render a map on a shape: what it looks like with LEAN, with the old ways, or in truth.
 ///
@@ -192,8 +192,13 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             let picture = painter.paint(&scene, &bar)?;
             bar.finish_and_clear();
             let mut set = AtomicSet::new();
-            add(&mut set, &args.output, format, &picture, args.exposure_of(&picture))?;
+            let exposure = args.exposure_of(&picture);
+            add(&mut set, &args.output, format, &picture, exposure)?;
             set.commit()?;
+            if format == PictureFormat::Png {
+                // So that another picture can be shown as brightly.
+                say(&format!("{}: white is a radiance of {}", args.output.display(), 1.0 / exposure))?;
+            }
         }
         Some(frames) => render_frames(args, &scene, &mut painter, frames)?,
     }
