@@ -172,10 +172,10 @@ impl Chart {
         for (i, curve) in self.curves.iter().enumerate() {
             let line: Vec<String> = curve.points.iter().map(at).collect();
             let (colour, name) = (curve.colour, escaped(&curve.name));
-            write!(
+            writeln!(
                 svg,
                 "<polyline fill=\"none\" stroke=\"{colour}\" points=\"{}\"/>\
-                 <text x=\"{}\" y=\"{}\" text-anchor=\"end\" fill=\"{colour}\">{name}</text>\n",
+                 <text x=\"{}\" y=\"{}\" text-anchor=\"end\" fill=\"{colour}\">{name}</text>",
                 line.join(" "),
                 WIDTH - MARGIN,
                 MARGIN + 16.0 * (i + 1) as f64,

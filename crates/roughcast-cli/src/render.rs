@@ -14,14 +14,14 @@ use roughcast_io::{AtomicFile, AtomicSet};
 use roughcast_scene::render::ShadingTextures;
 use roughcast_scene::{Filter, Picture, Sampler, Scene, SlopeMap};
 
-use crate::args::{SourceArgs, one_of};
+use crate::args::{SourceArgs, one_of, positive};
 use crate::display::{exposure_of, shown};
 use crate::input::{Map, read_map};
 use crate::method::{TextureOptions, bake_for};
 use crate::output::is_same_file;
 use crate::painter::{GpuPainter, MethodPainter, Painter, TruthPainter};
 use crate::scene_args::{CameraArgs, SHADING, SceneArgs, ShadingArgs, Size, size};
-use crate::{UsageError, progress, usage, warn};
+use crate::{UsageError, progress, say, usage, warn};
 
 /// Render a map on a shape: what it looks like with LEAN, with the old ways, or in truth.
 ///
@@ -76,9 +76,9 @@ pub struct Args {
     #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = size)]
     size: Size,
 
-    /// Brighter (above 0) or darker (below 0) than the automatic exposure of PNG, in stops
-    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true)]
-    exposure: f32,
+    /// Radiance that PNG shows as white [default: all but the brightest hundredth of the picture is below it]
+    #[arg(long, value_name = "RADIANCE", value_parser = positive)]
+    white: Option<f32>,
 
     /// Render this many frames of a slow camera move into the output folder
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_FRAMES))]
@@ -192,8 +192,13 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             let picture = painter.paint(&scene, &bar)?;
             bar.finish_and_clear();
             let mut set = AtomicSet::new();
-            add(&mut set, &args.output, format, &picture, args.exposure_of(&picture))?;
+            let exposure = args.exposure_of(&picture);
+            add(&mut set, &args.output, format, &picture, exposure)?;
             set.commit()?;
+            if format == PictureFormat::Png {
+                // So that another picture can be shown as brightly.
+                say(&format!("{}: white is a radiance of {}", args.output.display(), 1.0 / exposure))?;
+            }
         }
         Some(frames) => render_frames(args, &scene, &mut painter, frames)?,
     }
@@ -228,7 +233,7 @@ impl Args {
 
     /// The exposure of a picture. Frames all take the first one's, or they would flicker by themselves.
     fn exposure_of(&self, first: &Picture) -> f32 {
-        exposure_of(first) * self.exposure.exp2()
+        self.white.map_or_else(|| exposure_of(first), |white| 1.0 / white)
     }
 
     /// What renders, with the textures that it needs.

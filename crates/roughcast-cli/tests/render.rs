@@ -137,7 +137,8 @@ fn what_cannot_be_rendered_is_refused_in_one_line_and_leaves_nothing() {
 fn command_lines_that_make_no_sense_are_refused() {
     let folder = scratch();
     let output = folder.path().join("picture.png");
-    let map = map();
+    // One that gives no warnings beside the refusal.
+    let map = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/rock_normal.png");
     let refused = |arguments: &[&str], words: &str| {
         run(["render", text(&map), "-o", text(&output)].iter().chain(arguments)).expect_usage_error(words);
     };

@@ -34,7 +34,7 @@ const HIGHLIGHT: (f64, f64) = (0.46, 0.44);
 /// Shapes other than planes mirror the light where the eye meets them at about this cosine, so that it lights most of what
 /// is seen; in grazing views it stands behind them.
 const FRONTAL_COSINE: f64 = 0.86;
-const GRAZING_COSINE: f64 = 0.25;
+const GRAZING_COSINE: f64 = 0.45;
 
 impl View {
     /// Texels that a pixel spans in the middle of the picture.

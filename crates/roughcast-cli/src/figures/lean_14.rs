@@ -139,8 +139,8 @@ fn stage(size: (u32, u32), edge_slope: f64) -> Stage {
     };
     let shape = Shape::Plane(Plane::default());
     Stage {
-        map: raised_checker(512, 8, 16.0, edge_slope),
-        scene: scene(shape, 32.0, camera, DVec3::new(0.15, 0.35, -1.0)),
+        map: raised_checker(512, 16, 4.0, edge_slope),
+        scene: scene(shape, 16.0, camera, DVec3::new(0.05, 0.35, -1.0)),
         options: LobeOptions { specular_power: SPECULAR_POWER, ..LobeOptions::default() },
         bits: Bits::Sixteen,
         size,

@@ -1,0 +1,64 @@
+//! The exponent of the LEAN text's ocean, 13777: 16-bit maps shade as float maps do, and 8-bit maps do not.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use roughcast::shading::{LobeOptions, Material, Shading};
+use roughcast::{BakeOptions, Bits, Image, SourceOptions, bake};
+use roughcast_io::{Limits, read_image_file};
+use roughcast_scene::metrics::{DEFAULT_PIXELS_PER_DEGREE, hdr_flip};
+use roughcast_scene::render::{Method, ShadingTextures, unwatched};
+use roughcast_scene::{Picture, Plane, Sampler, Shape, View};
+
+const SPECULAR_POWER: f32 = 13_777.0;
+const SIZE: (u32, u32) = (160, 120);
+/// Mean FLIP below which two pictures are taken for the same: a hundredth of the way from one colour to its opposite.
+const SAME: f64 = 0.01;
+/// Eight bits hold exponents up to about a hundred for slopes of one: the comparator must see that, by so many times what
+/// it lets pass.
+const DIFFERENT: f64 = 2.0;
+/// Maps of the test data, with slopes beyond one.
+const MAPS: [&str; 2] = ["materials/water_bevy/water_normals.png", "materials/rock020/Rock020_1K_Normal.jpg"];
+
+fn map(name: &str) -> Image {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data").join(name);
+    assert!(path.exists(), "the test data {} is missing: put it beside the repository", path.display());
+    read_image_file(&path, &Limits::default()).expect("a map").image
+}
+
+fn picture(map: &Image, bits: Bits, view: View) -> Picture {
+    let options = BakeOptions { bits, ..BakeOptions::default() };
+    let baked = bake(map, &SourceOptions::default(), None, &options).expect("a map");
+    let textures = ShadingTextures::new(Shading::Lean, &baked.arrays).expect("LEAN's textures");
+    let plane = Arc::new(Shape::Plane(Plane::default()));
+    let scene = view.scene(plane, (map.width(), map.height()), SIZE, Material::default());
+    let options = LobeOptions { specular_power: SPECULAR_POWER, ..LobeOptions::default() };
+    let method = Method { textures: &textures, sampler: Sampler::default(), options };
+    method.render(&scene, SIZE, &unwatched).expect("a picture")
+}
+
+fn flip(map: &Image, bits: Bits, view: View) -> f64 {
+    let float = picture(map, Bits::Float, view);
+    hdr_flip(&picture(map, bits, view), &float, DEFAULT_PIXELS_PER_DEGREE).expect("pictures of one size").mean
+}
+
+#[test]
+fn sixteen_bits_and_halves_carry_the_exponent_of_the_text() {
+    for name in MAPS {
+        let map = map(name);
+        for view in View::ALL {
+            for bits in [Bits::Sixteen, Bits::Half] {
+                let flip = flip(&map, bits, *view);
+                println!("{name}, {view}, {bits}: FLIP {flip:.5}");
+                assert!(flip < SAME, "{name}, {view}, {bits}: FLIP {flip}");
+            }
+        }
+    }
+}
+
+#[test]
+fn eight_bits_do_not() {
+    let flip = flip(&map(MAPS[1]), Bits::Eight, View::Near);
+    println!("FLIP {flip:.5}");
+    assert!(flip > DIFFERENT * SAME, "FLIP {flip}");
+}
