@@ -6,6 +6,7 @@
 mod args;
 mod bake;
 mod batch;
+mod bench;
 mod compare;
 mod display;
 mod figures;
@@ -50,6 +51,7 @@ enum Command {
     Render(render::Args),
     Compare(compare::Args),
     Figures(figures::Args),
+    Bench(bench::Args),
     Shader(shader::Args),
 }
 
@@ -66,6 +68,7 @@ fn main() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Figures(args) => figures::run(&args),
+        Command::Bench(args) => bench::run(&args),
         Command::Shader(args) => shader::run(&args),
     };
     match result {

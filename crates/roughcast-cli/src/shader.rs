@@ -18,6 +18,7 @@ use serde_json::{Value, json};
 
 use crate::args::{REPORT, one_of};
 use crate::{UsageError, say, say_json};
+pub use export::parse;
 use export::{Export, Language, export};
 
 /// Export the shading models as shader code, or list them.

@@ -5,8 +5,8 @@ mod common;
 use common::{Outcome, command, run};
 use roughcast::texture::Layout;
 
-const SUBCOMMANDS: [&str; 8] =
-    ["bake", "info", "unpack", "precision", "render", "compare", "figures", "shader"];
+const SUBCOMMANDS: [&str; 9] =
+    ["bake", "info", "unpack", "precision", "render", "compare", "figures", "bench", "shader"];
 
 fn help(subcommand: &str, flag: &str) -> String {
     let output = command([subcommand, flag]).env("COLUMNS", "80").output().expect("the program starts");

@@ -73,14 +73,15 @@ pub fn export(names: &[&str], language: Language) -> Result<Export> {
     Ok(Export::Text(format!("{}\n{}\n", header(&exported, language), code.trim())))
 }
 
-fn parse(source: &str) -> Result<(naga::Module, ModuleInfo)> {
+/// Parses WGSL and proves that it is valid.
+pub fn parse(source: &str) -> Result<(naga::Module, ModuleInfo)> {
     let module = naga::front::wgsl::parse_str(source)
         .map_err(|error| anyhow::anyhow!("{}", error.message().to_owned()))
-        .context("the library does not parse as WGSL")?;
+        .context("the shader does not parse as WGSL")?;
     let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
         .validate(&module)
         .map_err(|error| error.into_inner())
-        .context("the library is not valid WGSL")?;
+        .context("the shader is not valid WGSL")?;
     Ok((module, info))
 }
 

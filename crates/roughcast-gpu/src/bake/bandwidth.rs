@@ -50,13 +50,11 @@ pub async fn bake_bandwidth(
     }
     let image = washboard(side as usize)?;
     let baker = GpuBaker::for_image(gpu, &image, &SourceOptions::default(), None, options, path).await?;
-    let written = baker.textures().iter().map(texture_bytes).sum::<u64>();
-    let bytes = image.samples().len() as u64 + written;
     let nanoseconds = measure(gpu, |encoder, span| {
         baker.encode(encoder, Some(span));
     })
     .await?;
-    Ok(Bandwidth { nanoseconds, bytes })
+    Ok(Bandwidth { nanoseconds, bytes: baker.moved_bytes() })
 }
 
 /// Copies from texture to texture in a compute pass, so that `bytes` or a little more are moved in all: half of them read,
@@ -131,11 +129,19 @@ fn washboard(side: usize) -> Result<Image, GpuError> {
         .map_err(|_| GpuError::Empty { width: side as u32, height: side as u32 })
 }
 
-fn texture_bytes(texture: &wgpu::Texture) -> u64 {
+impl GpuBaker {
+    /// Bytes that no bake can help moving: the map read once, every level of every texture written once.
+    pub fn moved_bytes(&self) -> u64 {
+        let written = self
+            .textures()
+            .iter()
+            .flat_map(|texture| (0..texture.mip_level_count()).map(move |level| level_bytes(texture, level)));
+        level_bytes(&self.job.map, 0) + written.sum::<u64>()
+    }
+}
+
+fn level_bytes(texture: &wgpu::Texture, level: u32) -> u64 {
     let texel = u64::from(texture.format().block_copy_size(None).unwrap_or(0));
-    let level = |level| {
-        let size = texture.size().mip_level_size(level, texture.dimension());
-        u64::from(size.width) * u64::from(size.height) * texel
-    };
-    (0..texture.mip_level_count()).map(level).sum()
+    let size = texture.size().mip_level_size(level, texture.dimension());
+    u64::from(size.width) * u64::from(size.height) * texel
 }

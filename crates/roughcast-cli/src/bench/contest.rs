@@ -1,0 +1,268 @@
+//! The methods of LEAN Figure 12, drawn in turn and timed by the GPU's own clock.
+
+use std::sync::Arc;
+
+use anyhow::{Context, Result};
+use glam::DVec2;
+use roughcast::shading::{Material, Shading};
+use roughcast::{BakeOptions, Bits, Image, Lobe, Samples, SourceOptions, Wrap, normal_from_slope};
+use roughcast_gpu::bake::{BakePath, GpuBaker, bake_bandwidth};
+use roughcast_gpu::render::{
+    DEPTH_FORMAT, Detail, DrawOptions, Drawing, Geometry, GpuTextures, RenderTarget, Renderer, ShaderKey,
+    Views, shader_source,
+};
+use roughcast_gpu::wgpu;
+use roughcast_gpu::{Gpu, Span, Timestamps};
+use roughcast_scene::{Plane, Reconstruction, Scene, Shape, SlopeMap, View, pattern};
+
+use super::instructions::{Instructions, count};
+use crate::progress;
+
+/// A method, and how its maps come about.
+struct Entrant {
+    name: &'static str,
+    shading: Shading,
+    /// Texels of the maps along each side.
+    side: usize,
+    maps: Maps,
+}
+
+/// When maps are made.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Maps {
+    Once,
+    EveryFrame,
+}
+
+/// Texels along each side of a map that is made once.
+pub const SIDE: usize = 512;
+
+/// The first is what the others are compared with.
+const ENTRANTS: [Entrant; 5] = [
+    Entrant { name: "blinn-phong", shading: Shading::BlinnPhong, side: SIDE, maps: Maps::Once },
+    Entrant { name: "lean", shading: Shading::Lean, side: SIDE, maps: Maps::Once },
+    Entrant { name: "lean-generated-512", shading: Shading::Lean, side: 512, maps: Maps::EveryFrame },
+    Entrant { name: "lean-generated-2048", shading: Shading::Lean, side: 2048, maps: Maps::EveryFrame },
+    Entrant { name: "clean", shading: Shading::Clean, side: SIDE, maps: Maps::Once },
+];
+
+/// What one method costs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    pub name: &'static str,
+    pub instructions: Instructions,
+    /// Milliseconds a frame: the median of drawing it and, where maps are made for every frame, that of making them.
+    pub milliseconds: f64,
+    /// The same in units of Blinn-Phong's.
+    pub ratio: f64,
+    /// What making the maps moves in every frame, in bytes; 0 where they are made once.
+    pub generated_bytes: u64,
+}
+
+/// Frames before the measured ones, in which drivers compile, allocate and raise clocks.
+const WARM_UP: u32 = 3;
+
+/// Half floats, which every device can filter, store to and render to; no base, which is added as the model shades.
+pub fn bake_options(shading: Shading) -> BakeOptions {
+    BakeOptions { layout: shading.layout(), bits: Bits::Half, ..BakeOptions::default() }
+}
+
+/// Draws `frames` frames of each method in pictures of `size` pixels.
+///
+/// The methods take turns within a frame, each frame beginning with another one: a drift of the clock, and what a method
+/// leaves in the caches for the next, meet all of them alike. Maps that are made for every frame are made before it is
+/// drawn; how long that takes is measured before.
+pub async fn hold(gpu: &Gpu, size: (u32, u32), frames: u32) -> Result<Vec<Row>> {
+    let mut timestamps = Timestamps::new(gpu, 1).await?;
+    let mut renderer = Renderer::new(gpu, RenderTarget::Colour(COLOUR_FORMAT)).await?;
+    let mut contestants = Vec::new();
+    for entrant in &ENTRANTS {
+        contestants.push(Contestant::new(&mut renderer, entrant, size).await?);
+    }
+    let canvas = Canvas::new(gpu, size).await?;
+    let bar = progress::timed_bar(u64::from(WARM_UP + frames));
+    for frame in 0..WARM_UP + frames {
+        for turn in 0..contestants.len() {
+            let index = (frame as usize + turn) % contestants.len();
+            let nanoseconds = contestants[index].draw(gpu, &canvas, &mut timestamps).await?;
+            if frame >= WARM_UP {
+                contestants[index].nanoseconds.extend(nanoseconds);
+            }
+        }
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    rows(&contestants)
+}
+
+/// Submits one pass, waits for it, and tells how many nanoseconds it took, where the clock did.
+async fn timed(
+    gpu: &Gpu,
+    timestamps: &mut Timestamps,
+    encode: impl FnOnce(&mut wgpu::CommandEncoder, &Span),
+) -> Result<Option<f64>> {
+    let span = timestamps.span("pass").context("there is room for a span")?;
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encode(&mut encoder, &span);
+    timestamps.resolve(&mut encoder);
+    gpu.queue.submit([encoder.finish()]);
+    Ok(timestamps.read(gpu).await?.first().and_then(|span| span.nanoseconds))
+}
+
+fn rows(contestants: &[Contestant]) -> Result<Vec<Row>> {
+    let mut rows: Vec<Row> = Vec::new();
+    for contestant in contestants {
+        let draw = median(&contestant.nanoseconds)
+            .context("the GPU's clock is too coarse to measure this: say a larger --size")?;
+        let milliseconds = (contestant.bake_nanoseconds + draw) * 1e-6;
+        let reference = rows.first().map_or(milliseconds, |first| first.milliseconds);
+        rows.push(Row {
+            name: contestant.entrant.name,
+            instructions: contestant.instructions,
+            milliseconds,
+            ratio: milliseconds / reference,
+            generated_bytes: match contestant.entrant.maps {
+                Maps::Once => 0,
+                Maps::EveryFrame => contestant.baker.moved_bytes(),
+            },
+        });
+    }
+    Ok(rows)
+}
+
+/// A method with everything that it needs on the GPU.
+struct Contestant {
+    entrant: &'static Entrant,
+    instructions: Instructions,
+    baker: GpuBaker,
+    drawing: Drawing,
+    /// Of making the maps for one frame.
+    bake_nanoseconds: f64,
+    /// Of drawing each measured frame.
+    nanoseconds: Vec<f64>,
+}
+
+impl Contestant {
+    async fn new(renderer: &mut Renderer, entrant: &'static Entrant, size: (u32, u32)) -> Result<Self> {
+        let gpu = renderer.gpu().clone();
+        let (map, source) = (normal_map(entrant.side)?, SourceOptions::default());
+        let options = bake_options(entrant.shading);
+        let baker = GpuBaker::for_image(&gpu, &map, &source, None, &options, BakePath::default()).await?;
+        baker.run();
+        let textures = GpuTextures::of_baked(&gpu, entrant.shading, baker.textures(), &baker.info().await?)?;
+        let scene = scene(entrant.side, size);
+        let geometry = Geometry::new(&gpu, &scene.shape, 1).await?;
+        let mut drawing = renderer.prepare(&geometry, &textures, &DrawOptions::default()).await?;
+        drawing.set_view(renderer, &scene, size).await?;
+        let key = ShaderKey { shading: entrant.shading, lobe: Lobe::Isotropic, detail: Detail::Derivatives };
+        let instructions = count(&shader_source(key)?, "radiance")?;
+        // Measured in a row of its own: between render passes lavapipe's clock shows a compute pass as if it took no time.
+        let bake_nanoseconds = match entrant.maps {
+            Maps::Once => 0.0,
+            Maps::EveryFrame => {
+                bake_bandwidth(&gpu, entrant.side as u32, &options, BakePath::default()).await?.nanoseconds
+            }
+        };
+        Ok(Self { entrant, instructions, baker, drawing, bake_nanoseconds, nanoseconds: Vec::new() })
+    }
+
+    /// Makes what has to be made for a frame and draws it. Returns the nanoseconds of the drawing, or nothing where the
+    /// clock did not tell.
+    async fn draw(&self, gpu: &Gpu, canvas: &Canvas, timestamps: &mut Timestamps) -> Result<Option<f64>> {
+        if self.entrant.maps == Maps::EveryFrame {
+            self.baker.run();
+        }
+        let views = Views { colour: &canvas.colour, specular: None, depth: &canvas.depth };
+        timed(gpu, timestamps, |encoder, span| {
+            self.drawing.draw(encoder, &views, Some(span.of_render_pass()));
+        })
+        .await
+    }
+}
+
+/// What is drawn on; nobody looks at it.
+struct Canvas {
+    colour: wgpu::TextureView,
+    depth: wgpu::TextureView,
+}
+
+const COLOUR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+
+impl Canvas {
+    async fn new(gpu: &Gpu, (width, height): (u32, u32)) -> Result<Self> {
+        let descriptor = |format| wgpu::TextureDescriptor {
+            label: Some("canvas"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+            view_formats: &[],
+        };
+        let colour = gpu.create_texture("the picture", &descriptor(COLOUR_FORMAT)).await?;
+        let depth = gpu.create_texture("the picture's depths", &descriptor(DEPTH_FORMAT)).await?;
+        Ok(Self {
+            colour: colour.create_view(&Default::default()),
+            depth: depth.create_view(&Default::default()),
+        })
+    }
+}
+
+/// A plane that covers the whole picture, with maps of so many texels a side, three of them to a pixel.
+fn scene(side: usize, size: (u32, u32)) -> Scene {
+    View::Mid.scene(Arc::new(Shape::Plane(Plane::default())), (side, side), size, Material::default())
+}
+
+/// Root mean square slope of the bumps.
+const RMS_SLOPE: f64 = 0.3;
+const SEED: u64 = 12;
+
+/// A normal map of 4 x 8 bits with random bumps, the same ones again and again where it is larger than [`SIDE`].
+fn normal_map(side: usize) -> Result<Image> {
+    let bumps = pattern::random_bumps(SIDE, RMS_SLOPE, SEED);
+    let slopes = SlopeMap::of(&bumps.heights, &bumps.source_options())?;
+    let byte = |component: f32| (127.5 + 127.5 * component).round() as u8;
+    let texel = |i: usize| {
+        let centre = DVec2::new((i % side) as f64 + 0.5, (i / side) as f64 + 0.5) / SIDE as f64;
+        let normal = normal_from_slope(slopes.at(centre, Wrap::Repeat, Reconstruction::Facets));
+        [byte(normal.x), byte(normal.y), byte(normal.z), u8::MAX]
+    };
+    Ok(Image::new(side, side, 4, Samples::U8((0..side * side).flat_map(texel).collect()))?)
+}
+
+fn median(times: &[f64]) -> Option<f64> {
+    let mut sorted = times.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_object_covers_every_pixel() {
+        let size = (1600, 1200);
+        let scene = scene(SIDE, size);
+        // A plane is convex: where the corners of the picture see it, all of it does.
+        for (x, y) in [(0.0, 0.0), (1600.0, 0.0), (0.0, 1200.0), (1600.0, 1200.0)] {
+            assert!(scene.shape.hit(&scene.camera.ray(x, y, size.0, size.1)).is_some(), "{x}, {y}");
+        }
+    }
+
+    #[test]
+    fn the_map_has_bumps_that_repeat() {
+        let (one, many) = (normal_map(SIDE).expect("a map"), normal_map(2 * SIDE).expect("a map"));
+        let (Samples::U8(one), Samples::U8(many)) = (one.samples(), many.samples()) else { panic!("8 bits") };
+        assert_eq!(one[..4 * SIDE], many[..4 * SIDE]);
+        assert_eq!(one[..4 * SIDE], many[4 * SIDE..8 * SIDE]);
+        assert_ne!(one[..4 * SIDE], one[4 * SIDE..8 * SIDE]);
+    }
+
+    #[test]
+    fn a_median_is_the_middle_one() {
+        assert_eq!(median(&[3.0, 1.0, 100.0]), Some(3.0));
+        assert_eq!(median(&[]), None);
+    }
+}
