@@ -11,17 +11,17 @@ use roughcast::shading::Shading;
 use roughcast_gpu::render::DrawOptions;
 use roughcast_io::picture::{Plane, write_exr, write_png};
 use roughcast_io::{AtomicFile, AtomicSet};
-use roughcast_scene::render::ShadingTextures;
+use roughcast_scene::render::{MAX_SAMPLES, ShadingTextures};
 use roughcast_scene::{Filter, Picture, Sampler, Scene, SlopeMap};
 
 use crate::args::{SourceArgs, one_of, positive};
 use crate::display::{exposure_of, shown};
 use crate::input::{Map, read_map};
-use crate::method::{TextureOptions, bake_for};
+use crate::method::bake_for;
 use crate::output::is_same_file;
 use crate::painter::{GpuPainter, MethodPainter, Painter, TruthPainter};
 use crate::scene_args::{CameraArgs, SHADING, SceneArgs, ShadingArgs, Size, size};
-use crate::{UsageError, progress, say, usage, warn};
+use crate::{UsageError, progress, say, scene_args, usage, warn};
 
 /// Render a map on a shape: what it looks like with LEAN, with the old ways, or in truth.
 ///
@@ -114,16 +114,9 @@ enum FilterChoice {
 
 fn filter(text: &str) -> Result<FilterChoice, String> {
     if let Some(samples) = text.strip_prefix("truth:") {
-        let samples: u32 = samples.parse().unwrap_or(0);
-        let is_square = samples.isqrt() * samples.isqrt() == samples;
-        return if is_square && (1..=roughcast_scene::render::MAX_SAMPLES).contains(&samples) {
-            Ok(FilterChoice::Truth(samples))
-        } else {
-            Err(format!(
-                "the samples of a pixel must be a square number, from 1 to {}: truth:64",
-                roughcast_scene::render::MAX_SAMPLES
-            ))
-        };
+        return scene_args::samples(samples).map(FilterChoice::Truth).map_err(|_| {
+            format!("the samples of a pixel must be a square number, from 1 to {MAX_SAMPLES}: truth:64")
+        });
     }
     text.parse()
         .map(FilterChoice::Textures)
@@ -250,12 +243,8 @@ impl Args {
             FilterChoice::Textures(filter) => filter,
         };
         let sampler = Sampler { filter, level: self.level, mip_bias: self.mip_bias, wrap: map.options.wrap };
-        let texture_options = TextureOptions {
-            bits: self.shading_options.bits,
-            lobe: self.shading_options.lobe,
-            specular_power: self.shading_options.specular_power,
-        };
-        let arrays = bake_for(shading, &map.image, &map.options, texture_options).with_context(named)?;
+        let arrays = bake_for(shading, &map.image, &map.options, self.shading_options.texture_options())
+            .with_context(named)?;
         if self.gpu {
             let draw_options = DrawOptions { sampler, lobe: options };
             let painter = GpuPainter::new(shading, &arrays, &draw_options, scene, size)?;

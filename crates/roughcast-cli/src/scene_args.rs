@@ -8,10 +8,11 @@ use clap::Args;
 use glam::DVec3;
 use roughcast::shading::{BaseLobe, Form, LobeOptions, Material, Repair};
 use roughcast::{Bits, Image, Lobe};
-use roughcast_scene::render::MAX_PIXELS;
+use roughcast_scene::render::{MAX_PIXELS, MAX_SAMPLES};
 use roughcast_scene::{Camera, Light, Plane, Scene, Shape, Sphere, Torus, View, default_light, load_mesh};
 
 use crate::args::{one_of, positive};
+use crate::method::TextureOptions;
 use crate::{UsageError, usage};
 
 /// Headings under which the help lists these options.
@@ -101,16 +102,13 @@ fn point(text: &str) -> Result<DVec3, String> {
     }
 }
 
-/// A light of this irradiance on a white surface that faces it gives a radiance of one.
-const WHITE: f32 = std::f32::consts::PI;
-
 fn light(text: &str) -> Result<Light, String> {
     let (is_point, rest) = match text.strip_prefix("point:") {
         Some(rest) => (true, rest),
         None => (false, text),
     };
     let (place, strength) = match numbers(rest).as_deref() {
-        Some([x, y, z]) => (DVec3::new(*x, *y, *z), [WHITE; 3]),
+        Some([x, y, z]) => (DVec3::new(*x, *y, *z), Light::WHITE),
         Some([x, y, z, r, g, b]) if r.min(*g).min(*b) >= 0.0 => {
             (DVec3::new(*x, *y, *z), [*r as f32, *g as f32, *b as f32])
         }
@@ -143,6 +141,16 @@ pub fn size(text: &str) -> Result<Size, String> {
         0 => Err(format!("a picture of {text} has no pixels: both numbers must be above zero")),
         pixels if pixels <= MAX_PIXELS => Ok(size),
         _ => Err(format!("a picture of {text} is too large: at most {MAX_PIXELS} pixels")),
+    }
+}
+
+/// Samples of a pixel that a truth can have.
+pub fn samples(text: &str) -> Result<u32, String> {
+    match text.parse::<u32>() {
+        Ok(samples) if (1..=MAX_SAMPLES).contains(&samples) && samples.isqrt().pow(2) == samples => {
+            Ok(samples)
+        }
+        _ => Err(format!("it must be a square number, from 1 to {MAX_SAMPLES}, such as 64")),
     }
 }
 
@@ -300,6 +308,11 @@ impl ShadingArgs {
         }
     }
 
+    /// How the textures that a model samples are made.
+    pub fn texture_options(&self) -> TextureOptions {
+        TextureOptions { bits: self.bits, lobe: self.lobe, specular_power: self.specular_power }
+    }
+
     /// The material.
     pub fn material(&self) -> Material {
         Material { albedo: self.albedo, ambient: self.ambient, specular: self.specular }
@@ -321,7 +334,7 @@ mod tests {
     #[test]
     fn lights_are_directions_or_points() {
         let Ok(Light::Directional { towards, irradiance }) = light("0,2,0") else { panic!("a direction") };
-        assert_eq!((towards, irradiance), (DVec3::Y, [WHITE; 3]));
+        assert_eq!((towards, irradiance), (DVec3::Y, Light::WHITE));
         let Ok(Light::Point { position, intensity }) = light("point:1,2,-3,4,5,6") else { panic!("a point") };
         assert_eq!((position, intensity), (DVec3::new(1.0, 2.0, -3.0), [4.0, 5.0, 6.0]));
         for wrong in ["0,0,0", "1,2", "point:", "1,2,3,4", "1,2,3,-1,0,0", "nan,1,2", "inf,0,0"] {

@@ -26,6 +26,24 @@ impl Srgb8Picture {
         Self { width, height, pixels: vec![0; 3 * width as usize * height as usize] }
     }
 
+    /// Pictures in a row, their tops aligned, `gap` pixels of this grey between them. None of no pictures.
+    pub fn side_by_side<'a>(
+        pictures: impl IntoIterator<Item = &'a Self> + Clone,
+        gap: u32,
+        grey: u8,
+    ) -> Option<Self> {
+        let sizes = || pictures.clone().into_iter().map(|picture| (picture.width, picture.height));
+        let width = sizes().map(|(width, _)| width + gap).sum::<u32>().checked_sub(gap)?;
+        let height = sizes().map(|(_, height)| height).max()?;
+        let mut row = Self { width, height, pixels: vec![grey; 3 * width as usize * height as usize] };
+        let mut x = 0;
+        for picture in pictures {
+            row.paste(picture, x, 0);
+            x += picture.width + gap;
+        }
+        Some(row)
+    }
+
     /// Copies another picture into this one, its top left corner at `(x, y)`; what lies outside is cut off.
     pub fn paste(&mut self, other: &Self, x: u32, y: u32) {
         let columns = other.width.min(self.width.saturating_sub(x)) as usize;
@@ -173,6 +191,16 @@ mod tests {
         assert!(canvas.pixels[..3 * 6].iter().all(|byte| *byte == 0));
         assert_eq!(canvas.pixels[3 * 6..3 * 8], gradient(3, 3, 1).pixels[..6]);
         assert_eq!(canvas.pixels[3 * 10..3 * 12], gradient(3, 3, 1).pixels[9..15]);
+    }
+
+    #[test]
+    fn pictures_stand_side_by_side_with_a_gap_between() {
+        let (left, right) = (gradient(2, 1, 1), gradient(1, 2, 100));
+        let row = Srgb8Picture::side_by_side([&left, &right], 1, 9).expect("there are pictures");
+        assert_eq!((row.width, row.height), (4, 2));
+        assert_eq!(row.pixels[..12], [1, 2, 3, 4, 5, 6, 9, 9, 9, 100, 101, 102]);
+        assert_eq!(row.pixels[12..], [9, 9, 9, 9, 9, 9, 9, 9, 9, 103, 104, 105]);
+        assert_eq!(Srgb8Picture::side_by_side([], 1, 9), None);
     }
 
     #[test]

@@ -25,6 +25,7 @@ mod scene;
 mod sequence;
 mod shape;
 mod slope_map;
+mod split_mix;
 mod views;
 
 pub use camera::{Camera, CameraError, PixelRays};

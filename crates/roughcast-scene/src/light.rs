@@ -22,6 +22,9 @@ pub enum Light {
 }
 
 impl Light {
+    /// Irradiance that gives a white surface which faces the light a radiance of one.
+    pub const WHITE: [f32; 3] = [std::f32::consts::PI; 3];
+
     /// Unit vector towards the light and the irradiance of a surface that faces it, at a point.
     pub fn at(&self, point: DVec3) -> (DVec3, [f32; 3]) {
         match *self {

@@ -4,6 +4,8 @@ use std::f64::consts::TAU;
 
 use roughcast::{Image, Kind, Samples, SourceOptions};
 
+use crate::split_mix::{GOLDEN_RATIO, scrambled};
+
 /// A height map and how it is to be read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pattern {
@@ -115,12 +117,9 @@ fn superposition(size: usize, waves: &[Wave], rms_slope: f64) -> Pattern {
 /// Three numbers in 0 .. 1 of a seed and an index (SplitMix64).
 fn random(seed: u64, index: u64) -> [f64; 3] {
     std::array::from_fn(|i| {
-        let mut z = seed
-            .wrapping_add((3 * index + i as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15))
-            .wrapping_mul(0xd134_2543_de82_ef95);
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+        let counter = (3 * index + i as u64 + 1).wrapping_mul(GOLDEN_RATIO);
+        let bits = scrambled(seed.wrapping_add(counter).wrapping_mul(0xd134_2543_de82_ef95));
+        (bits >> 11) as f64 / (1_u64 << 53) as f64
     })
 }
 

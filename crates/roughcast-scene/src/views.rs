@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use roughcast::shading::Material;
 
-use crate::{Camera, Footprint, Hit, Light, Ray, Scene, Shape};
+use crate::{Camera, Footprint, Hit, Light, Plane, Ray, Scene, Shape};
 
 roughcast::named_enum! {
     /// A distance, told by how many texels a pixel spans.
@@ -25,8 +25,6 @@ roughcast::named_enum! {
 
 /// Vertical angle of view.
 const FOV: f64 = 0.61;
-/// Light of this irradiance gives a white surface that faces it a radiance of one.
-const WHITE: [f32; 3] = [std::f32::consts::PI; 3];
 /// Rays by which a view is measured, each way.
 const GRID: u32 = 24;
 /// The place in the picture, right and down, in parts of its size, where the highlight is wanted.
@@ -49,12 +47,14 @@ impl View {
 
     /// The camera of this view. Whether something is near or far is told by its texels, so only grazing views differ.
     pub fn camera(self, shape: &Shape) -> Camera {
+        let on_plane =
+            |plane: &Plane, eye: DVec3, target: DVec3| (eye * plane.half_size(), target * plane.half_size());
         let (eye, target) = match (shape, self) {
             (Shape::Plane(plane), Self::Grazing) => {
-                (DVec3::new(0.0, 0.11, 0.97), DVec3::new(0.0, 0.0, 0.42)).map_both(|v| v * plane.half_size())
+                on_plane(plane, DVec3::new(0.0, 0.11, 0.97), DVec3::new(0.0, 0.0, 0.42))
             }
             (Shape::Plane(plane), _) => {
-                (DVec3::new(0.0, 0.85, 0.85), DVec3::new(0.0, 0.0, 0.03)).map_both(|v| v * plane.half_size())
+                on_plane(plane, DVec3::new(0.0, 0.85, 0.85), DVec3::new(0.0, 0.0, 0.03))
             }
             (_, view) => {
                 let bounds = shape.bounds();
@@ -145,7 +145,7 @@ pub fn default_light(shape: &Shape, camera: &Camera, size: (u32, u32), view: Vie
     let fallback = DVec3::new(0.0, FRAC_PI_4.sin(), FRAC_PI_4.cos());
     Light::Directional {
         towards: best.map_or(fallback, |(_, towards)| towards.normalize()),
-        irradiance: WHITE,
+        irradiance: Light::WHITE,
     }
 }
 
@@ -156,21 +156,10 @@ fn grid((width, height): (u32, u32)) -> impl Iterator<Item = (f64, f64)> {
     (0..GRID).flat_map(move |row| (0..GRID).map(move |column| (part(column) * width, part(row) * height)))
 }
 
-/// Applies a function to both of a pair.
-trait MapBoth {
-    fn map_both(self, f: impl Fn(DVec3) -> DVec3) -> Self;
-}
-
-impl MapBoth for (DVec3, DVec3) {
-    fn map_both(self, f: impl Fn(DVec3) -> DVec3) -> Self {
-        (f(self.0), f(self.1))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Plane, Sphere, Torus};
+    use crate::{Sphere, Torus};
 
     const SIZE: (u32, u32) = (256, 192);
     const TEXELS: (usize, usize) = (512, 512);

@@ -16,8 +16,9 @@ use roughcast_scene::{
 use super::colour_scale::error_picture;
 use super::results::Row;
 use super::subject::Subject;
+use super::without_repeats;
 use crate::display::{exposure_of, shown};
-use crate::method::{TextureOptions, bake_for};
+use crate::method::bake_for;
 use crate::scene_args::{SceneArgs, ShadingArgs, Size};
 
 /// How all maps and views are compared.
@@ -103,7 +104,8 @@ impl Settings<'_> {
         let mut moving = vec![truths.of(Shading::Lean).iter().map(|frame| shown(frame, exposure)).collect()];
         // Models that share a layout share its textures; one layout is held at a time.
         for models in Shading::ALL.chunk_by(|a, b| a.layout() == b.layout()) {
-            let arrays = bake_for(models[0], &subject.image, &subject.options, self.texture_options())?;
+            let arrays =
+                bake_for(models[0], &subject.image, &subject.options, self.shading.texture_options())?;
             for shading in models {
                 let textures = ShadingTextures::new(*shading, &arrays)?;
                 for filter in &self.filters {
@@ -125,14 +127,6 @@ impl Settings<'_> {
         Ok(Comparison { view, lights, truths: truths.stills(exposure), trials, animation })
     }
 
-    fn texture_options(&self) -> TextureOptions {
-        TextureOptions {
-            bits: self.shading.bits,
-            lobe: self.shading.lobe,
-            specular_power: self.shading.specular_power,
-        }
-    }
-
     fn truths(&self, subject: &Subject, moves: &[Scene], bar: &ProgressBar) -> Result<Truths> {
         let slopes = SlopeMap::of(&subject.image, &subject.options)?;
         let truth = Truth {
@@ -143,12 +137,8 @@ impl Settings<'_> {
             options: self.shading.lobe_options(),
             samples: self.samples,
         };
-        let mut lobes: Vec<Shading> = Vec::new();
-        for lobe in Shading::ALL.iter().map(|shading| shading.base_lobe()) {
-            if !lobes.contains(&lobe) {
-                lobes.push(lobe);
-            }
-        }
+        let lobes: Vec<Shading> = Shading::ALL.iter().map(|shading| shading.base_lobe()).collect();
+        let lobes = without_repeats(&lobes);
         let watch = steps(bar, u64::from(self.samples));
         let mut frames = vec![Vec::new(); lobes.len()];
         for scene in moves {
@@ -243,21 +233,15 @@ fn steps(bar: &ProgressBar, each: u64) -> impl Fn(usize, usize) -> ControlFlow<(
     }
 }
 
-/// Pixels between pictures.
+/// Pixels between pictures, and their grey.
 const GAP: u32 = 4;
+const BLACK: u8 = 0;
 
 /// Sequences of equal length and size as one, side by side.
 fn side_by_side(sequences: &[Vec<Srgb8Picture>]) -> Vec<Srgb8Picture> {
     let frame = |i: usize| {
-        let pictures: Vec<&Srgb8Picture> = sequences.iter().map(|sequence| &sequence[i]).collect();
-        let width = pictures.iter().map(|picture| picture.width + GAP).sum::<u32>() - GAP;
-        let mut frame = Srgb8Picture::black(width, pictures[0].height);
-        let mut x = 0;
-        for picture in pictures {
-            frame.paste(picture, x, 0);
-            x += picture.width + GAP;
-        }
-        frame
+        let pictures = sequences.iter().map(|sequence| &sequence[i]);
+        Srgb8Picture::side_by_side(pictures, GAP, BLACK).expect("there are sequences")
     };
     (0..sequences[0].len()).map(frame).collect()
 }

@@ -18,13 +18,12 @@ use anyhow::{Context, Result};
 use clap::ValueHint;
 use indicatif::ProgressBar;
 use roughcast_io::{AtomicFile, AtomicSet};
-use roughcast_scene::render::MAX_SAMPLES;
 use roughcast_scene::{Filter, Reconstruction, View};
 use serde_json::Value;
 
 use crate::args::{REPORT, SourceArgs, one_of};
 use crate::input::read_map;
-use crate::scene_args::{SHADING, SceneArgs, ShadingArgs, Size, size};
+use crate::scene_args::{SHADING, SceneArgs, ShadingArgs, Size, samples, size};
 use crate::{UsageError, progress, say, say_json, usage, warn};
 use distribution::Distribution;
 use measure::{Comparison, Settings};
@@ -93,15 +92,6 @@ pub struct Args {
 
 /// Most pixels of all frames together: each takes 28 bytes, for five truths and a method.
 const MOST_PIXELS: u64 = 1 << 24;
-
-fn samples(text: &str) -> Result<u32, String> {
-    match text.parse::<u32>() {
-        Ok(samples) if (1..=MAX_SAMPLES).contains(&samples) && samples.isqrt().pow(2) == samples => {
-            Ok(samples)
-        }
-        _ => Err(format!("it must be a square number, from 1 to {MAX_SAMPLES}, such as 64")),
-    }
-}
 
 fn frames(text: &str) -> Result<u32, String> {
     match text.parse::<u32>() {

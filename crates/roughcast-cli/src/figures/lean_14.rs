@@ -6,7 +6,7 @@ use roughcast::Bits;
 use roughcast::shading::{LobeOptions, Shading};
 use roughcast_scene::metrics::{energy_error, flicker, rmse};
 use roughcast_scene::pattern::raised_checker;
-use roughcast_scene::{Camera, Filter, Picture, Plane, Shape, slow_move};
+use roughcast_scene::{Camera, Filter, Plane, Sampler, Shape, slow_move};
 use serde_json::{Map, json};
 
 use super::scene::{Stage, scene};
@@ -112,22 +112,14 @@ fn error_ratio_at(edge_slope: f64) -> Result<f64> {
 
 /// Flicker of every method over a slow move.
 fn flickers() -> Result<Vec<f64>> {
-    let mut stage = stage(MOVING_SIZE, EDGE_SLOPE);
-    let frames = slow_move(&stage.scene, FRAMES);
-    let mut pictures = |paint: &dyn Fn(&Stage) -> Result<Picture>| -> Result<Vec<Picture>> {
-        frames
-            .iter()
-            .map(|scene| {
-                stage.scene = scene.clone();
-                paint(&stage)
-            })
-            .collect()
+    let stage = stage(MOVING_SIZE, EDGE_SLOPE);
+    let scenes = slow_move(&stage.scene, FRAMES);
+    let truth = stage.truth_frames(Shading::OffCentre, SAMPLES, &scenes)?;
+    let flicker_of = |(_, shading, filter): (&str, Shading, Filter)| {
+        let sampler = Sampler { filter, ..Sampler::default() };
+        Ok(flicker(&stage.sampled_frames(shading, sampler, &scenes)?, &truth)?)
     };
-    let truth = pictures(&|stage| stage.truth(Shading::OffCentre, SAMPLES))?;
-    METHODS
-        .into_iter()
-        .map(|(_, shading, filter)| Ok(flicker(&pictures(&|stage| stage.method(shading, filter))?, &truth)?))
-        .collect()
+    METHODS.into_iter().map(flicker_of).collect()
 }
 
 fn stage(size: (u32, u32), edge_slope: f64) -> Stage {

@@ -9,7 +9,7 @@ use roughcast_scene::pattern::random_bumps;
 use roughcast_scene::{Camera, Filter, Light, Picture, Sampler, Shape, Sphere};
 use serde_json::{Map, json};
 
-use super::scene::{Stage, WHITE, scene};
+use super::scene::{Stage, scene};
 use super::{Figure, Panel};
 use crate::display::{exposure_of, shown};
 
@@ -75,7 +75,7 @@ fn stage() -> Stage {
         Camera { eye: DVec3::new(0.0, 0.4, 4.2), target: DVec3::ZERO, up: DVec3::Y, vertical_fov: 0.55 };
     let mut scene = scene(Shape::Sphere(Sphere), 2.0, camera, DVec3::new(-0.3, 0.7, 1.0));
     let glancing = DVec3::new(1.0, 0.15, -0.55).normalize();
-    scene.lights.push(Light::Directional { towards: glancing, irradiance: WHITE });
+    scene.lights.push(Light::Directional { towards: glancing, irradiance: Light::WHITE });
     Stage {
         map: random_bumps(512, 0.15, 5),
         scene,

@@ -144,7 +144,8 @@ fn write(folder: &Path, figures: &[(&str, Figure)]) -> Result<()> {
         set.push(file).with_context(named)
     };
     for (name, figure) in figures {
-        if let Some(picture) = side_by_side(&figure.panels) {
+        let pictures = figure.panels.iter().map(|panel| &panel.picture);
+        if let Some(picture) = Srgb8Picture::side_by_side(pictures, GAP, PAPER) {
             add(&format!("{name}.png"), &|file| Ok(write_png(&picture, file)?))?;
         }
     }
@@ -182,18 +183,6 @@ fn page(figures: &[(&str, Figure)]) -> String {
     page.finish()
 }
 
-/// Pixels between the panels of a figure's picture.
+/// Pixels between the panels of a figure's picture, and their grey.
 const GAP: u32 = 4;
-
-/// The panels in a row, as one picture.
-fn side_by_side(panels: &[Panel]) -> Option<Srgb8Picture> {
-    let width = panels.iter().map(|panel| panel.picture.width + GAP).sum::<u32>().checked_sub(GAP)?;
-    let height = panels.iter().map(|panel| panel.picture.height).max()?;
-    let mut row = Srgb8Picture { pixels: vec![255; 3 * (width * height) as usize], width, height };
-    let mut x = 0;
-    for panel in panels {
-        row.paste(&panel.picture, x, 0);
-        x += panel.picture.width + GAP;
-    }
-    Some(row)
-}
+const PAPER: u8 = 255;

@@ -12,9 +12,6 @@ use roughcast_scene::{Camera, Filter, Light, Picture, Reconstruction, Sampler, S
 
 use crate::method::{TextureOptions, bake_for};
 
-/// A white light: a white surface that faces it has a radiance of one.
-pub const WHITE: [f32; 3] = [std::f32::consts::PI; 3];
-
 /// A dielectric whose highlights stand out: dark, with the reflectance of plastic.
 pub const MATERIAL: Material = Material { albedo: [0.05; 3], ambient: [0.2; 3], specular: [0.04; 3] };
 
@@ -34,7 +31,7 @@ pub fn scene(shape: Shape, repeats: f64, camera: Camera, towards_light: DVec3) -
     Scene {
         shape: Arc::new(shape),
         camera,
-        lights: vec![Light::Directional { towards: towards_light.normalize(), irradiance: WHITE }],
+        lights: vec![Light::Directional { towards: towards_light.normalize(), irradiance: Light::WHITE }],
         material: MATERIAL,
         repeats,
         background: [0.0; 3],
@@ -42,17 +39,6 @@ pub fn scene(shape: Shape, repeats: f64, camera: Camera, towards_light: DVec3) -
 }
 
 impl Stage {
-    /// The textures that a model samples.
-    pub fn textures(&self, shading: Shading) -> Result<ShadingTextures> {
-        let options = TextureOptions {
-            bits: self.bits,
-            lobe: Lobe::Isotropic,
-            specular_power: self.options.specular_power,
-        };
-        let arrays = bake_for(shading, &self.map.heights, &self.map.source_options(), options)?;
-        Ok(ShadingTextures::new(shading, &arrays)?)
-    }
-
     /// A picture by a model whose textures are sampled with a filter.
     pub fn method(&self, shading: Shading, filter: Filter) -> Result<Picture> {
         self.sampled(shading, Sampler { filter, ..Sampler::default() })
@@ -60,13 +46,34 @@ impl Stage {
 
     /// A picture by a model and a sampler.
     pub fn sampled(&self, shading: Shading, sampler: Sampler) -> Result<Picture> {
-        let textures = self.textures(shading)?;
+        Ok(self.sampled_frames(shading, sampler, std::slice::from_ref(&self.scene))?.remove(0))
+    }
+
+    /// Pictures of several scenes by a model and a sampler.
+    pub fn sampled_frames(
+        &self,
+        shading: Shading,
+        sampler: Sampler,
+        scenes: &[Scene],
+    ) -> Result<Vec<Picture>> {
+        let options = TextureOptions {
+            bits: self.bits,
+            lobe: Lobe::Isotropic,
+            specular_power: self.options.specular_power,
+        };
+        let arrays = bake_for(shading, &self.map.heights, &self.map.source_options(), options)?;
+        let textures = ShadingTextures::new(shading, &arrays)?;
         let method = Method { textures: &textures, sampler, options: self.options };
-        Ok(method.render(&self.scene, self.size, &unwatched)?)
+        scenes.iter().map(|scene| Ok(method.render(scene, self.size, &unwatched)?)).collect()
     }
 
     /// The truth of a model's base lobe.
     pub fn truth(&self, shading: Shading, samples: u32) -> Result<Picture> {
+        Ok(self.truth_frames(shading, samples, std::slice::from_ref(&self.scene))?.remove(0))
+    }
+
+    /// The truths of several scenes.
+    pub fn truth_frames(&self, shading: Shading, samples: u32, scenes: &[Scene]) -> Result<Vec<Picture>> {
         let slopes = SlopeMap::of(&self.map.heights, &self.map.source_options())?;
         let truth = Truth {
             shading,
@@ -76,6 +83,6 @@ impl Stage {
             options: self.options,
             samples,
         };
-        Ok(truth.render(&self.scene, self.size, &unwatched)?)
+        scenes.iter().map(|scene| Ok(truth.render(scene, self.size, &unwatched)?)).collect()
     }
 }

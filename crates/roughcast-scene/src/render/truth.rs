@@ -9,6 +9,7 @@ use roughcast::shading::{LobeOptions, Shading};
 use super::normal_quantile::normal_quantile;
 use super::shade::Shaded;
 use super::{Progress, RenderError, render_rows_of_each};
+use crate::split_mix::{GOLDEN_RATIO, scrambled};
 use crate::{Picture, Ray, Reconstruction, Scene, SlopeMap};
 
 /// Most samples of a pixel.
@@ -144,10 +145,7 @@ fn jitter(x: u32, y: u32, sample: u32) -> DVec2 {
     const UNIT: f64 = 1.0 / (1_u64 << 32) as f64;
     // Pixels are fewer than 2^26 and samples at most 2^12 = 4096; 26 bits for x and for y leave none of them alike.
     let index = (u64::from(y) << 38) ^ (u64::from(x) << 12) ^ u64::from(sample);
-    let mut z = index.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^= z >> 31;
+    let z = scrambled(index.wrapping_add(1).wrapping_mul(GOLDEN_RATIO));
     DVec2::new((z >> 32) as f64 + 0.5, (z & 0xffff_ffff) as f64 + 0.5) * UNIT
 }
 

@@ -1,0 +1,42 @@
+//! `figures`: every claim is made, judged by its numbers, and holds.
+
+mod common;
+
+use common::{names, run, scratch, text};
+use serde_json::Value;
+
+const FIGURES: [&str; 5] = ["lean-2", "lean-4", "lean-5", "lean-13", "lean-14"];
+
+#[test]
+fn every_figure_is_made_with_its_claim_and_holds() {
+    let folder = scratch();
+    let outcome = run(["figures", "-o", text(folder.path())]).expect_success();
+    assert_eq!(outcome.stdout.lines().filter(|line| line.contains(": holds: ")).count(), FIGURES.len());
+    let files = ["index.html", "lean-13.png", "lean-14.png", "lean-2.png", "lean-5.png", "results.json"];
+    assert_eq!(names(folder.path()), files);
+
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect("it was written");
+    let results: Value = serde_json::from_str(&read("results.json")).expect("JSON");
+    let results = results.as_object().expect("an object");
+    assert_eq!(results.keys().collect::<Vec<_>>(), FIGURES);
+    let page = read("index.html");
+    for (name, figure) in results {
+        let keys: Vec<&String> = figure.as_object().expect("an object").keys().collect();
+        assert_eq!(keys, ["claim", "numbers", "holds"], "{name}");
+        assert_eq!(figure["holds"], true, "{name}: {figure}");
+        let numbers = figure["numbers"].as_object().expect("an object");
+        assert!(!numbers.is_empty() && numbers.values().all(Value::is_number), "{name}: {figure}");
+        assert!(page.contains(figure["claim"].as_str().expect("a text")), "{name}: the page lacks the claim");
+    }
+    assert!(!page.contains("src=\"http") && !page.contains("href="), "the page needs other files");
+}
+
+#[test]
+fn what_is_no_figure_or_no_folder_is_refused() {
+    let folder = scratch();
+    run(["figures", "lean-99", "-o", text(folder.path())]).expect_usage_error("lean-14");
+    let file = folder.path().join("file");
+    std::fs::write(&file, "").expect("a file");
+    run(["figures", "lean-4", "-o", text(&file)]).expect_refusal(1, &file);
+    assert_eq!(names(folder.path()), ["file"]);
+}
