@@ -81,7 +81,7 @@ fn exr_file(textures: &TextureArray) -> Vec<u8> {
 /// The reader of all images: PNG, JPEG, BMP, WebP, TIFF, HDR, EXR, KTX2 and DDS by their first bytes, TGA by extension.
 pub fn image(data: &[u8]) {
     for extension in [None, Some("tga")] {
-        check_image(roughcast_io::read_image(data, extension, &LIMITS));
+        check_image(roughcast_io::read_image(data, extension, &LIMITS.into()));
     }
 }
 

@@ -5,7 +5,7 @@ use clap::{Args, ValueHint};
 use roughcast::{
     Gradient, Green, HeightSense, Kind, Named, NormalChannels, NormalRange, SourceOptions, Wrap,
 };
-use roughcast_io::Limits;
+use roughcast_io::{Limits, ReadOptions};
 
 /// A parser that takes the names of an enum's variants.
 pub fn one_of<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T> {
@@ -87,6 +87,11 @@ impl SourceArgs {
     /// How much a reader may allocate.
     pub fn limits(&self) -> Limits {
         Limits { max_pixels: self.max_pixels }
+    }
+
+    /// How the file is read.
+    pub fn read_options(&self) -> ReadOptions {
+        self.limits().into()
     }
 
     /// The library's options, once the pixels have decided what was left open.

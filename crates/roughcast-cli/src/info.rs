@@ -51,7 +51,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 fn look_at(args: &Args) -> Result<Findings> {
     let limits = args.source.limits();
     let bytes = std::fs::read(&args.file)?;
-    let picture = image_of(&args.file, &bytes, &limits);
+    let picture = image_of(&args.file, &bytes, &args.source.read_options());
     let mut findings = Findings { lines: Vec::new(), json: JsonMap::new() };
     findings.put("file", json!(args.file.display().to_string()), args.file.display().to_string());
     match textures::read_bytes(&bytes, &limits) {

@@ -8,7 +8,7 @@ use roughcast::detect::{
 };
 use roughcast::texture::Layout;
 use roughcast::{Green, Image, Kind, NormalChannels, NormalRange, SourceOptions};
-use roughcast_io::{Decoded, FileInfo, Limits, ReadError, ValueRange};
+use roughcast_io::{Decoded, FileInfo, ReadError, ReadOptions, ValueRange};
 
 use crate::UsageError;
 use crate::args::SourceArgs;
@@ -25,19 +25,19 @@ pub struct Map {
 }
 
 /// Reads an image file. The error names the path.
-pub fn read_image(path: &Path, limits: &Limits) -> Result<Decoded> {
-    roughcast_io::read_image_file(path, limits).with_context(|| path.display().to_string())
+pub fn read_image(path: &Path, options: &ReadOptions) -> Result<Decoded> {
+    roughcast_io::read_image_file(path, options).with_context(|| path.display().to_string())
 }
 
 /// Reads the bytes of an image file; the path's extension helps where they leave the format open.
-pub fn image_of(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
+pub fn image_of(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<Decoded, ReadError> {
     let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
-    roughcast_io::read_image(bytes, extension.as_deref(), limits)
+    roughcast_io::read_image(bytes, extension.as_deref(), options)
 }
 
 /// Reads a map and settles what the arguments left open.
 pub fn read_map(path: &Path, args: &SourceArgs) -> Result<Map> {
-    map_of(read_image(path, &args.limits())?, args).with_context(|| path.display().to_string())
+    map_of(read_image(path, &args.read_options())?, args).with_context(|| path.display().to_string())
 }
 
 /// Settles what the arguments left open for an image that was read.
@@ -54,7 +54,8 @@ pub fn map_of(Decoded { image, info }: Decoded, args: &SourceArgs) -> Result<Map
         Kind::Height => NormalChannels::Xyz,
     });
     let options = args.options(kind, range, channels);
-    let mut map = Map { image, info, options, green_correlation: None, warnings: Vec::new() };
+    let warnings = info.warnings.clone();
+    let mut map = Map { image, info, options, green_correlation: None, warnings };
     map.test_green();
     map.warn_of_textures();
     Ok(map)
@@ -69,7 +70,7 @@ fn range_of(image: &Image, info: &FileInfo) -> NormalRange {
 }
 
 fn kind_of(image: &Image, info: &FileInfo, range: NormalRange, wanted: Option<Kind>) -> Result<Kind> {
-    if let Some(kind) = wanted {
+    if let Some(kind) = wanted.or(info.kind) {
         return Ok(kind);
     }
     // The height is the first of these six channels, whatever the others look like.

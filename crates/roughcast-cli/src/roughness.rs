@@ -125,7 +125,7 @@ impl RoughnessArgs {
     }
 
     fn map(&self, path: &Path, limits: &Limits) -> Result<Roughness> {
-        let image = read_image(path, limits)?.image;
+        let image = read_image(path, &(*limits).into())?.image;
         let channel = match self.roughness_channel.as_deref() {
             Some(name) => "rgba".find(name).expect("the parser lets only these through"),
             None if image.channels() >= 3 => 1,

@@ -123,7 +123,8 @@ fn check_png(folder: &Path, layout: Layout) -> Result<(), String> {
     for name in &found {
         let level: u32 = name[name.len() - 5..name.len() - 4].parse().expect("a digit");
         let limits = roughcast_io::Limits::default();
-        let read = roughcast_io::read_image_file(&folder.join(name), &limits).map_err(|e| e.to_string())?;
+        let read =
+            roughcast_io::read_image_file(&folder.join(name), &limits.into()).map_err(|e| e.to_string())?;
         if (read.info.width, read.info.height) != (64 >> level, 64 >> level) {
             return Err(format!("{name} is {}x{}", read.info.width, read.info.height));
         }

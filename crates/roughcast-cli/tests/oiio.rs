@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use common::{bake, data, scratch, textures};
 use exr_file::level_0;
 use roughcast::Image;
-use roughcast_io::{Limits, read_image_file};
+use roughcast_io::{ReadOptions, read_image_file};
 
 const CHANNELS: [&str; 6] = ["b0_h", "b1_dhds", "b2_dhdt", "b3_dhds2", "b4_dhdt2", "b5_dh2dsdt"];
 
@@ -64,7 +64,7 @@ fn central_differences_match_in_half_floats() {
 
 #[test]
 fn its_height_is_the_corner_of_the_map_it_was_made_of() {
-    let whole = read_image_file(&reference("bump.exr"), &Limits::default()).expect("the map").image;
+    let whole = read_image_file(&reference("bump.exr"), &ReadOptions::default()).expect("the map").image;
     let corner = level_0(&reference("bumpslope-central.exr"), &["b0_h"]);
     for y in 0..corner.height() {
         for x in 0..corner.width() {

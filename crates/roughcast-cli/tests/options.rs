@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use common::{bake, data, difference, moments, names, run, scratch, text, textures, unpacked};
 use roughcast::texture::MomentLevel;
 use roughcast::{Image, Samples};
-use roughcast_io::{Limits, png_levels, read_image_file};
+use roughcast_io::{ReadOptions, png_levels, read_image_file};
 
 fn map() -> PathBuf {
     data("materials/surfgrad_ocean16/normals_64crop_16bit_derived.png")
@@ -90,7 +90,7 @@ fn packed_occlusion_roughness_and_metalness_become_bc7() {
     // Occlusion and metalness are averaged, nothing else: their means are those of the picture.
     /// BC7's error of single texels averages out; a channel in the wrong place is off by a tenth and more.
     const MEAN: f64 = 0.01;
-    let source = read_image_file(&packed, &Limits::default()).expect("the picture").image;
+    let source = read_image_file(&packed, &ReadOptions::default()).expect("the picture").image;
     let mean = |image: &Image, channel: usize| {
         let texels = image.width() * image.height();
         let samples = image.samples();
@@ -159,7 +159,7 @@ fn write_png(path: &Path, image: &Image) {
 
 /// The map's pixels with each pixel changed, in 16 bits.
 fn changed(map: &Path, channels: usize, change: impl Fn([u16; 3]) -> Vec<u16>) -> Image {
-    let image = read_image_file(map, &Limits::default()).expect("the map").image;
+    let image = read_image_file(map, &ReadOptions::default()).expect("the map").image;
     let Samples::U16(samples) = image.samples() else { panic!("the map has 16 bits") };
     let pixels = samples.chunks_exact(3).flat_map(|pixel| change([pixel[0], pixel[1], pixel[2]]));
     Image::new(image.width(), image.height(), channels, Samples::U16(pixels.collect())).expect("whole pixels")

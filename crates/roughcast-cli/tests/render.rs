@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use common::{Outcome, data, names, run, scratch, text};
 use roughcast::Samples;
-use roughcast_io::{Limits, read_image_file};
+use roughcast_io::{ReadOptions, read_image_file};
 
 /// Small enough for a test, large enough for a highlight.
 const SIZE: &str = "96x64";
@@ -30,7 +30,7 @@ fn map() -> PathBuf {
 
 /// The pixels of a picture in EXR, red, green and blue.
 fn radiance(path: &Path) -> Vec<f32> {
-    let decoded = read_image_file(path, &Limits::default()).expect("the picture reads back");
+    let decoded = read_image_file(path, &ReadOptions::default()).expect("the picture reads back");
     let Samples::F32(samples) = decoded.image.samples() else { panic!("not single floats") };
     samples.clone()
 }
@@ -63,7 +63,7 @@ fn every_scene_and_filter_makes_a_picture() {
         for filter in ["nearest", "trilinear", "anisotropic", "ewa", "summed-area", "truth:16"] {
             let output = folder.path().join(format!("{done}.png"));
             render(&output, &["--scene", scene, "--filter", filter]).expect_success();
-            let decoded = read_image_file(&output, &Limits::default()).expect("a picture");
+            let decoded = read_image_file(&output, &ReadOptions::default()).expect("a picture");
             assert_eq!((decoded.image.width(), decoded.image.height()), (96, 64));
             let Samples::U8(samples) = decoded.image.samples() else { panic!("8 bits") };
             assert!(samples.iter().any(|sample| *sample > 128), "{scene}, {filter}: a dark picture");

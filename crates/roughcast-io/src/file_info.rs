@@ -2,6 +2,25 @@
 
 use std::collections::BTreeMap;
 
+use roughcast::{Kind, NormalChannels};
+
+/// How an image is to be read.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ReadOptions {
+    /// How much the reader may allocate.
+    pub limits: Limits,
+    /// The layer, part or subimage to read, by name. `None` reads the one that the file leaves no doubt about.
+    pub layer: Option<String>,
+    /// The channels to read, by name and in this order. Empty reads those that the file's names leave no doubt about.
+    pub channels: Vec<String>,
+}
+
+impl From<Limits> for ReadOptions {
+    fn from(limits: Limits) -> Self {
+        Self { limits, ..Self::default() }
+    }
+}
+
 /// How much a reader may allocate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
@@ -27,7 +46,19 @@ pub enum ValueRange {
     Float,
 }
 
-/// What a file holds.
+/// Where a file itself says that the components of a normal are stored.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum NormalEncoding {
+    /// It says nothing about normals.
+    #[default]
+    Unstated,
+    /// In these channels.
+    Stated(NormalChannels),
+    /// In the first two channels, but writers of this format disagree about which of them is x.
+    EitherOrder,
+}
+
+/// What a file contains.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileInfo {
     /// `PNG`, `JPEG`, `TGA`, `BMP`, `WebP`, `TIFF`, `HDR`, `EXR`, `KTX2` or `DDS`.
@@ -48,6 +79,12 @@ pub struct FileInfo {
     pub channels: Vec<String>,
     /// Pairs that the file keeps beside the pixels (KTX2 key-value data, EXR text attributes, PNG text, DDS words).
     pub metadata: BTreeMap<String, String>,
+    /// What the file's own words, such as the names of its channels, say it contains.
+    pub kind: Option<Kind>,
+    /// Where the file says that normals are stored.
+    pub normal_encoding: NormalEncoding,
+    /// What a user should hear about how the file was read: one clause each, without the path.
+    pub warnings: Vec<String>,
 }
 
 impl FileInfo {
@@ -68,6 +105,9 @@ impl FileInfo {
             range: ValueRange::Unorm,
             channels: channels.iter().map(|&name| name.to_owned()).collect(),
             metadata: BTreeMap::new(),
+            kind: None,
+            normal_encoding: NormalEncoding::Unstated,
+            warnings: Vec::new(),
         }
     }
 }

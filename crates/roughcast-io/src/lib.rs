@@ -18,7 +18,7 @@
 //!
 //! ```
 //! use roughcast::{BakeOptions, Image, SampleType, SourceOptions, bake};
-//! use roughcast_io::{Limits, Payload, Supercompression, ktx2};
+//! use roughcast_io::{Limits, Payload, ReadOptions, Supercompression, ktx2};
 //!
 //! let map = Image::zeros(16, 16, 3, SampleType::F32);
 //! let baked = bake(&map, &SourceOptions::default(), None, &BakeOptions::default())?;
@@ -31,7 +31,7 @@
 //! assert_eq!(textures, baked.arrays[0]);
 //!
 //! // … or as any other picture: level 0 of the first layer.
-//! let picture = roughcast_io::read_image(&file, None, &Limits::default())?;
+//! let picture = roughcast_io::read_image(&file, None, &ReadOptions::default())?;
 //! assert_eq!((picture.info.container, picture.info.levels), ("KTX2", 5));
 //! assert_eq!(picture.info.metadata["roughcast.layout"], "lean");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -56,7 +56,7 @@ mod texels;
 pub use atomic::{AtomicFile, AtomicSet};
 pub use blocks::{BlockArray, BlockFormat, BlockLayer, compress, decompress};
 pub use error::{ReadError, WriteError};
-pub use file_info::{FileInfo, Limits, ValueRange};
+pub use file_info::{FileInfo, Limits, NormalEncoding, ReadOptions, ValueRange};
 pub use payload::{Payload, Supercompression};
 pub use read::{read_image, read_image_file};
 

@@ -143,7 +143,7 @@ mod tests {
     use std::io::Cursor;
 
     use super::*;
-    use crate::Limits;
+    use crate::ReadOptions;
 
     fn gradient(width: u32, height: u32, offset: u8) -> Srgb8Picture {
         let len = 3 * width as usize * height as usize;
@@ -213,7 +213,7 @@ mod tests {
         let mut file = Cursor::new(Vec::new());
         write_exr((width, height), vec![plane("R", 0.0), plane("G", 100.0), plane("B", -3.0)], &mut file)
             .expect("memory takes it");
-        let read = crate::read_image(file.get_ref(), Some("exr"), &Limits::default()).expect("an EXR");
+        let read = crate::read_image(file.get_ref(), Some("exr"), &ReadOptions::default()).expect("an EXR");
         assert_eq!((read.image.width(), read.image.height(), read.image.channels()), (width, height, 3));
         let roughcast::Samples::F32(samples) = read.image.samples() else { panic!("single floats") };
         assert_eq!(samples[..3], [0.0, 100.0, -3.0]);

@@ -4,7 +4,7 @@ mod shared_data;
 
 use std::time::{Duration, Instant};
 
-use roughcast_io::{Limits, ReadError, read_image};
+use roughcast_io::{Limits, ReadError, ReadOptions, read_image};
 use shared_data::{folder, manifest};
 
 /// Odd files that hold a whole image all the same, and why.
@@ -61,7 +61,7 @@ fn broken_images() -> Vec<(String, String, Vec<u8>)> {
 fn broken_files_give_errors_and_odd_ones_images() {
     for (name, extension, bytes) in broken_images() {
         let start = Instant::now();
-        let result = read_image(&bytes, Some(&extension), &Limits::default());
+        let result = read_image(&bytes, Some(&extension), &ReadOptions::default());
         assert!(start.elapsed() < PATIENCE, "{name} took {:?}", start.elapsed());
         let readable = READABLE.iter().any(|(odd, _)| *odd == name) || READABLE_XMP.contains(&name.as_str());
         match result {
@@ -130,7 +130,7 @@ fn a_file_that_was_cut_is_an_error() {
             PIXELS_END.iter().find(|(name, _)| *name == path).map_or(100, |(_, percent)| *percent);
         for percent in [0, 1, 10, 50, 90, 99] {
             let cut = &bytes[..bytes.len() * percent / 100];
-            let result = read_image(cut, Some(extension), &Limits::default());
+            let result = read_image(cut, Some(extension), &ReadOptions::default());
             let is_ok = result.is_ok();
             assert_eq!(
                 is_ok,
@@ -149,7 +149,7 @@ const SMALL: Limits = Limits { max_pixels: 1 << 18 };
 
 /// Ready for a fuzzer: any bytes whatever.
 fn fuzz_read_image(bytes: &[u8], extension: &str) {
-    match read_image(bytes, Some(extension), &SMALL) {
+    match read_image(bytes, Some(extension), &SMALL.into()) {
         Ok(decoded) => {
             let (image, info) = (decoded.image, decoded.info);
             assert_eq!((image.width(), image.height()), (info.width, info.height));
@@ -240,16 +240,16 @@ impl XorShift {
 #[test]
 fn missing_files_and_folders_are_io_errors() {
     for path in ["broken/no-such-file.png", "broken"] {
-        let result = roughcast_io::read_image_file(&folder().join(path), &Limits::default());
+        let result = roughcast_io::read_image_file(&folder().join(path), &ReadOptions::default());
         assert!(matches!(result, Err(ReadError::Io(_))), "{path}: {result:?}");
     }
-    assert!(matches!(read_image(&[], Some("png"), &Limits::default()), Err(ReadError::Empty)));
+    assert!(matches!(read_image(&[], Some("png"), &ReadOptions::default()), Err(ReadError::Empty)));
 }
 
 #[test]
 fn the_limit_counts_pixels() {
     let bytes = std::fs::read(folder().join("formats/png/go_basn2c08.png")).unwrap();
-    assert!(read_image(&bytes, None, &Limits { max_pixels: 32 * 32 }).is_ok());
-    let refused = read_image(&bytes, None, &Limits { max_pixels: 32 * 32 - 1 });
+    assert!(read_image(&bytes, None, &Limits { max_pixels: 32 * 32 }.into()).is_ok());
+    let refused = read_image(&bytes, None, &Limits { max_pixels: 32 * 32 - 1 }.into());
     assert!(matches!(refused, Err(ReadError::TooLarge { width: 32, height: 32, .. })), "{refused:?}");
 }

@@ -5,7 +5,7 @@ use std::io::Cursor;
 
 use exr::prelude::*;
 use roughcast::Samples;
-use roughcast_io::{Decoded, Limits, ReadError, read_image};
+use roughcast_io::{Decoded, ReadError, ReadOptions, read_image};
 
 const WIDTH: usize = 37;
 const HEIGHT: usize = 53;
@@ -42,7 +42,7 @@ fn write(layers: Vec<Layer<AnyChannels<FlatSamples>>>, data_window: Vec2<i32>) -
 }
 
 fn read(file: &[u8]) -> std::result::Result<Decoded, ReadError> {
-    read_image(file, None, &Limits::default())
+    read_image(file, None, &ReadOptions::default())
 }
 
 /// Whether `decoded` holds the pixels of the first `channels` channels written, in their order.

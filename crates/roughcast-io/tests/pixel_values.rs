@@ -155,6 +155,7 @@ fn lossy_and_lossless_files_of_one_picture_agree() {
 #[test]
 fn content_wins_over_the_name() {
     let bytes = std::fs::read(folder().join("formats/png/go_basn2c08.png")).unwrap();
-    let named_jpg = roughcast_io::read_image(&bytes, Some("jpg"), &roughcast_io::Limits::default()).unwrap();
+    let named_jpg =
+        roughcast_io::read_image(&bytes, Some("jpg"), &roughcast_io::ReadOptions::default()).unwrap();
     assert_eq!(named_jpg.info.container, "PNG");
 }

@@ -17,7 +17,7 @@ const SIDE: usize = 160;
 /// A corner of a picture in the shared data, as sRGB of 8 bits.
 fn pixels(name: &str, at: (usize, usize)) -> Vec<[u8; 3]> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")).join(name);
-    let decoded = roughcast_io::read_image_file(&path, &roughcast_io::Limits::default());
+    let decoded = roughcast_io::read_image_file(&path, &roughcast_io::ReadOptions::default());
     let image: Image = decoded.unwrap_or_else(|e| panic!("{}: {e}", path.display())).image;
     let byte =
         |x, y, channel: usize| (255.0 * image.get(x, y, channel.min(image.channels() - 1))).round() as u8;

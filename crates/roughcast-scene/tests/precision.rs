@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use roughcast::shading::{LobeOptions, Material, Shading};
 use roughcast::{BakeOptions, Bits, Image, SourceOptions, bake};
-use roughcast_io::{Limits, read_image_file};
+use roughcast_io::{ReadOptions, read_image_file};
 use roughcast_scene::metrics::{DEFAULT_PIXELS_PER_DEGREE, hdr_flip};
 use roughcast_scene::render::{Method, ShadingTextures, unwatched};
 use roughcast_scene::{Picture, Plane, Sampler, Shape, View};
@@ -23,7 +23,7 @@ const MAPS: [&str; 2] = ["materials/water_bevy/water_normals.png", "materials/ro
 fn map(name: &str) -> Image {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data").join(name);
     assert!(path.exists(), "the test data {} is missing: put it beside the repository", path.display());
-    read_image_file(&path, &Limits::default()).expect("a map").image
+    read_image_file(&path, &ReadOptions::default()).expect("a map").image
 }
 
 fn picture(map: &Image, bits: Bits, view: View) -> Picture {

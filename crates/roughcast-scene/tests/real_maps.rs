@@ -21,7 +21,7 @@ const MAPS: [(&str, f64); 3] = [
 
 fn map(name: &str) -> Image {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")).join(name);
-    let decoded = roughcast_io::read_image_file(&path, &roughcast_io::Limits::default());
+    let decoded = roughcast_io::read_image_file(&path, &roughcast_io::ReadOptions::default());
     decoded.unwrap_or_else(|e| panic!("{}: {e}", path.display())).image
 }
 

@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result};
 use roughcast::{Gradient, HeightSense, Image, Kind, SourceOptions};
-use roughcast_io::{Limits, read_image};
+use roughcast_io::{ReadOptions, read_image};
 use roughcast_scene::View;
 use roughcast_scene::pattern::v_grooves;
 
@@ -64,7 +64,7 @@ fn v_groove() -> Subject {
 
 fn wool() -> Result<Subject> {
     let image =
-        read_image(WOOL, Some("png"), &Limits::default()).context("the wool map of the program")?.image;
+        read_image(WOOL, Some("png"), &ReadOptions::default()).context("the wool map of the program")?.image;
     let (width, height) = (image.width(), image.height());
     Ok(Subject {
         name: "wool".to_owned(),

@@ -28,16 +28,13 @@ pub fn read_image(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
         .and_then(|length| bytes.get(header.data_offset..header.data_offset.checked_add(length)?))
         .ok_or_else(|| too_short(&shape))?;
     let image = shape.format.decode(texels, shape.width, shape.height);
+    let size = (shape.width, shape.height);
     let info = FileInfo {
-        container: CONTAINER,
-        format: format_name,
-        width: shape.width,
-        height: shape.height,
         layers: shape.layers,
         levels: shape.levels,
         range: shape.format.range(),
-        channels: shape.format.channel_names().iter().map(|&name| name.to_owned()).collect(),
         metadata: metadata_of(&header.reserved),
+        ..FileInfo::of_picture(CONTAINER, format_name, size, shape.format.channel_names())
     };
     Ok(Decoded { image, info })
 }

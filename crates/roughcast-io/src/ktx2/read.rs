@@ -30,16 +30,13 @@ pub fn read_image(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
     for axis in file.flips()? {
         image = flipped(image, axis);
     }
+    let size = (shape.width, shape.height);
     let info = FileInfo {
-        container: CONTAINER,
-        format: format_name.to_owned(),
-        width: shape.width,
-        height: shape.height,
         layers: shape.layers,
         levels: shape.levels,
         range: shape.format.range(),
-        channels: channels.iter().map(|&name| name.to_owned()).collect(),
         metadata: file.pairs,
+        ..FileInfo::of_picture(CONTAINER, format_name.to_owned(), size, channels)
     };
     Ok(Decoded { image, info })
 }

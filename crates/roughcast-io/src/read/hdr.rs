@@ -35,16 +35,11 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> 
         }
     }
     let image = Image::new(width, height, 3, Samples::F32(samples)).map_err(|e| malformed(FORMAT, e))?;
+    let format = "RGBE 8-bit mantissas and a common exponent".to_owned();
     let info = FileInfo {
-        container: FORMAT,
-        format: "RGBE 8-bit mantissas and a common exponent".to_owned(),
-        width,
-        height,
-        layers: 1,
-        levels: 1,
         range: ValueRange::Float,
-        channels: ["R", "G", "B"].map(str::to_owned).into(),
         metadata,
+        ..FileInfo::of_picture(FORMAT, format, (width, height), &["R", "G", "B"])
     };
     Ok(Decoded { image, info })
 }

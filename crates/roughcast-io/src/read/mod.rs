@@ -14,7 +14,7 @@ mod tiff_entries;
 
 use std::path::Path;
 
-use crate::{Decoded, Limits, ReadError};
+use crate::{Decoded, ReadError, ReadOptions};
 
 /// The file formats that are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,7 +43,12 @@ enum Format {
 /// # Errors
 /// [`ReadError`]: no known format, a kind that is not read, damaged bytes, or more pixels than `limits` allow. No
 /// input makes it panic, and nothing is allocated before its size has been held against the limits.
-pub fn read_image(bytes: &[u8], extension: Option<&str>, limits: &Limits) -> Result<Decoded, ReadError> {
+pub fn read_image(
+    bytes: &[u8],
+    extension: Option<&str>,
+    options: &ReadOptions,
+) -> Result<Decoded, ReadError> {
+    let limits = &options.limits;
     match format_of(bytes, extension)? {
         Format::Png => png::read(bytes, limits),
         Format::Jpeg => jpeg::read(bytes, limits),
@@ -52,7 +57,7 @@ pub fn read_image(bytes: &[u8], extension: Option<&str>, limits: &Limits) -> Res
         Format::WebP => bmp_webp_tga::read_webp(bytes, limits),
         Format::Tiff => tiff::read(bytes, limits),
         Format::Hdr => hdr::read(bytes, limits),
-        Format::Exr => exr::read(bytes, limits),
+        Format::Exr => exr::read(bytes, options),
         Format::Ktx2 => crate::ktx2::read_image(bytes, limits),
         Format::Dds => crate::dds::read_image(bytes, limits),
     }
@@ -62,10 +67,10 @@ pub fn read_image(bytes: &[u8], extension: Option<&str>, limits: &Limits) -> Res
 ///
 /// # Errors
 /// [`ReadError::Io`] where the file cannot be read, and all of [`read_image`].
-pub fn read_image_file(path: &Path, limits: &Limits) -> Result<Decoded, ReadError> {
+pub fn read_image_file(path: &Path, options: &ReadOptions) -> Result<Decoded, ReadError> {
     let bytes = std::fs::read(path)?;
     let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
-    read_image(&bytes, extension.as_deref(), limits)
+    read_image(&bytes, extension.as_deref(), options)
 }
 
 /// What the first bytes, or for TGA the last ones or the extension, say of the format.

@@ -35,22 +35,9 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> 
     let samples = if planes > 1 { interleave(samples, planes)? } else { samples };
     let range = if samples.sample_type().is_float() { ValueRange::Float } else { ValueRange::Unorm };
     let image = Image::new(width, height, channels, samples).map_err(|e| malformed(FORMAT, e))?;
-    let info = FileInfo {
-        container: FORMAT,
-        format: format!(
-            "{} {}-bit {}",
-            layout.words,
-            layout.bits,
-            if range == ValueRange::Float { "float" } else { "unsigned" }
-        ),
-        width,
-        height,
-        layers: 1,
-        levels: 1,
-        range,
-        channels: layout.channels.iter().map(|&name| name.to_owned()).collect(),
-        metadata: Default::default(),
-    };
+    let numbers = if range == ValueRange::Float { "float" } else { "unsigned" };
+    let format = format!("{} {}-bit {numbers}", layout.words, layout.bits);
+    let info = FileInfo { range, ..FileInfo::of_picture(FORMAT, format, (width, height), layout.channels) };
     Ok(Decoded { image, info })
 }
 

@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use roughcast_io::{Decoded, Limits, ReadError, read_image_file};
+use roughcast_io::{Decoded, ReadError, ReadOptions, read_image_file};
 
 /// A file of the folder, as `MANIFEST.tsv` describes it.
 #[derive(Clone, Debug)]
@@ -58,7 +58,7 @@ pub fn manifest(folders: &[&str]) -> Vec<Entry> {
 
 /// Reads a file of the folder.
 pub fn read(path: &str) -> Result<Decoded, ReadError> {
-    read_image_file(&folder().join(path), &Limits::default())
+    read_image_file(&folder().join(path), &ReadOptions::default())
 }
 
 /// Reads a file of the folder that must be readable.

@@ -1,7 +1,7 @@
 //! Every KTX2, KTX1 and DDS file at hand: read with the size that it has, or refused for the right reason.
 
 use roughcast::Samples;
-use roughcast_io::{Limits, ReadError, ValueRange, ktx2};
+use roughcast_io::{Limits, ReadError, ReadOptions, ValueRange, ktx2};
 
 use crate::support::{bytes_of, decoded, names_in, read_image};
 
@@ -184,8 +184,11 @@ fn ktx2_files() {
 fn ktx1_files() {
     check_folder("formats/ktx1", KTX1_FILES);
     for name in names_in("formats/ktx1") {
-        let found =
-            roughcast_io::read_image(&bytes_of(&format!("formats/ktx1/{name}")), None, &Limits::default());
+        let found = roughcast_io::read_image(
+            &bytes_of(&format!("formats/ktx1/{name}")),
+            None,
+            &ReadOptions::default(),
+        );
         let error = found.unwrap_err().to_string();
         assert!(error.contains("convert it to KTX2"), "found by its first bytes: {error}");
     }

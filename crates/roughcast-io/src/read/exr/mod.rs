@@ -20,7 +20,7 @@ use roughcast::{Image, SampleType, Samples};
 use self::channels::Selection;
 use super::memory::{check_size, malformed, unsupported, zeros};
 use crate::metadata::insert;
-use crate::{Decoded, FileInfo, Limits, ReadError, ValueRange};
+use crate::{Decoded, FileInfo, ReadError, ReadOptions, ValueRange};
 
 const FORMAT: &str = "EXR";
 /// The compressions numbered 10 and above came after those that are read here.
@@ -32,7 +32,7 @@ const SAVE_AS_ZIP: &str = "save it with ZIP compression";
 /// Channels come in the order that [`channels::select`] gives; halves stay halves unless a channel beside them is a
 /// float. Unsigned integers are refused, for they name objects, and a float would round them. Text attributes become
 /// metadata. `FileInfo::levels` of a rip map counts the levels along its longer side.
-pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
+pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<Decoded, ReadError> {
     let mut input = Cursor::new(bytes);
     let meta = MetaData::read_from_buffered(&mut input, false).map_err(|e| header_fault(bytes, e))?;
     let tables_start = input.position();
@@ -42,8 +42,12 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> 
         .position(|header| !header.deep)
         .ok_or_else(|| unsupported(FORMAT, "deep data", "flatten it first"))?;
     let header = &meta.headers[part];
-    let (width, height) =
-        check_size(FORMAT, header.layer_size.width() as u64, header.layer_size.height() as u64, limits)?;
+    let (width, height) = check_size(
+        FORMAT,
+        header.layer_size.width() as u64,
+        header.layer_size.height() as u64,
+        &options.limits,
+    )?;
     if matches!(header.compression, Compression::HTJ2K32 | Compression::HTJ2K256) {
         return Err(unsupported(FORMAT, "HTJ2K compression", SAVE_AS_ZIP));
     }
@@ -72,16 +76,13 @@ fn file_info(header: &Header, selection: &Selection, (width, height): (usize, us
     let names: Vec<String> = selection.channels.iter().map(|channel| channel.name.clone()).collect();
     let sample = if selection.sample_type == SampleType::F16 { "half" } else { "float" };
     let layer = selection.layer.as_ref().map(|layer| format!(" of layer {layer}")).unwrap_or_default();
+    let format = format!("{sample} {}{layer}, {}", names.join(", "), header.compression);
     FileInfo {
-        container: FORMAT,
-        format: format!("{sample} {}{layer}, {}", names.join(", "), header.compression),
-        width,
-        height,
-        layers: 1,
         levels: level_count(header),
         range: ValueRange::Float,
         channels: names,
         metadata: text_pairs(header),
+        ..FileInfo::of_picture(FORMAT, format, (width, height), &[])
     }
 }
 
