@@ -11,7 +11,7 @@ use roughcast::{
     BakeError, BakeOptions, Baked, Bits, Blocks, Lobe, Named, PyramidFilter, RoughnessTexture, ScaleChoice,
     bake, refuse_filter,
 };
-use roughcast_io::{BlockFormat, Supercompression, compress, decompress};
+use roughcast_io::{BlockFormat, FileInfo, Supercompression, compress, decompress};
 
 use crate::args::{READING, REPORT, SourceArgs, one_of, positive};
 use crate::batch;
@@ -20,6 +20,7 @@ use crate::output::{self, Container, OutputOptions, Stored};
 use crate::progress::Stages;
 use crate::report::{CompressionError, FileReport};
 use crate::roughness::{Roughness, RoughnessArgs};
+use crate::textures::leftover_parts;
 use crate::{UsageError, usage};
 
 /// Turn a normal or height map into textures whose mip levels keep the bumps as roughness.
@@ -197,7 +198,7 @@ pub fn bake_file(input: &Path, output: &Path, args: &Args, stages: &mut Stages) 
             .with_context(named);
     }
     // The pixels are not needed any more, and what follows needs room.
-    let Map { image, info, options: source, green_correlation, warnings } = map;
+    let Map { image, info, options: source, green_correlation, mut warnings } = map;
     drop(image);
     stages.begin("compressing");
     let Baked { arrays, report } = baked;
@@ -210,6 +211,13 @@ pub fn bake_file(input: &Path, output: &Path, args: &Args, stages: &mut Stages) 
     let inputs: Vec<&Path> = [Some(input), args.roughness.file()].into_iter().flatten().collect();
     let output_options = OutputOptions { supercompression, wrap: source.wrap, inputs: &inputs };
     let files = output::write(output, &stored, output_options)?;
+    for leftover in leftover_parts(output, options.layout, &files)? {
+        warnings.push(format!(
+            "{} is left from an earlier bake and does not belong to these files: remove it",
+            leftover.display()
+        ));
+    }
+    warnings.extend(block_size_warning(container, &options, &info));
     Ok(FileReport {
         input: input.to_owned(),
         files,
@@ -268,6 +276,20 @@ fn stored_of(arrays: Vec<TextureArray>, blocks: Blocks) -> Result<(Vec<Stored>, 
     let seen: Vec<TextureArray> = compressed.iter().map(decompress).collect();
     let error = CompressionError::between(&arrays, &seen)?;
     Ok((compressed.into_iter().map(Stored::Blocks).collect(), Some(error)))
+}
+
+/// Direct3D refuses to create block-compressed textures whose sides are not multiples of the blocks' side; Vulkan, Metal and
+/// OpenGL do not (Microsoft, "Texture Block Compression in Direct3D 11", virtual size versus physical size).
+fn block_size_warning(container: Container, options: &BakeOptions, info: &FileInfo) -> Option<String> {
+    const BLOCK_SIDE: usize = 4;
+    let (width, height) = (info.width, info.height);
+    let fits = width.is_multiple_of(BLOCK_SIDE) && height.is_multiple_of(BLOCK_SIDE);
+    (container == Container::Dds && options.blocks == Blocks::Bc && !fits).then(|| {
+        format!(
+            "Direct3D cannot create a block-compressed texture of {width}x{height}, whose sides must be multiples of \
+             {BLOCK_SIDE}: resize the map, or write .ktx2 for Vulkan, Metal and OpenGL, which have no such rule"
+        )
+    })
 }
 
 fn block_format(part: Part) -> BlockFormat {

@@ -6,7 +6,6 @@ use anyhow::{Context, Result, anyhow};
 use roughcast::detect::{
     GreenVerdict, KindGuess, guess_channels, guess_kind, guess_range, test_green_of_map,
 };
-use roughcast::texture::Layout;
 use roughcast::{Green, Image, Kind, NormalChannels, NormalRange, SourceOptions};
 use roughcast_io::{Decoded, FileInfo, ReadError, ReadOptions, ValueRange};
 
@@ -42,6 +41,7 @@ pub fn read_map(path: &Path, args: &SourceArgs) -> Result<Map> {
 
 /// Settles what the arguments left open for an image that was read.
 pub fn map_of(Decoded { image, info }: Decoded, args: &SourceArgs) -> Result<Map> {
+    refuse_baked(&info)?;
     if args.range == Some(NormalRange::Signed) && !image.samples().sample_type().is_float() {
         let line =
             format!("--range signed is for signed numbers, and {} holds none: leave it out", info.format);
@@ -57,7 +57,6 @@ pub fn map_of(Decoded { image, info }: Decoded, args: &SourceArgs) -> Result<Map
     let warnings = info.warnings.clone();
     let mut map = Map { image, info, options, green_correlation: None, warnings };
     map.test_green();
-    map.warn_of_textures();
     Ok(map)
 }
 
@@ -85,22 +84,23 @@ fn kind_of(image: &Image, info: &FileInfo, range: NormalRange, wanted: Option<Ki
     }
 }
 
+/// Refuses a file that `bake` wrote: its channels are not those of a map, or hold a roughness that includes the bumps.
+pub fn refuse_baked(info: &FileInfo) -> Result<()> {
+    match layout_named_in(info) {
+        Some(layout) => Err(anyhow!(
+            "it is baked already (layout '{layout}'), and its values are no longer those of a map: give the map that it \
+             was made from; `roughcast info` and `roughcast unpack` read baked files"
+        )),
+        None => Ok(()),
+    }
+}
+
 /// The layout that a file of ours names in its metadata.
 pub fn layout_named_in(info: &FileInfo) -> Option<&str> {
     info.metadata.get("roughcast.layout").map(String::as_str)
 }
 
 impl Map {
-    /// Of the six channels of bump slopes the first is the height; other layouts' channels are not those of a map.
-    fn warn_of_textures(&mut self) {
-        if let Some(layout) = layout_named_in(&self.info).filter(|name| *name != Layout::BumpSlopes.name()) {
-            self.warnings.push(format!(
-                "it holds the layout '{layout}', that is, it was baked already, and is read as if it were a map: bake \
-                 the map itself instead"
-            ));
-        }
-    }
-
     /// Most maps are read with green up because nobody said otherwise; the curl of the slopes tells if that is wrong.
     fn test_green(&mut self) {
         if self.options.kind != Kind::Normal {

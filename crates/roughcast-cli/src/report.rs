@@ -98,6 +98,12 @@ impl FileReport {
                 report.bounds.usable_specular_power_any_direction(),
             ),
         ];
+        if let Some((width, height)) = report.roughness_resampled_from {
+            lines.push(format!(
+                "  roughness map of {width}x{height} resampled to {}x{}, as slope variance",
+                self.info.width, self.info.height
+            ));
+        }
         let counts = report.counts;
         if counts.total() > 0 {
             lines.push(format!(
@@ -177,6 +183,7 @@ impl FileReport {
                 "sigma_error_rms": error.sigma_rms,
                 "sigma_error_max": error.sigma_max,
             })),
+            "roughness_resampled_from": report.roughness_resampled_from.map(|(width, height)| [width, height]),
             "levels": levels,
             "warnings": self.warnings,
             "seconds": times,

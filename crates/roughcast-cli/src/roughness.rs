@@ -6,11 +6,11 @@ use anyhow::{Context, Result, anyhow};
 use clap::Args;
 use roughcast::texture::{Base, Brdf, RoughnessStored};
 use roughcast::{BaseRoughness, Image, RoughnessMap, RoughnessTexture, variance_from_stored};
-use roughcast_io::Limits;
+use roughcast_io::{Decoded, Limits};
 
 use crate::UsageError;
 use crate::args::{one_of, positive};
-use crate::input::read_image;
+use crate::input::{read_image, refuse_baked};
 
 /// Base roughness.
 #[derive(Args, Clone, Debug)]
@@ -20,7 +20,7 @@ pub struct RoughnessArgs {
     #[arg(long, value_name = "S", value_parser = positive, conflicts_with = "roughness")]
     pub specular_power: Option<f32>,
 
-    /// The material's roughness: a number, or a picture of the map's size. Of a colour picture it is green, as glTF packs
+    /// The material's roughness: a number, or a picture, which is resampled where its size is not the map's. Of a colour picture it is green, as glTF packs
     /// occlusion, roughness and metalness; pbr keeps the other two
     #[arg(long, value_name = "FILE|VALUE")]
     pub roughness: Option<String>,
@@ -125,7 +125,8 @@ impl RoughnessArgs {
     }
 
     fn map(&self, path: &Path, limits: &Limits) -> Result<Roughness> {
-        let image = read_image(path, &(*limits).into())?.image;
+        let Decoded { image, info } = read_image(path, &(*limits).into())?;
+        refuse_baked(&info).with_context(|| path.display().to_string())?;
         let channel = match self.roughness_channel.as_deref() {
             Some(name) => "rgba".find(name).expect("the parser lets only these through"),
             None if image.channels() >= 3 => 1,

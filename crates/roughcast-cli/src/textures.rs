@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use roughcast::texture::{Part, TextureArray};
+use roughcast::texture::{Layout, Part, TextureArray};
 use roughcast_io::{Limits, ReadError, dds, exr, ktx2};
 
 use crate::output::{Container, part_path};
@@ -46,10 +46,31 @@ pub fn with_other_parts(path: &Path, first: TextureArray, limits: &Limits) -> Re
     for other in layout.parts().iter().filter(|other| **other != part && has_a_name(**other)) {
         let beside = part_path(&whole, *other, container);
         if beside.exists() {
-            arrays.push(read(&beside, limits)?);
+            let array = read(&beside, limits)?;
+            check_set(path, &arrays[0], &beside, &array)?;
+            arrays.push(array);
         }
     }
     Ok(arrays)
+}
+
+/// Refuses a part that was not baked together with the first: its name alone says nothing.
+fn check_set(path: &Path, first: &TextureArray, beside: &Path, other: &TextureArray) -> Result<()> {
+    anyhow::ensure!(
+        first.info.set == other.info.set,
+        "{}: it does not belong to the same bake as {}: bake the map again, or remove the file that is left from \
+         another bake",
+        beside.display(),
+        path.display()
+    );
+    Ok(())
+}
+
+/// The files that would be taken for parts of this output, but are left from an earlier bake.
+pub fn leftover_parts(output: &Path, layout: Layout, written: &[PathBuf]) -> Result<Vec<PathBuf>> {
+    let container = Container::of(output)?;
+    let paths = layout.parts().iter().map(|part| part_path(output, *part, container));
+    Ok(paths.filter(|path| path != output && !written.contains(path) && path.exists()).collect())
 }
 
 /// `NAME.ext` of `NAME.PART.ext`; a file that was renamed stays what it is, and its other parts are not found.

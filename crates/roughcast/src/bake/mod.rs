@@ -11,9 +11,9 @@ pub use plan::{BakePlan, plan_bake};
 use crate::moments::Moments;
 use crate::options::{BakeOptions, Blocks, ScaleChoice, SourceOptions};
 use crate::pyramid::{self, LevelStats, PyramidOptions, level_sizes};
-use crate::source::{BaseRoughness, BaseSource, MapSource, SourceError, UseOfBase};
+use crate::source::{BaseRoughness, BaseSource, MapSource, RoughnessMap, SourceError, UseOfBase};
 use crate::survey::survey;
-use crate::texture::{self, Base, Bounds, EncoderShape, Layout, Part, Peaks, TextureArray};
+use crate::texture::{self, Base, Bounds, EncoderShape, Layout, Part, Peaks, RoughnessStored, TextureArray};
 use crate::{Image, SourceCounts};
 use allocate::{allocate, level_outs};
 use scales::{advice, largest_variance, set_scales, stores_variance};
@@ -61,6 +61,9 @@ pub struct BakeReport {
     pub advice: Option<ScaleAdvice>,
     /// Each level's size and what it holds.
     pub levels: Vec<((usize, usize), LevelStats)>,
+    /// Width and height of the roughness map, where they were not those of the map: it was resampled, as slope variance, by
+    /// an area average along an axis that shrinks and linearly along one that grows.
+    pub roughness_resampled_from: Option<(usize, usize)>,
 }
 
 /// Textures and report.
@@ -74,7 +77,7 @@ pub struct Baked {
 
 /// Bakes a map.
 ///
-/// `roughness` is the base roughness of the material, where there is one: folded into the moments if
+/// `roughness` is the base roughness of the material, where there is one; a map of another size is resampled. It is folded into the moments if
 /// [`BakeOptions::base`] says so, and always part of `pbr`'s roughness and of Toksvig's gloss factor.
 ///
 /// The same input gives the same textures for any number of threads.
@@ -102,6 +105,17 @@ pub fn bake_reusing(
     roughness: Option<BaseRoughness<'_>>,
     options: &BakeOptions,
 ) -> Result<Baked, BakeError> {
+    let size = (image.width(), image.height());
+    let fitted = roughness.and_then(|roughness| roughness.fitted(size, source_options.wrap));
+    let roughness_resampled_from = fitted.as_ref().and(roughness).and_then(|roughness| roughness.map_size());
+    let roughness = match &fitted {
+        Some((image, channel)) => Some(BaseRoughness::Map(RoughnessMap {
+            image,
+            channel: *channel,
+            stored: RoughnessStored::AlphaSquared,
+        })),
+        None => roughness,
+    };
     let BakePlan { source: source_options, mut info } = plan_bake(source_options, roughness, options)?;
     let source = source_of(image, source_options, roughness, options)?;
     let pyramid_options = PyramidOptions { filter: options.filter, wrap: source_options.wrap };
@@ -138,7 +152,12 @@ pub fn bake_reusing(
         bounds: texture::bounds_of_shape(&info, sample_type, shape, &peaks),
         advice: looked_at.and_then(|looked_at| advice(&info, sample_type, shape, &looked_at, &peaks)),
         levels: level_sizes(image.width(), image.height()).into_iter().zip(built.levels).collect(),
+        roughness_resampled_from,
     };
+    if arrays.len() > 1 {
+        let set = texture::set_id(&arrays);
+        arrays.iter_mut().for_each(|array| array.info.set = set);
+    }
     Ok(Baked { arrays, report })
 }
 

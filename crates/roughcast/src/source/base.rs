@@ -1,11 +1,13 @@
 //! Base roughness: what the material has already, before any bump.
 
+use super::fit::fit;
 use super::{SourceError, load_channel};
 use crate::Image;
+use crate::options::Wrap;
 use crate::row::Extra;
 use crate::texture::RoughnessStored;
 
-/// A roughness stored in an image of the same size as the map.
+/// A roughness stored in an image. [`crate::bake`] resamples one whose size differs from that of the map.
 #[derive(Clone, Copy, Debug)]
 pub struct RoughnessMap<'a> {
     /// The pixels.
@@ -26,6 +28,26 @@ pub enum BaseRoughness<'a> {
 }
 
 impl BaseRoughness<'_> {
+    /// A roughness map resampled to `size`, width and height, by [`fit`]; `None` where nothing is to be done.
+    pub(crate) fn fitted(&self, size: (usize, usize), wrap: Wrap) -> Option<(Image, usize)> {
+        match self {
+            BaseRoughness::Map(map)
+                if map.channel < map.image.channels() && (map.image.width(), map.image.height()) != size =>
+            {
+                Some(fit(map, size, wrap))
+            }
+            _ => None,
+        }
+    }
+
+    /// Width and height of a roughness map.
+    pub(crate) fn map_size(&self) -> Option<(usize, usize)> {
+        match self {
+            BaseRoughness::Variance(_) => None,
+            BaseRoughness::Map(map) => Some((map.image.width(), map.image.height())),
+        }
+    }
+
     /// The largest variance of any texel.
     pub(crate) fn largest_variance(&self) -> f32 {
         match self {
@@ -47,7 +69,7 @@ impl BaseRoughness<'_> {
 
 impl RoughnessMap<'_> {
     /// Slope variances of a stretch of row `y` that starts at column `x`.
-    fn fill_variance(&self, x: usize, y: usize, plane: &mut [f32]) {
+    pub(super) fn fill_variance(&self, x: usize, y: usize, plane: &mut [f32]) {
         load_channel(self.image, self.channel, x, y, plane);
         for value in plane {
             let variance = variance_from_stored(*value, self.stored);
@@ -119,16 +141,6 @@ impl<'a> BaseSource<'a> {
         self.use_of_base == UseOfBase::FoldedIn
     }
 
-    pub(super) fn check_size(&self, width: usize, height: usize) -> Result<(), SourceError> {
-        match self.roughness {
-            BaseRoughness::Map(map) if (map.image.width(), map.image.height()) != (width, height) => {
-                let (got_width, got_height) = (map.image.width(), map.image.height());
-                Err(SourceError::Size { width, height, got_width, got_height })
-            }
-            _ => Ok(()),
-        }
-    }
-
     pub(super) fn fill_variance(&self, x: usize, y: usize, plane: &mut [f32]) {
         match self.roughness {
             BaseRoughness::Variance(variance) => plane.fill(variance),
@@ -154,7 +166,7 @@ impl<'a> BaseSource<'a> {
 }
 
 /// The channel that holds roughness in glTF's packed texture.
-const PACKED_CHANNEL: usize = 1;
+pub(super) const PACKED_CHANNEL: usize = 1;
 
 /// An extra of a material without a texture that says it: nothing is occluded, nothing is metal.
 pub(super) fn where_nothing_says(extra: Extra) -> f32 {

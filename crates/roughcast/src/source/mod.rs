@@ -1,6 +1,7 @@
 //! From a map's pixels to rows of slopes: level 0 of everything.
 
 mod base;
+mod fit;
 mod height_map;
 mod normal_map;
 
@@ -27,20 +28,6 @@ pub enum SourceError {
         needed: usize,
         /// Channels there are.
         got: usize,
-    },
-    /// A map that goes with another has another size.
-    #[error(
-        "the roughness map is {got_width}x{got_height} pixels and the map {width}x{height}: resize one of them"
-    )]
-    Size {
-        /// Width of the main map.
-        width: usize,
-        /// Height of the main map.
-        height: usize,
-        /// Width of the roughness map.
-        got_width: usize,
-        /// Height of the roughness map.
-        got_height: usize,
     },
     /// An option is out of its range.
     #[error("{0}")]
@@ -69,9 +56,6 @@ impl<'a> MapSource<'a> {
                 let got = image.channels();
                 return Err(SourceError::Channels { wanted: "normal map", needed, got });
             }
-        }
-        if let Some(base) = &base {
-            base.check_size(image.width(), image.height())?;
         }
         Ok(Self { image, options, base, extras })
     }

@@ -31,6 +31,14 @@ pub enum DecodeError {
         /// The part that is not there.
         part: Part,
     },
+    /// A file belongs to another bake than the first.
+    #[error("the '{part}' file belongs to another bake than the '{first}' file: bake them together again")]
+    OtherSet {
+        /// The part of another bake.
+        part: Part,
+        /// The part that the others are compared with.
+        first: Part,
+    },
     /// The files' channels, sizes or levels are not those of the layout.
     #[error("the textures are not those of the layout '{layout}': {fault}; bake them anew")]
     Shape {
@@ -99,6 +107,9 @@ impl<'a> Parts<'a> {
         let fault = |fault: String| Err(DecodeError::Shape { layout, fault });
         let all = [Some(self.main), self.roughness, self.anisotropy, self.gloss].into_iter().flatten();
         for array in all {
+            if array.info.set != self.main.info.set {
+                return Err(DecodeError::OtherSet { part: array.info.part, first: self.main.info.part });
+            }
             if array.info.layout != layout {
                 return fault(format!("one file holds '{}'", array.info.layout));
             }

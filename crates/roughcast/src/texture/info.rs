@@ -126,6 +126,9 @@ pub struct TextureInfo {
     pub brdf: Brdf,
     /// How a roughness is stored.
     pub roughness_stored: RoughnessStored,
+    /// The bake that the file belongs to, where a layout consists of several files: the same number in all of them, and
+    /// another one in the files of another bake. 0 where the file stands alone.
+    pub set: u64,
 }
 
 /// Why the metadata of a file could not be read.
@@ -154,6 +157,7 @@ const BASE: &str = "roughcast.base";
 const BASE_VARIANCE: &str = "roughcast.base-variance";
 const BRDF: &str = "roughcast.brdf";
 const ROUGHNESS_STORED: &str = "roughcast.roughness-stored";
+const SET: &str = "roughcast.set";
 const CONVENTIONS: &str = "roughcast.conventions";
 
 /// For whoever opens a file without this documentation at hand; it is the same in every file and not read back.
@@ -176,6 +180,7 @@ impl TextureInfo {
             base_variance: 0.0,
             brdf: Brdf::Ggx,
             roughness_stored: RoughnessStored::Perceptual,
+            set: 0,
         }
     }
 
@@ -192,7 +197,8 @@ impl TextureInfo {
             (ROUGHNESS_STORED, self.roughness_stored.name().to_owned()),
             (CONVENTIONS, CONVENTIONS_OF_ALL_FILES.to_owned()),
         ];
-        pairs.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+        let set = (self.set != 0).then(|| (SET, format!("{:016x}", self.set)));
+        pairs.into_iter().chain(set).map(|(key, value)| (key.to_owned(), value)).collect()
     }
 
     /// Reads [`TextureInfo::to_pairs`] back; keys of others are passed over.
@@ -207,6 +213,11 @@ impl TextureInfo {
             let text = pairs.get(key).ok_or(InfoError::Missing(key))?;
             text.parse().map_err(|_| InfoError::Invalid { key, value: text.clone() })
         }
+        let set = match pairs.get(SET) {
+            Some(text) => u64::from_str_radix(text, 16)
+                .map_err(|_| InfoError::Invalid { key: SET, value: text.clone() })?,
+            None => 0,
+        };
         Self {
             layout: value(pairs, LAYOUT)?,
             part: value(pairs, PART)?,
@@ -216,6 +227,7 @@ impl TextureInfo {
             base_variance: value(pairs, BASE_VARIANCE)?,
             brdf: value(pairs, BRDF)?,
             roughness_stored: value(pairs, ROUGHNESS_STORED)?,
+            set,
         }
         .checked()
     }
@@ -232,6 +244,7 @@ impl TextureInfo {
             | index_of(Brdf::ALL, self.brdf) << 8
             | index_of(RoughnessStored::ALL, self.roughness_stored) << 16;
         words[6] = self.base_variance.to_bits();
+        (words[7], words[8]) = (self.set as u32, (self.set >> 32) as u32);
         words
     }
 
@@ -255,6 +268,7 @@ impl TextureInfo {
             brdf: variant_at(Brdf::ALL, words[5] >> 8 & 0xff, BRDF)?,
             roughness_stored: variant_at(RoughnessStored::ALL, words[5] >> 16 & 0xff, ROUGHNESS_STORED)?,
             base_variance: f32::from_bits(words[6]),
+            set: u64::from(words[8]) << 32 | u64::from(words[7]),
         }
         .checked()
     }
@@ -298,6 +312,7 @@ mod tests {
             base_variance: 1.0 / 13777.0,
             brdf: Brdf::BlinnPhong,
             roughness_stored: RoughnessStored::SpecularPower,
+            set: 0x0123_4567_89ab_cdef,
             ..TextureInfo::new(Layout::Toksvig, Part::Gloss)
         }
     }

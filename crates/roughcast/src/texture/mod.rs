@@ -14,6 +14,7 @@ pub(crate) mod packing;
 pub(crate) mod pbr;
 mod pbr_bounds;
 mod schilling;
+mod set_id;
 mod toksvig;
 mod variance;
 
@@ -22,6 +23,7 @@ pub use decode::{DecodeError, MomentLevel, decode};
 pub use info::{Base, Brdf, InfoError, Layout, Part, RoughnessStored, TextureInfo};
 pub use packing::Packing;
 pub use schilling::Factor;
+pub(crate) use set_id::set_id;
 
 use crate::moments::Moments;
 use crate::options::{Lobe, RoughnessTexture};
