@@ -4,11 +4,13 @@
 //! says so. All of it is deterministic; large images are judged by a regular sample of their texels.
 
 mod channels;
+mod correlation;
+mod field;
 mod green;
 mod kind;
 mod sample;
 mod vectors;
 
 pub use channels::{guess_channels, guess_range};
-pub use green::{GreenTest, GreenVerdict, test_green, test_green_of_map};
+pub use green::{GreenTest, GreenVerdict, test_green, test_green_against_height, test_green_of_map};
 pub use kind::{KindGuess, guess_kind};

@@ -1,6 +1,6 @@
 //! Guesses how normals are stored: in which channels, and in which range.
 
-use super::green::{GreenVerdict, test_green_of_map};
+use super::green::test_green_of_map;
 use super::sample::{SAME, quantile, share, spread, texels};
 use super::vectors::{MAX_MEAN_TILT, MAX_XY_LENGTH, UNIT, decoded, length, mean_xy};
 use crate::{Image, Kind, NormalChannels, NormalRange, Samples, SourceOptions};
@@ -144,5 +144,5 @@ fn z_from_xy(x: f32, y: f32) -> f32 {
 /// of an arbitrary picture are not.
 pub(super) fn looks_like_slopes(image: &Image, normal_channels: NormalChannels, range: NormalRange) -> bool {
     let options = SourceOptions { kind: Kind::Normal, range, normal_channels, ..SourceOptions::default() };
-    test_green_of_map(image, &options).is_some_and(|test| test.verdict() != GreenVerdict::Undecided)
+    test_green_of_map(image, &options).is_some_and(|test| test.is_large())
 }

@@ -1,13 +1,11 @@
 //! A roughness map of another size than the map that it goes with.
 //!
 //! Roughness is averaged as slope variance, which is what adds up under a filter; occlusion and metalness, which glTF
-//! packs beside it, as they are. Each axis is filtered on its own: by an exact area average where it shrinks, by linear
-//! interpolation between texel centres where it grows.
-
-use rayon::prelude::*;
+//! packs beside it, as they are.
 
 use super::base::{PACKED_CHANNEL, RoughnessMap};
 use super::load_channel;
+use super::resize::resized;
 use crate::options::Wrap;
 use crate::{Image, Samples};
 
@@ -23,17 +21,10 @@ pub(super) fn fit(map: &RoughnessMap<'_>, (width, height): (usize, usize), wrap:
     let (channels, kept) =
         if packed { (PACKED_CHANNELS, 0..PACKED_CHANNELS) } else { (1, map.channel..map.channel + 1) };
     let size = (map.image.width(), map.image.height());
-    let columns: Vec<Taps> = (0..width).map(|x| Taps::of(x, width, size.0, wrap)).collect();
     let mut samples = vec![0.0; width * height * channels];
     for (target, channel) in kept.enumerate() {
-        let plane = plane_of(map, channel);
-        samples.par_chunks_mut(width * channels).enumerate().for_each(|(y, row)| {
-            let rows = Taps::of(y, height, size.1, wrap);
-            for (x, column) in columns.iter().enumerate() {
-                let value = |source: usize| column.average(|x| plane[source * size.0 + x]);
-                row[x * channels + target] = rows.average(value) as f32;
-            }
-        });
+        let plane = resized(&plane_of(map, channel), size, (width, height), wrap);
+        samples[target..].iter_mut().step_by(channels).zip(plane).for_each(|(sample, value)| *sample = value);
     }
     let image = Image::new(width, height, channels, Samples::F32(samples))
         .expect("the length is computed from the size");
@@ -41,60 +32,18 @@ pub(super) fn fit(map: &RoughnessMap<'_>, (width, height): (usize, usize), wrap:
 }
 
 /// One channel of the whole picture: the square of alpha where it is the roughness, else as stored.
-fn plane_of(map: &RoughnessMap<'_>, channel: usize) -> Vec<f64> {
+fn plane_of(map: &RoughnessMap<'_>, channel: usize) -> Vec<f32> {
     let width = map.image.width();
-    let mut plane = Vec::with_capacity(width * map.image.height());
-    let mut row = vec![0.0; width];
-    for y in 0..map.image.height() {
+    let mut plane = vec![0.0; width * map.image.height()];
+    for (y, row) in plane.chunks_exact_mut(width).enumerate() {
         if channel == map.channel {
-            map.fill_variance(0, y, &mut row);
-            plane.extend(row.iter().map(|variance| 2.0 * f64::from(*variance)));
+            map.fill_variance(0, y, row);
+            row.iter_mut().for_each(|variance| *variance *= 2.0);
         } else {
-            load_channel(map.image, channel, 0, y, &mut row);
-            plane.extend(row.iter().map(|value| f64::from(*value)));
+            load_channel(map.image, channel, 0, y, row);
         }
     }
     plane
-}
-
-/// The texels along one axis that make a texel of the target, from `start` on, with weights that sum to one.
-struct Taps {
-    start: isize,
-    weights: Vec<f64>,
-    source: usize,
-    wrap: Wrap,
-}
-
-impl Taps {
-    /// For texel `index` of `target` texels that cover the same length as `source` texels.
-    fn of(index: usize, target: usize, source: usize, wrap: Wrap) -> Self {
-        let ratio = source as f64 / target as f64;
-        let (start, weights) = if target <= source {
-            let (left, right) = (index as f64 * ratio, (index + 1) as f64 * ratio);
-            // In integers, so that an exact boundary takes no texel with a weight of rounding errors.
-            let (first, end) = (index * source / target, ((index + 1) * source).div_ceil(target));
-            let covered = |texel: usize| right.min((texel + 1) as f64) - left.max(texel as f64);
-            (first as isize, (first..end).map(|texel| covered(texel) / ratio).collect())
-        } else {
-            let centre = (index as f64 + 0.5) * ratio - 0.5;
-            let fraction = centre - centre.floor();
-            (centre.floor() as isize, vec![1.0 - fraction, fraction])
-        };
-        Self { start, weights, source, wrap }
-    }
-
-    fn average(&self, value: impl Fn(usize) -> f64) -> f64 {
-        self.weights.iter().zip(self.start..).map(|(weight, index)| weight * value(self.inside(index))).sum()
-    }
-
-    /// Interpolation reaches at most one texel beyond the edge, where mirroring and clamping agree.
-    fn inside(&self, index: isize) -> usize {
-        let size = self.source as isize;
-        (match self.wrap {
-            Wrap::Repeat => index.rem_euclid(size),
-            Wrap::Clamp | Wrap::Mirror => index.clamp(0, size - 1),
-        }) as usize
-    }
 }
 
 #[cfg(test)]

@@ -4,9 +4,11 @@ mod base;
 mod fit;
 mod height_map;
 mod normal_map;
+mod resize;
 
 pub use base::{BaseRoughness, RoughnessMap, stored_from_variance, variance_from_stored};
 pub(crate) use base::{BaseSource, UseOfBase};
+pub(crate) use resize::resized;
 
 use crate::options::{Kind, SourceOptions};
 use crate::row::{Extra, Row, RowSource, SourceScratch};
