@@ -16,16 +16,19 @@ ALLOWED = {
     "roughcast-gpu": {"roughcast", "roughcast-scene"},
     "roughcast-cli": {"roughcast", "roughcast-io", "roughcast-scene", "roughcast-gpu"},
     "roughcast-py": {"roughcast"},
-    "roughcast-fuzz": {"roughcast", "roughcast-io"},
+    "roughcast-fuzz": {"roughcast", "roughcast-io", "roughcast-testdata"},
+    "roughcast-testdata": set(),
 }
 
-# The same for tests alone: those of crates above the library may also read real files. The library's may not: cargo
+# The same for tests alone. All may find fixtures; those of crates above the library may also read real files. The library's may not: cargo
 # would build it twice, and the types of the two would not fit each other.
 ALLOWED_IN_TESTS = {
     "roughcast-scene": {"roughcast-io"},
     "roughcast-gpu": {"roughcast-io"},
     "roughcast-py": {"roughcast-io"},
 }
+
+FIXTURES = "roughcast-testdata"
 
 # Crates of others that the library may use (tests are free). It is arithmetic on images in memory, and whoever takes it
 # into an engine takes these along.
@@ -42,7 +45,8 @@ def arrow_faults(package, workspace_names):
     for dependency in package["dependencies"]:
         target, in_tests = dependency["name"], dependency["kind"] == "dev"
         if target in workspace_names:
-            allowed = ALLOWED[name] | (ALLOWED_IN_TESTS.get(name, set()) if in_tests else set())
+            in_tests_too = {FIXTURES} | ALLOWED_IN_TESTS.get(name, set())
+            allowed = ALLOWED[name] | (in_tests_too if in_tests else set())
             if target not in allowed:
                 yield f"{name} -> {target}: this arrow is not allowed{' in tests' if in_tests else ''}"
         elif dependency["source"] is None:

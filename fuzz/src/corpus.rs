@@ -11,11 +11,6 @@ pub fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("fuzz/ lies in the repository").to_owned()
 }
 
-/// Broken files of others, which lie beside the repository and need not be there.
-pub fn broken_folder() -> PathBuf {
-    repository().join("../shared/data/broken")
-}
-
 /// Larger files make runs slow without making them more interesting.
 const MAX_BYTES: u64 = 64 * 1024;
 
@@ -30,13 +25,14 @@ pub fn files_of(target: &Target) -> io::Result<Vec<Vec<u8>>> {
     if paths.is_empty() {
         return Err(io::Error::new(io::ErrorKind::NotFound, format!("{} is empty", own.display())));
     }
-    if broken_folder().is_dir() {
-        let concerns = |path: &PathBuf| {
-            let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-            target.extensions.contains(&extension.as_str())
-        };
-        paths.extend(files_in(&broken_folder())?.into_iter().filter(concerns));
-    }
+    let concerns = |path: &PathBuf| {
+        let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let is_small = path.metadata().is_ok_and(|metadata| metadata.len() <= MAX_BYTES);
+        is_small && target.extensions.contains(&extension.as_str())
+    };
+    let broken =
+        roughcast_testdata::files_in("broken").into_iter().map(|file| roughcast_testdata::find(&file));
+    paths.extend(broken.filter(concerns));
     paths.into_iter().map(fs::read).collect()
 }
 

@@ -11,6 +11,7 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use common::{Outcome, PROGRAM, check_all, data, expect_every_file_named, names, scratch, text};
+use roughcast_testdata::rows_with_files;
 
 /// Address space in KiB that a run gets. The program, its threads' stacks and its allocator reserve under 1 GiB of it.
 const MEMORY_KIB: u64 = 2 * 1024 * 1024;
@@ -60,7 +61,7 @@ fn the_table_names_every_file_and_no_other() {
 
 #[test]
 fn every_subcommand_refuses_every_broken_file_in_one_line() {
-    let table: Vec<(&str, Expected)> = table().into_iter().collect();
+    let table = rows_with_files(table(), |row| row.0);
     check_all(&table, |(file, expected)| {
         let input = data(file);
         let folder = scratch();

@@ -4,7 +4,7 @@ mod common;
 
 use std::path::{Path, PathBuf};
 
-use common::{Outcome, data, names, run, scratch, text};
+use common::{Outcome, bare_mesh, data, names, run, scratch, text};
 use serde_json::Value;
 
 /// Small pictures, few samples: seconds, and still enough for LEAN to win.
@@ -148,8 +148,9 @@ fn what_cannot_be_compared_is_refused_in_one_line_and_leaves_nothing() {
     compare_map(&colour, &output, &[]).expect_refusal(1, &colour);
     let missing = folder.path().join("missing.png");
     compare_map(&missing, &output, &[]).expect_refusal(1, &missing);
-    let bunny = data("models/meshes/bunny_decimated_bgfx.obj");
-    compare(&output, &["--scene", text(&bunny)]).expect_refusal(2, &bunny);
+    let bare = bare_mesh(folder.path());
+    compare(&output, &["--scene", text(&bare)]).expect_refusal(2, &bare);
+    std::fs::remove_file(&bare).expect("it is there");
     // A light from below leaves no highlight to compare.
     let dark = compare(&output, &["--views", "far", "--light", "0,-1,0"]);
     assert_eq!(dark.code, Some(1), "{}", dark.stderr);

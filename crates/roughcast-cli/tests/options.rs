@@ -76,8 +76,8 @@ fn block_compression_costs_what_the_report_says() {
 fn packed_occlusion_roughness_and_metalness_become_bc7() {
     let folder = scratch();
     let output = folder.path().join("sphere.ktx2");
-    let packed = data("materials/dxtk_spheremat/SphereMat_occlusionRoughnessMetallic.png");
-    let normals = data("materials/dxtk_spheremat/SphereMat_normal.png");
+    let packed = data("crops/spheremat_orm_256.png");
+    let normals = data("crops/spheremat_normal_256.png");
     let options =
         ["--as", "pbr", "--roughness", text(&packed), "--green", "down", "--compress", "bc", "--json"];
     let report = bake(&normals, &output, &options).expect_success().json();
@@ -195,8 +195,8 @@ const HALF_CODE: f32 = 2.0 / 2048.0 * 2.1;
 
 #[test]
 fn floats_may_hold_either_range_and_pictures_hold_one() {
-    let floats = data("materials/surfgrad_ocean16/normals_half_derived.exr");
-    let picture = data("materials/surfgrad_ocean16/normals.png");
+    let floats = data("crops/ocean_128_half.exr");
+    let picture = data("crops/ocean_128.png");
     let [guessed, unorm, signed] = [vec![], vec!["--range", "unorm"], vec!["--range", "signed"]]
         .map(|options| float_moments(&floats, &[&["--kind", "normal"], &options[..]].concat()));
     assert_eq!(difference(&guessed, &unorm).slope, 0.0, "none of its values is below 0");
@@ -213,7 +213,7 @@ fn floats_may_hold_either_range_and_pictures_hold_one() {
 fn a_map_with_green_down_is_warned_of() {
     let folder = scratch();
     let output = folder.path().join("map.ktx2");
-    let directx = data("materials/rock020/Rock020_1K_Normal.jpg");
+    let directx = data("crops/rock020_normal_256.jpg");
     let options = ["--as", "clean", "--json"];
     let unaware = bake(&directx, &output, &options).expect_success();
     assert!(
@@ -237,8 +237,8 @@ const TEXELS: f64 = 0.05;
 
 #[test]
 fn directx_and_opengl_versions_of_a_material_agree() {
-    let directx = data("materials/dxtk_spheremat/SphereMat_normal.png");
-    let opengl = data("formats/dds/dxtk_SphereMat_normal.DDS");
+    let directx = data("crops/spheremat_normal_256.png");
+    let opengl = data("crops/spheremat_normal_256.dds");
     let down = float_moments(&directx, &["--green", "down", "--max-slope", CUT]);
     let up = float_moments(&opengl, &["--green", "up", "--max-slope", CUT]);
     let wrong = float_moments(&directx, &["--green", "up", "--max-slope", CUT]);

@@ -4,7 +4,7 @@ mod common;
 
 use std::path::{Path, PathBuf};
 
-use common::{Outcome, data, names, run, scratch, text};
+use common::{Outcome, bare_mesh, data, names, run, scratch, text};
 use roughcast::Samples;
 use roughcast_io::{ReadOptions, read_image_file};
 
@@ -22,10 +22,7 @@ fn render_map(map: &Path, output: &Path, further: &[&str]) -> Outcome {
 
 /// A real normal map.
 fn map() -> PathBuf {
-    let folder = data("materials/rock020");
-    let mut files = names(&folder);
-    files.retain(|name| name.to_lowercase().contains("nor"));
-    folder.join(files.first().expect("rock020 has a normal map"))
+    data("crops/rock020_normal_256.jpg")
 }
 
 /// The pixels of a picture in EXR, red, green and blue.
@@ -116,13 +113,13 @@ fn what_cannot_be_rendered_is_refused_in_one_line_and_leaves_nothing() {
     let folder = scratch();
     let output = folder.path().join("picture.png");
     let missing = folder.path().join("missing.obj");
-    let bunny = data("models/meshes/bunny_decimated_bgfx.obj");
+    let bare = bare_mesh(folder.path());
     let cut = folder.path().join("cut.glb");
     let whole = std::fs::read(data("models/BoomBox/boombox.glb")).expect("a model");
     std::fs::write(&cut, &whole[..whole.len() / 2]).expect("a file");
 
     render(&output, &["--scene", text(&missing)]).expect_refusal(1, &missing);
-    let line = render(&output, &["--scene", text(&bunny)]).expect_refusal(2, &bunny);
+    let line = render(&output, &["--scene", text(&bare)]).expect_refusal(2, &bare);
     assert!(line.contains("texture coordinates"), "{line}");
     render(&output, &["--scene", text(&cut)]).expect_refusal(1, &cut);
     let colour = data("models/BoomBox/BoomBox_emissive.png");
@@ -130,6 +127,7 @@ fn what_cannot_be_rendered_is_refused_in_one_line_and_leaves_nothing() {
     let mesh = data("models/meshes/teapot_keijiro.obj");
     render_map(&mesh, &output, &[]).expect_refusal(1, &mesh);
     std::fs::remove_file(&cut).expect("it is there");
+    std::fs::remove_file(&bare).expect("it is there");
     assert!(names(folder.path()).is_empty(), "{:?}", names(folder.path()));
 }
 

@@ -220,7 +220,7 @@ fn names_need_not_be_utf_8() {
 fn results_go_to_stdout_and_the_rest_to_stderr() {
     let folder = scratch();
     let output = folder.path().join("out.ktx2");
-    let directx = data("materials/rock020/Rock020_1K_Normal.jpg");
+    let directx = data("crops/rock020_normal_256.jpg");
     let told = bake(&directx, &output, &["-v"]).expect_success();
     for stream in [&told.stdout, &told.stderr] {
         assert!(!stream.contains(['\u{1b}', '\r']), "escape codes in a pipe: {stream:?}");
@@ -240,7 +240,7 @@ fn results_go_to_stdout_and_the_rest_to_stderr() {
 #[test]
 fn a_reader_that_goes_away_is_no_failure() {
     for stream in ["stdout", "stderr"] {
-        let mut command = command(["info", text(&data("materials/rock020/Rock020_1K_Normal.jpg"))]);
+        let mut command = command(["info", text(&data("crops/rock020_normal_256.jpg"))]);
         let mut child = match stream {
             "stdout" => command.stdout(Stdio::piped()).stderr(Stdio::null()),
             _ => command.stdout(Stdio::null()).stderr(Stdio::piped()),

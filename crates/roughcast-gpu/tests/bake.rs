@@ -224,7 +224,7 @@ fn base_roughness_and_fixed_scales_are_the_cpus_bake() {
 #[test]
 fn real_maps_are_the_cpus_bake() {
     let gpu = gpu();
-    for (path, kind) in REAL_MAPS {
+    for (path, kind) in roughcast_testdata::rows_with_files(REAL_MAPS, |row| row.0) {
         let image = real(path, 300, 252);
         let source = SourceOptions { kind: *kind, ..Default::default() };
         for path in PATHS {

@@ -4,7 +4,8 @@ mod shared_data;
 
 use half::f16;
 use roughcast::{Image, Samples};
-use shared_data::{folder, manifest, must_read};
+use roughcast_testdata::{available, find, is_extended, rows_with_files};
+use shared_data::{manifest, must_read};
 
 /// CRC-32 of all samples of an image, little-endian, row by row: one line a file, `checksum path`.
 /// The head of the file says which decoders made them.
@@ -32,9 +33,9 @@ fn largest_difference(a: &Image, b: &Image) -> f32 {
 fn pixels_are_those_of_other_decoders() {
     let lines: Vec<&str> = CHECKSUMS.lines().filter(|line| !line.starts_with('#')).collect();
     assert!(lines.len() >= 100, "only {} checksums", lines.len());
+    let rows = lines.into_iter().map(|line| line.split_once(' ').expect("a checksum and a path"));
     let mut wrong = Vec::new();
-    for line in lines {
-        let (expected, path) = line.split_once(' ').expect("a checksum and a path");
+    for (expected, path) in rows_with_files(rows, |row| row.1) {
         let got = format!("{:08x}", libdeflater::crc32(&little_endian_bytes(&must_read(path).image)));
         if got != expected {
             wrong.push(format!("{path}: {got}, not {expected}"));
@@ -73,7 +74,7 @@ fn the_same_picture_is_the_same_in_every_file_of_it() {
         ["formats/exr/exrs_u16_f32_piz.exr", "formats/exr/exrs_u16_f32_rle.exr"],
         ["formats/exr/openexr_t01.exr", "formats/exr/openexr_t12.exr"],
     ];
-    for [a, b] in same {
+    for [a, b] in same.into_iter().filter(|pair| pair.iter().all(|path| available(path).is_some())) {
         assert!(must_read(a).image == must_read(b).image, "{a} and {b} differ");
     }
 }
@@ -90,6 +91,8 @@ fn a_transparent_grey_of_four_bits_is_compared_at_its_own_scale() {
 
 #[test]
 fn a_half_float_normal_map_is_its_16_bit_source_rounded() {
+    // Both are too large for the small set.
+    let Some(_) = available("materials/surfgrad_ocean16/normals.png") else { return };
     let source = must_read("materials/surfgrad_ocean16/normals.png").image;
     let half = must_read("materials/surfgrad_ocean16/normals_half_derived.exr").image;
     let rounded: Vec<f16> = floats(&source).into_iter().map(f16::from_f32).collect();
@@ -120,7 +123,8 @@ fn distinct_values(image: &Image, channel: usize) -> usize {
 
 #[test]
 fn heights_keep_all_their_levels() {
-    // The counts are those that the manifest states.
+    // The counts are those that the manifest states. Both are too large for the small set.
+    let Some(_) = available("heights/surfgrad_Dump_u16.tif") else { return };
     assert_eq!(distinct_values(&must_read("heights/surfgrad_Dump_u16.tif").image, 0), 32759);
     let heights = must_read("heights/bgfx_heightmap_f32.exr").image;
     assert_eq!(distinct_values(&heights, 0), 14682);
@@ -140,7 +144,7 @@ fn hdr_maxima_are_those_of_the_manifest() {
         assert!((max - stated).abs() <= 0.005 * stated, "{}: {max}, not {stated}", entry.path);
         checked += 1;
     }
-    assert!(checked >= 5, "only {checked} HDR files");
+    assert!(checked >= if is_extended() { 5 } else { 2 }, "only {checked} HDR files");
 }
 
 #[test]
@@ -154,7 +158,7 @@ fn lossy_and_lossless_files_of_one_picture_agree() {
 
 #[test]
 fn content_wins_over_the_name() {
-    let bytes = std::fs::read(folder().join("formats/png/go_basn2c08.png")).unwrap();
+    let bytes = std::fs::read(find("formats/png/go_basn2c08.png")).unwrap();
     let named_jpg =
         roughcast_io::read_image(&bytes, Some("jpg"), &roughcast_io::ReadOptions::default()).unwrap();
     assert_eq!(named_jpg.info.container, "PNG");

@@ -7,8 +7,6 @@ use std::path::PathBuf;
 use common::Numbers;
 use roughcast_scene::{MAX_FILE_BYTES, MAX_TRIANGLES, Mesh, MeshError, MeshFault, TriangleMesh, load_mesh};
 
-const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data");
-
 /// A file in a folder of this test's own.
 fn file(test: &str, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(test);
@@ -160,7 +158,7 @@ fn nodes_place_and_mirror() {
 
 #[test]
 fn broken_glb_files() {
-    let whole = std::fs::read(format!("{DATA}/models/TwoSidedPlane.glb")).unwrap();
+    let whole = std::fs::read(roughcast_testdata::find("models/TwoSidedPlane.glb")).unwrap();
     for cut in [0, 3, 4, 11, 12, 19, 20, 500, 3000, whole.len() / 2, whole.len() - 1] {
         let path = file("broken_glb", "cut.glb", &whole[..cut]);
         message(load_mesh(&path), &path);
@@ -211,8 +209,8 @@ fn files_beyond_the_limits_are_refused_before_memory_is_taken() {
 
 #[test]
 fn damaged_files_never_panic() {
-    let glb = std::fs::read(format!("{DATA}/models/TwoSidedPlane.glb")).unwrap();
-    let obj = std::fs::read(format!("{DATA}/models/meshes/cube_bgfx.obj")).unwrap();
+    let glb = std::fs::read(roughcast_testdata::find("models/TwoSidedPlane.glb")).unwrap();
+    let obj = std::fs::read(roughcast_testdata::find("models/meshes/cube_bgfx.obj")).unwrap();
     let json = gltf(DATA_URI, |s| s).into_bytes();
     let mut numbers = Numbers(5);
     // The JSON of the .glb is at its beginning; what follows are pictures. Past it the floats of the vertices are hit by the
@@ -246,8 +244,8 @@ fn damaged_files_never_panic() {
 #[test]
 fn foreign_broken_files_get_one_line() {
     let mut count = 0;
-    for entry in std::fs::read_dir(format!("{DATA}/broken")).expect("../shared/data/broken is needed") {
-        let path = entry.unwrap().path();
+    for file in roughcast_testdata::files_in("broken") {
+        let path = roughcast_testdata::find(&file);
         if path.extension().is_some_and(|e| e == "gltf") {
             // None of them has a whole mesh in its scene.
             message(load_mesh(&path), &path);

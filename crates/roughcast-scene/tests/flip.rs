@@ -1,7 +1,5 @@
 //! FLIP against NVIDIA's own, on real pictures.
 
-use std::path::Path;
-
 use roughcast::Image;
 use roughcast_scene::Picture;
 use roughcast_scene::metrics::{DEFAULT_PIXELS_PER_DEGREE, ldr_flip};
@@ -14,9 +12,9 @@ const MEAN_TOLERANCE: f64 = 3e-5;
 /// Side of what is compared of each picture.
 const SIDE: usize = 160;
 
-/// A corner of a picture in the shared data, as sRGB of 8 bits.
+/// A corner of a picture of the test data, as sRGB of 8 bits.
 fn pixels(name: &str, at: (usize, usize)) -> Vec<[u8; 3]> {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")).join(name);
+    let path = roughcast_testdata::find(name);
     let decoded = roughcast_io::read_image_file(&path, &roughcast_io::ReadOptions::default());
     let image: Image = decoded.unwrap_or_else(|e| panic!("{}: {e}", path.display())).image;
     let byte =
@@ -64,10 +62,14 @@ const PICTURES: [&str; 4] = [
     "materials/aluminium_brushed/aluminium_albedo.png",
 ];
 
+fn pictures() -> Vec<&'static str> {
+    roughcast_testdata::rows_with_files(PICTURES, |name| name)
+}
+
 #[test]
 fn real_pictures_have_nvidias_error() {
     let mut means = Vec::new();
-    for name in PICTURES {
+    for name in pictures() {
         let reference = pixels(name, (10, 10));
         let darker: Vec<[u8; 3]> = reference.iter().map(|p| p.map(|c| c - c / 8)).collect();
         let redder: Vec<[u8; 3]> = reference.iter().map(|[r, g, b]| [r.saturating_add(30), *g, *b]).collect();
@@ -77,7 +79,7 @@ fn real_pictures_have_nvidias_error() {
             means.push(compare(&reference, test));
         }
     }
-    for pair in PICTURES.windows(2) {
+    for pair in pictures().windows(2) {
         means.push(compare(&pixels(pair[0], (10, 10)), &pixels(pair[1], (10, 10))));
     }
     // The pairs are neither all alike nor all as different as can be.
@@ -86,7 +88,7 @@ fn real_pictures_have_nvidias_error() {
 
 #[test]
 fn the_comparison_finds_a_wrong_error() {
-    let (reference, test) = (pixels(PICTURES[0], (10, 10)), pixels(PICTURES[0], (11, 10)));
+    let (reference, test) = (pixels(pictures()[0], (10, 10)), pixels(pictures()[0], (11, 10)));
     let theirs = nvidia(&reference, &test);
     let mut wrong = theirs.clone();
     wrong[77] += 2.0 * PIXEL_TOLERANCE;

@@ -5,8 +5,7 @@ mod common;
 use common::{hits, unorthonormality};
 use glam::{DVec2, DVec3, Vec3};
 use roughcast_scene::{Hit, Mesh, Ray, Shape, Sphere, Torus, TriangleMesh, load_mesh};
-
-const MODELS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/models");
+use roughcast_testdata::{available, files_in, find};
 
 /// Every model: file, triangles as its nodes show them, whether it has texture coordinates, whether it has tangents.
 const FILES: &[(&str, usize, bool, bool)] = &[
@@ -30,7 +29,12 @@ const OTHER_HANDED: &[&str] = &["TwoSidedPlane.glb", "portal.glb"];
 const ORTHONORMAL: f64 = 1e-12;
 
 fn model(name: &str) -> Mesh {
-    load_mesh(format!("{MODELS}/{name}")).unwrap_or_else(|error| panic!("{error}"))
+    load_mesh(find(&format!("models/{name}"))).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The models that are there.
+fn files() -> Vec<(&'static str, usize, bool, bool)> {
+    FILES.iter().copied().filter(|row| available(&format!("models/{}", row.0)).is_some()).collect()
 }
 
 fn shape(mesh: Mesh) -> Shape {
@@ -39,25 +43,15 @@ fn shape(mesh: Mesh) -> Shape {
 
 #[test]
 fn the_table_names_every_model() {
-    let mut found = Vec::new();
-    let mut folders = vec![std::path::PathBuf::from(MODELS)];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).expect("../shared/data/models is needed") {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if ["obj", "gltf", "glb"].contains(&path.extension().unwrap().to_str().unwrap()) {
-                found.push(path.strip_prefix(MODELS).unwrap().to_str().unwrap().to_owned());
-            }
-        }
-    }
-    found.sort();
-    assert_eq!(found, FILES.iter().map(|f| f.0).collect::<Vec<_>>());
+    let is_model = |path: &String| ["obj", "gltf", "glb"].iter().any(|ending| path.ends_with(ending));
+    let mut found = files_in("models");
+    found.retain(is_model);
+    assert_eq!(found, files().iter().map(|f| format!("models/{}", f.0)).collect::<Vec<_>>());
 }
 
 #[test]
 fn every_model_loads_and_is_hit() {
-    for &(name, stated, has_uv, _) in FILES {
+    for &(name, stated, has_uv, _) in &files() {
         let mesh = model(name);
         let count = mesh.triangle_count();
         // Triangles without an area are dropped.
@@ -102,7 +96,7 @@ fn agreement_with_uv(hits: &[(Ray, Hit)]) -> f64 {
 
 #[test]
 fn frames_follow_the_texture_coordinates() {
-    for &(name, ..) in FILES.iter().filter(|f| f.2) {
+    for &(name, ..) in files().iter().filter(|f| f.2) {
         // MikkTSpace averages over vertices, so at folds of a map a few points may lean the other way.
         let agreement = agreement_with_uv(&hits(&shape(model(name)), 4_000));
         println!("{name}: {agreement}");
@@ -115,7 +109,7 @@ fn frames_follow_the_texture_coordinates() {
 
 #[test]
 fn tangents_of_files_agree_with_mikktspace() {
-    for &(name, ..) in FILES.iter().filter(|f| f.3) {
+    for &(name, ..) in files().iter().filter(|f| f.3) {
         let given = model(name);
         let bare = TriangleMesh { tangents: Vec::new(), ..given.triangles().clone() };
         let made = shape(Mesh::new(vec![bare]).unwrap());

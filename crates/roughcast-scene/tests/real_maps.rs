@@ -1,6 +1,5 @@
 //! Real normal maps, seen from afar: LEAN against the ordinary way.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use roughcast::shading::{Form, LobeOptions, Material, Shading};
@@ -20,14 +19,14 @@ const MAPS: [(&str, f64); 3] = [
 ];
 
 fn map(name: &str) -> Image {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")).join(name);
+    let path = roughcast_testdata::find(name);
     let decoded = roughcast_io::read_image_file(&path, &roughcast_io::ReadOptions::default());
     decoded.unwrap_or_else(|e| panic!("{}: {e}", path.display())).image
 }
 
 #[test]
 fn lean_is_nearer_to_the_truth_of_real_maps() {
-    for (name, factor) in MAPS {
+    for (name, factor) in roughcast_testdata::rows_with_files(MAPS, |row| row.0) {
         let map = map(name);
         let source = SourceOptions::default();
         let arrays = bake(&map, &source, None, &BakeOptions::default()).unwrap().arrays;

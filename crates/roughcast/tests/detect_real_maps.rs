@@ -1,38 +1,20 @@
 //! The detection of `roughcast::detect` on real maps: what MANIFEST.tsv says of each must be what the pixels
 //! say.
 
-use std::collections::BTreeMap;
-use std::path::PathBuf;
-
 use image::{ColorType, DynamicImage};
 use roughcast::detect::{
     GreenTest, GreenVerdict, KindGuess, guess_channels, guess_kind, guess_range, test_green,
 };
 use roughcast::{Image, Kind, NormalChannels, NormalRange, Samples};
+use roughcast_testdata::{Row, find, is_extended, manifest};
 
 /// Slopes are derived from normals with z no smaller than this.
 const MIN_Z: f32 = 0.02;
 
-/// A row of MANIFEST.tsv, by the names of its columns.
-type Row = BTreeMap<String, String>;
-
-fn data() -> PathBuf {
-    let data = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"));
-    assert!(
-        data.is_dir(),
-        "the shared test data is missing: expected it at ../shared/data beside the repository"
-    );
-    data
-}
-
 /// The rows of MANIFEST.tsv of one kind whose file is an ordinary picture.
 fn rows(kind: &str) -> Vec<Row> {
-    let text = std::fs::read_to_string(data().join("MANIFEST.tsv")).expect("MANIFEST.tsv can be read");
-    let mut lines = text.lines().map(|line| line.split('\t'));
-    let names: Vec<&str> = lines.next().expect("MANIFEST.tsv has a heading").collect();
-    let rows =
-        lines.map(|values| names.iter().zip(values).map(|(n, v)| ((*n).to_owned(), v.to_owned())).collect());
-    rows.filter(|row: &Row| row["kind"] == kind && is_picture(&row["path"])).collect()
+    let rows = manifest().into_iter();
+    rows.filter(|row| row["kind"] == kind && is_picture(&row["path"])).collect()
 }
 
 fn is_picture(path: &str) -> bool {
@@ -42,7 +24,7 @@ fn is_picture(path: &str) -> bool {
 /// The image as stored, and the names of its channels. `None` for the EXR files whose compression or channels
 /// the decoder of these tests does not read.
 fn load(path: &str) -> Option<(Image, Vec<&'static str>)> {
-    let mut reader = image::ImageReader::open(data().join(path)).unwrap_or_else(|e| panic!("{path}: {e}"));
+    let mut reader = image::ImageReader::open(find(path)).unwrap_or_else(|e| panic!("{path}: {e}"));
     reader.no_limits();
     let picture = match reader.decode() {
         Ok(picture) => picture,
@@ -92,9 +74,21 @@ fn guess(path: &str) -> Option<KindGuess> {
     Some(guess_kind(&image, &channels, guess_range(&image)))
 }
 
-/// Checks that every file of a kind is guessed as `expected`, and that at least `fewest` of them could be
-/// read.
-fn assert_kind(kind: &str, expected: Kind, fewest: usize) {
+/// The fewest files that must be read, with the extended corpus and in the small set alone.
+struct Fewest {
+    extended: usize,
+    small: usize,
+}
+
+impl Fewest {
+    fn here(&self) -> usize {
+        if is_extended() { self.extended } else { self.small }
+    }
+}
+
+/// Checks that every file of a kind is guessed as `expected`, and that enough of them could be read.
+fn assert_kind(kind: &str, expected: Kind, fewest: Fewest) {
+    let fewest = fewest.here();
     let guesses: Vec<_> =
         rows(kind).into_iter().filter_map(|row| Some((guess(&row["path"])?, row["path"].clone()))).collect();
     assert!(guesses.len() >= fewest, "only {} files of the kind '{kind}' were read", guesses.len());
@@ -104,21 +98,21 @@ fn assert_kind(kind: &str, expected: Kind, fewest: usize) {
 
 #[test]
 fn normal_maps_are_normals() {
-    assert_kind("normal", Kind::Normal, 41);
+    assert_kind("normal", Kind::Normal, Fewest { extended: 41, small: 16 });
 }
 
 #[test]
 fn height_maps_are_heights() {
-    assert_kind("height", Kind::Height, 20);
+    assert_kind("height", Kind::Height, Fewest { extended: 20, small: 9 });
 }
 
 /// No pixel tells a roughness map from a height map; the guess is the same for both.
 #[test]
 fn grey_maps_of_other_kinds_are_taken_for_heights() {
-    assert_kind("roughness", Kind::Height, 4);
-    assert_kind("ao", Kind::Height, 3);
-    assert_kind("metalness", Kind::Height, 2);
-    assert_kind("albedo (grey)", Kind::Height, 2);
+    assert_kind("roughness", Kind::Height, Fewest { extended: 4, small: 0 });
+    assert_kind("ao", Kind::Height, Fewest { extended: 3, small: 1 });
+    assert_kind("metalness", Kind::Height, Fewest { extended: 2, small: 0 });
+    assert_kind("albedo (grey)", Kind::Height, Fewest { extended: 2, small: 0 });
 }
 
 #[test]
@@ -137,7 +131,10 @@ fn other_pictures_in_colour_are_doubtful() {
         }
         doubtful += 1;
     }
-    assert!(doubtful >= 20, "only {doubtful} pictures in colour were read");
+    assert!(
+        doubtful >= Fewest { extended: 20, small: 3 }.here(),
+        "only {doubtful} pictures in colour were read"
+    );
 }
 
 /// Blue holds z in all of the maps but two: one keeps z there without scale and bias, one 255 nearly
@@ -196,7 +193,8 @@ fn green_is_told_wherever_its_direction_is_known() {
         if row["convention"].contains("measured vs height") { against_height += 1 } else { by_curl += 1 }
     }
     assert!(
-        against_height >= 9 && by_curl >= 29,
+        against_height >= Fewest { extended: 9, small: 4 }.here()
+            && by_curl >= Fewest { extended: 29, small: 11 }.here(),
         "{against_height} and {by_curl} maps with a known direction"
     );
 }
@@ -205,7 +203,7 @@ fn green_is_told_wherever_its_direction_is_known() {
 fn green_is_not_told_where_nothing_is_known() {
     let unknown: Vec<Row> =
         rows("normal").into_iter().filter(|row| stated_direction(row).is_none()).collect();
-    assert_eq!(unknown.len(), 2, "maps without a known direction");
+    assert_eq!(unknown.len(), Fewest { extended: 2, small: 0 }.here(), "maps without a known direction");
     for path in unknown.iter().map(|row| row["path"].as_str()).chain([RED_IS_LOST]) {
         let test = green(path);
         assert_eq!(test.verdict(), GreenVerdict::Undecided, "{path}: {test:?}");

@@ -10,8 +10,8 @@ use roughcast::texture::Layout;
 use roughcast::{Bits, Green, Image, Kind, NormalRange, PyramidFilter, Samples, SourceCounts, SourceOptions};
 
 /// How many maps there are at least; fewer means that the manifest was not understood.
-const NORMAL_MAPS: usize = 35;
-const HEIGHT_MAPS: usize = 12;
+const NORMAL_MAPS: usize = 10;
+const HEIGHT_MAPS: usize = 5;
 
 /// Larger maps are cut to this, so that their levels in f64 take neither much memory nor much time.
 const LARGEST_SIDE: usize = 768;
@@ -64,7 +64,7 @@ fn normal_maps() {
         mended += usize::from(counts.total() > 0);
     }
     // A few maps have normals that point into the surface; most have none.
-    assert!(mended > 0 && mended * 5 < entries.len(), "{mended} of {}", entries.len());
+    assert!(mended > 0 && mended * 3 < entries.len(), "{mended} of {}", entries.len());
 }
 
 #[test]
@@ -106,7 +106,10 @@ fn rms_slopes_are_those_of_the_manifest() {
 /// A map and its twin of the other convention are one map.
 #[test]
 fn both_conventions_of_green_give_the_same_textures() {
-    for path in ["materials/cheese/texture_cheese_normal.png", "materials/surfgrad_ocean16/normals.png"] {
+    for path in [
+        "materials/cheese/texture_cheese_normal.png",
+        "materials/surfgrad_ocean16/normals_64crop_16bit_derived.png",
+    ] {
         let up = real_files::read(path);
         let mut down = up.clone();
         match down.samples_mut() {

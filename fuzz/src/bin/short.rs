@@ -59,12 +59,6 @@ fn options() -> Result<Options, String> {
 }
 
 fn run(options: &Options) -> Result<String, String> {
-    if !corpus::broken_folder().is_dir() {
-        println!(
-            "fuzz: no {}, so only the corpus of the repository is used",
-            corpus::broken_folder().display()
-        );
-    }
     let share = Duration::from_secs_f64(options.seconds / options.targets.len() as f64);
     let mut counts = Vec::new();
     for target in &options.targets {

@@ -11,6 +11,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use roughcast::texture::{MomentLevel, TextureArray, decode};
 use roughcast_io::{Limits, dds, exr, ktx2};
+use roughcast_testdata::available;
 
 /// The program under test.
 pub const PROGRAM: &str = env!("CARGO_BIN_EXE_roughcast");
@@ -104,28 +105,17 @@ pub fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// A file or folder of the shared test data, which lies beside the repository.
+/// A file of the test data.
 #[track_caller]
 pub fn data(name: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data").join(name);
-    assert!(path.exists(), "the test data {} is missing: put it beside the repository", path.display());
-    path
+    roughcast_testdata::find(name)
 }
 
-/// All files of a folder of the test data and of those below, as paths relative to the test data, sorted.
-pub fn data_files(folder: &str) -> Vec<String> {
-    let mut files = Vec::new();
-    for entry in std::fs::read_dir(data(folder)).expect("the folder is readable") {
-        let entry = entry.expect("an entry");
-        let name = format!("{folder}/{}", entry.file_name().to_str().expect("UTF-8"));
-        if entry.file_type().expect("a type").is_dir() {
-            files.extend(data_files(&name));
-        } else {
-            files.push(name);
-        }
-    }
-    files.sort();
-    files
+/// A mesh without texture coordinates, written into a folder.
+pub fn bare_mesh(folder: &Path) -> PathBuf {
+    let path = folder.join("bare.obj");
+    std::fs::write(&path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("space");
+    path
 }
 
 /// Calls `check` for every item, several at a time, and panics with all failures.
@@ -208,9 +198,10 @@ pub fn difference(a: &[MomentLevel], b: &[MomentLevel]) -> Difference {
 /// Panics unless a table of expectations names exactly the files of these folders of the test data.
 #[track_caller]
 pub fn expect_every_file_named<T>(table: &BTreeMap<&'static str, T>, folders: &[&str]) {
-    let files: Vec<String> = folders.iter().flat_map(|folder| data_files(folder)).collect();
+    let files: Vec<String> = folders.iter().flat_map(|folder| roughcast_testdata::files_in(folder)).collect();
     let missing: Vec<_> = files.iter().filter(|file| !table.contains_key(file.as_str())).collect();
-    let gone: Vec<_> = table.keys().filter(|file| !files.iter().any(|other| other == *file)).collect();
+    let gone = |file: &&&str| !files.iter().any(|other| other == **file) && available(file).is_some();
+    let gone: Vec<_> = table.keys().filter(gone).collect();
     assert!(missing.is_empty(), "not in the table: {missing:#?}");
     assert!(gone.is_empty(), "in the table, but not there: {gone:#?}");
 }

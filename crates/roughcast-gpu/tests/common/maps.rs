@@ -56,11 +56,10 @@ pub fn image(width: usize, height: usize, channels: usize, sample_type: SampleTy
     Image::new(width, height, channels, samples).expect("as many values as texels")
 }
 
-/// A part of a real map of the shared data.
+/// A part of a real map of the test data.
 pub fn real(path: &str, width: usize, height: usize) -> Image {
-    let full = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")).join(path);
-    let bytes = std::fs::read(&full)
-        .unwrap_or_else(|error| panic!("the shared test data is not there: {}: {error}", full.display()));
+    let full = roughcast_testdata::find(path);
+    let bytes = std::fs::read(&full).unwrap_or_else(|error| panic!("{}: {error}", full.display()));
     let extension = full.extension().and_then(|extension| extension.to_str());
     let whole = roughcast_io::read_image(&bytes, extension, &Default::default())
         .unwrap_or_else(|error| panic!("{}: {error}", full.display()))

@@ -13,11 +13,9 @@ pub const SIZE: (u32, u32) = (128, 96);
 /// Texels of a map, each way.
 pub const SIDE: usize = 64;
 
-const MODELS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/models");
-
 /// A mesh with texture coordinates, normals and tangents of its own, a hundredth in size.
 pub fn mesh() -> Mesh {
-    load_mesh(format!("{MODELS}/BoomBox/boombox.glb")).expect("../shared/data/models is needed")
+    load_mesh(roughcast_testdata::find("models/BoomBox/boombox.glb")).expect("a mesh")
 }
 
 /// A shape in one of the standard views, whose highlight is in the picture, with a point light beside it.

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::io::Cursor;
-use std::path::PathBuf;
 
 use half::f16;
 use roughcast::texture::{LayerSpec, Layout, Part, Texture, TextureArray, TextureInfo, layers_of};
@@ -265,18 +264,12 @@ fn no_broken_byte_brings_the_reader_down() {
 
 #[test]
 fn broken_exr_files_of_others_are_refused() {
-    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/broken");
-    let entries = std::fs::read_dir(&folder)
-        .unwrap_or_else(|error| panic!("the test data must lie in {}: {error}", folder.display()));
-    let mut count = 0;
-    for entry in entries {
-        let path = entry.expect("a readable folder").path();
-        if path.extension().is_some_and(|extension| extension == "exr") {
-            let bytes = std::fs::read(&path).expect("a readable file");
-            let result = read_textures(&bytes, &Limits::default());
-            assert!(result.is_err(), "{} was taken for a texture of ours", path.display());
-            count += 1;
-        }
+    let mut files = roughcast_testdata::files_in("broken");
+    files.retain(|file| file.ends_with(".exr"));
+    assert!(!files.is_empty(), "there are no broken EXR files");
+    for file in files {
+        let bytes = std::fs::read(roughcast_testdata::find(&file)).expect("a readable file");
+        let result = read_textures(&bytes, &Limits::default());
+        assert!(result.is_err(), "{file} was taken for a texture written by roughcast");
     }
-    assert!(count > 0, "there are no EXR files in {}", folder.display());
 }

@@ -1,66 +1,74 @@
-//! JPEG, by the `zune-jpeg` crate in its strict mode.
+//! JPEG, by the `jpeg-decoder` crate.
 //!
-//! The `image` crate uses the same decoder in its lenient mode, which fills the rest of a damaged file with grey and
-//! reports success: half a normal map would go into the textures unnoticed.
+//! Of the pure Rust decoders it is the one that handles every layout of samples and scans: of 953 files written by libjpeg-turbo
+//! (22 choices of sampling factors, interleaved and other scans, progressive with successive approximation, restart intervals,
+//! odd sizes, grey and RGB) it differs by at most 4 of 255 from libjpeg's pixels in all but 18, and those are the ones that
+//! [`layout::check`] refuses. zune-jpeg 0.5.15, which is 10 % faster, decodes 222 of them wrongly without an error.
+//!
+//! Chroma is interpolated as libjpeg does by default ("fancy upsampling"); what remains is the rounding of the cosine transform.
 
+mod layout;
+
+use std::io::Cursor;
+
+use jpeg_decoder::{Decoder, Error, PixelFormat, UnsupportedFeature};
 use roughcast::{Image, Samples};
-use zune_jpeg::JpegDecoder;
-use zune_jpeg::errors::DecodeErrors;
-use zune_jpeg::zune_core::bytestream::ZCursor;
-use zune_jpeg::zune_core::colorspace::ColorSpace;
-use zune_jpeg::zune_core::options::DecoderOptions;
 
-use super::memory::{check_size, malformed, unsupported, zeros};
+use super::memory::{check_size, malformed, unsupported};
 use crate::{Decoded, FileInfo, Limits, ReadError};
 
 const FORMAT: &str = "JPEG";
+const SAVE_PLAIN: &str = "save it as a baseline or progressive JPEG of 8 bits, or as PNG";
 
 /// Reads a JPEG: grey gives one channel, YCbCr and RGB give three. CMYK is refused.
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
-    // The decoder's own limits are switched off for ours, which count pixels.
-    let options =
-        DecoderOptions::default().set_strict_mode(true).set_max_width(usize::MAX).set_max_height(usize::MAX);
-    let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
-    decoder.decode_headers().map_err(fault)?;
-    let header = decoder.info().ok_or_else(|| malformed(FORMAT, "it has no header"))?;
-    let (width, height) = check_size(FORMAT, header.width.into(), header.height.into(), limits)?;
-
-    let stored = decoder.input_colorspace();
-    let (target, channels, words): (_, &[&str], _) = match stored {
-        Some(ColorSpace::Luma) => (ColorSpace::Luma, &["Y"], "grey 8-bit"),
-        Some(ColorSpace::YCbCr) => (ColorSpace::RGB, &["R", "G", "B"], "YCbCr 8-bit"),
-        Some(ColorSpace::RGB) => (ColorSpace::RGB, &["R", "G", "B"], "RGB 8-bit"),
-        Some(other) => {
-            return Err(unsupported(
-                FORMAT,
-                format_args!("the colour type {other:?}"),
-                "save it as RGB or grey",
-            ));
+    let layout = layout::Layout::of(bytes)?;
+    let (width, height) = check_size(FORMAT, layout.width.into(), layout.height.into(), limits)?;
+    layout.check()?;
+    let mut decoder = Decoder::new(Cursor::new(bytes));
+    // Sizes are checked above, by pixels; the crate's own limit counts bytes.
+    decoder.set_max_decoding_buffer_size(usize::MAX);
+    let samples = decoder.decode().map_err(fault)?;
+    let stored = decoder.info().ok_or_else(|| malformed(FORMAT, "it has no header"))?;
+    let (channels, samples): (&[&str], _) = match stored.pixel_format {
+        PixelFormat::L8 => (&["Y"], Samples::U8(samples)),
+        PixelFormat::RGB24 => (&["R", "G", "B"], Samples::U8(samples)),
+        PixelFormat::L16 => (
+            &["Y"],
+            Samples::U16(samples.as_chunks::<2>().0.iter().map(|b| u16::from_ne_bytes(*b)).collect()),
+        ),
+        PixelFormat::CMYK32 => {
+            return Err(unsupported(FORMAT, "the colour type CMYK", "save it as RGB or grey"));
         }
-        None => return Err(malformed(FORMAT, "it does not say how its colours are stored")),
     };
-    decoder.set_options(options.jpeg_set_out_colorspace(target));
-
-    let mut samples = zeros::<u8>(width * height * channels.len())?;
-    decoder.decode_into(&mut samples).map_err(fault)?;
-    let image =
-        Image::new(width, height, channels.len(), Samples::U8(samples)).map_err(|e| malformed(FORMAT, e))?;
-    let info = FileInfo::of_picture(FORMAT, words.to_owned(), (width, height), channels);
+    let bits = 8 * samples.sample_type().bytes();
+    let words = if channels.len() == 1 { "grey" } else { layout.colour_words() };
+    let image = Image::new(width, height, channels.len(), samples).map_err(|e| malformed(FORMAT, e))?;
+    let info = FileInfo::of_picture(FORMAT, format!("{words} {bits}-bit"), (width, height), channels);
     Ok(Decoded { image, info })
 }
 
-fn fault(error: DecodeErrors) -> ReadError {
+fn fault(error: Error) -> ReadError {
     match error {
-        DecodeErrors::Unsupported(scheme) => unsupported(
-            FORMAT,
-            format_args!("{scheme:?}"),
-            "save it as a baseline or progressive JPEG, or as PNG",
-        ),
-        DecodeErrors::ExhaustedData | DecodeErrors::IoErrors(_) => {
+        Error::Unsupported(feature) => unsupported(FORMAT, feature_words(&feature), SAVE_PLAIN),
+        Error::Io(e) if e.kind() == std::io::ErrorKind::UnexpectedEof => {
             malformed(FORMAT, "the file ends too early")
         }
-        DecodeErrors::Format(fault) => malformed(FORMAT, fault),
-        DecodeErrors::FormatStatic(fault) => malformed(FORMAT, fault.trim_start_matches("[strict-mode]: ")),
-        error => malformed(FORMAT, format_args!("{error:?}")),
+        Error::Io(error) => ReadError::Io(error),
+        Error::Format(fault) => malformed(FORMAT, fault),
+        Error::Internal(fault) => malformed(FORMAT, fault),
+    }
+}
+
+fn feature_words(feature: &UnsupportedFeature) -> String {
+    match feature {
+        UnsupportedFeature::Hierarchical => "hierarchical coding".to_owned(),
+        UnsupportedFeature::ArithmeticEntropyCoding => "arithmetic coding".to_owned(),
+        UnsupportedFeature::SamplePrecision(bits) => format!("a sample of {bits} bits"),
+        UnsupportedFeature::ComponentCount(count) => format!("an image of {count} components"),
+        UnsupportedFeature::DNL => "a height that follows the pixels (DNL)".to_owned(),
+        UnsupportedFeature::SubsamplingRatio => "its combination of sampling factors".to_owned(),
+        UnsupportedFeature::NonIntegerSubsamplingRatio => "its combination of sampling factors".to_owned(),
+        UnsupportedFeature::ColorTransform(transform) => format!("the colour transform {transform:?}"),
     }
 }

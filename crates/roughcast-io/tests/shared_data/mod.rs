@@ -3,9 +3,8 @@
 // Each test binary uses its own part of this module.
 #![allow(dead_code)]
 
-use std::path::{Path, PathBuf};
-
 use roughcast_io::{Decoded, ReadError, ReadOptions, read_image_file};
+use roughcast_testdata::find;
 
 /// A file of the folder, as `MANIFEST.tsv` describes it.
 #[derive(Clone, Debug)]
@@ -22,46 +21,29 @@ pub struct Entry {
     pub details: String,
 }
 
-/// The folder of shared test data.
-///
-/// # Panics
-/// Where it is absent: tests that pass over missing data prove nothing.
-pub fn folder() -> PathBuf {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    assert!(folder.is_dir(), "the test data is missing: no folder {}", folder.display());
-    folder
-}
-
-/// The lines of `MANIFEST.tsv` whose path begins with one of `folders`.
+/// The rows of the manifests whose path begins with one of `folders`.
 pub fn manifest(folders: &[&str]) -> Vec<Entry> {
-    let text = std::fs::read_to_string(folder().join("MANIFEST.tsv")).expect("MANIFEST.tsv can be read");
-    let mut lines = text.lines().map(|line| line.split('\t').collect::<Vec<_>>());
-    let header = lines.next().expect("MANIFEST.tsv has a header");
-    let column = |name: &str| {
-        header.iter().position(|h| *h == name).unwrap_or_else(|| panic!("MANIFEST.tsv has no column {name}"))
-    };
-    let [path, resolution, bit_depth, channels, details] =
-        ["path", "resolution", "bit_depth", "channels", "format_details"].map(column);
-    let entries: Vec<Entry> = lines
-        .map(|line| Entry {
-            path: line[path].to_owned(),
-            resolution: line[resolution].to_owned(),
-            bit_depth: line[bit_depth].to_owned(),
-            channels: line[channels].to_owned(),
-            details: line[details].to_owned(),
+    let entries: Vec<Entry> = roughcast_testdata::manifest()
+        .into_iter()
+        .map(|row| Entry {
+            path: row["path"].clone(),
+            resolution: row["resolution"].clone(),
+            bit_depth: row["bit_depth"].clone(),
+            channels: row["channels"].clone(),
+            details: row["format_details"].clone(),
         })
         .filter(|entry| folders.iter().any(|folder| entry.path.starts_with(&format!("{folder}/"))))
         .collect();
-    assert!(!entries.is_empty(), "MANIFEST.tsv lists nothing in {folders:?}");
+    assert!(!entries.is_empty(), "the manifests list nothing in {folders:?}");
     entries
 }
 
-/// Reads a file of the folder.
+/// Reads a file of the test data.
 pub fn read(path: &str) -> Result<Decoded, ReadError> {
-    read_image_file(&folder().join(path), &ReadOptions::default())
+    read_image_file(&find(path), &ReadOptions::default())
 }
 
-/// Reads a file of the folder that must be readable.
+/// Reads a file of the test data that must be readable.
 pub fn must_read(path: &str) -> Decoded {
     read(path).unwrap_or_else(|error| panic!("{path}: {error}"))
 }

@@ -2,8 +2,9 @@
 
 use roughcast::{Image, Samples};
 use roughcast_io::{Limits, ValueRange, dds};
+use roughcast_testdata::available;
 
-use crate::support::{bytes_of, data_folder, decoded, floats};
+use crate::support::{bytes_of, decoded, floats};
 
 /// Mean and largest difference of the first `channels` channels.
 fn difference(a: &Image, b: &Image, channels: usize) -> (f64, f64) {
@@ -24,35 +25,39 @@ const TRANSCODED_MAX: f64 = 0.15;
 
 #[test]
 fn one_normal_map_in_seven_formats() {
-    let truth = decoded("formats/ktx2/khr_s_normal_rgba8_mips.ktx2").image;
+    let reference = decoded("formats/ktx2/khr_s_normal_rgb8_mips_zstd.ktx2").image;
     let cases = [
         ("rg16_mips", 2, WIDENED, WIDENED),
-        ("rgb8_mips_zstd", 3, 0.0, 0.0),
+        ("rgba8_mips", 3, 0.0, 0.0),
         ("rgba16_mips_zstd", 4, WIDENED, WIDENED),
         ("bc5_mips", 2, TRANSCODED_MEAN, TRANSCODED_MAX),
         ("bc7_mips", 3, TRANSCODED_MEAN, TRANSCODED_MAX),
         ("bc7_mips_zlib", 3, TRANSCODED_MEAN, TRANSCODED_MAX),
     ];
+    let path = |name| format!("formats/ktx2/khr_s_normal_{name}.ktx2");
     for (name, channels, mean_allowed, max_allowed) in cases {
-        let image = decoded(&format!("formats/ktx2/khr_s_normal_{name}.ktx2")).image;
-        let (mean, max) = difference(&truth, &image, channels);
+        if available(&path(name)).is_none() {
+            continue;
+        }
+        let image = decoded(&path(name)).image;
+        let (mean, max) = difference(&reference, &image, channels);
         println!("{name}: mean {mean:.6}, max {max:.6}");
         assert!(mean <= mean_allowed && max <= max_allowed, "{name}: mean {mean}, max {max}");
     }
-    let turned = roughcast::Image::new(512, 512, 4, reversed(truth.samples())).unwrap();
+    let turned = roughcast::Image::new(512, 512, 3, reversed(reference.samples())).unwrap();
     assert!(
-        difference(&truth, &turned, 3).0 > TRANSCODED_MEAN,
+        difference(&reference, &turned, 3).0 > TRANSCODED_MEAN,
         "the comparison would notice a turned picture"
     );
 }
 
 fn reversed(samples: &Samples) -> Samples {
     let Samples::U8(v) = samples else { panic!("8 bits") };
-    Samples::U8(v.chunks_exact(4).rev().flatten().copied().collect())
+    Samples::U8(v.chunks_exact(3).rev().flatten().copied().collect())
 }
 
 fn png_rgb8(path: &str) -> Image {
-    let file = std::fs::File::open(data_folder().join(path)).unwrap();
+    let file = std::fs::File::open(roughcast_testdata::find(path)).unwrap();
     let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().unwrap();
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
     let frame = reader.next_frame(&mut pixels).unwrap();
@@ -65,8 +70,8 @@ const SPHERE_MEAN: f64 = 1.0 / 255.0;
 
 #[test]
 fn a_bc5_file_is_the_png_with_green_turned_over() {
-    let blocks = decoded("formats/dds/dxtk_SphereMat_normal.DDS").image;
-    let png = png_rgb8("materials/dxtk_spheremat/SphereMat_normal.png");
+    let blocks = decoded("crops/spheremat_normal_256.dds").image;
+    let png = png_rgb8("crops/spheremat_normal_256.png");
     let Samples::U8(rgb) = png.samples() else { panic!("8 bits") };
     let turned = rgb.chunks_exact(3).flat_map(|t| [t[0], 255 - t[1]]).collect();
     let turned = Image::new(png.width(), png.height(), 2, Samples::U8(turned)).unwrap();
@@ -78,8 +83,8 @@ fn a_bc5_file_is_the_png_with_green_turned_over() {
 
 #[test]
 fn bc1_is_its_png() {
-    let blocks = decoded("formats/dds/dxtk_SphereMat_occlusionRoughnessMetallic.DDS").image;
-    let png = png_rgb8("materials/dxtk_spheremat/SphereMat_occlusionRoughnessMetallic.png");
+    let blocks = decoded("crops/spheremat_orm_256.dds").image;
+    let png = png_rgb8("crops/spheremat_orm_256.png");
     let (mean, max) = difference(&png, &blocks, 3);
     println!("mean {mean:.6}, max {max:.6}");
     assert!(mean < SPHERE_MEAN, "mean {mean}");

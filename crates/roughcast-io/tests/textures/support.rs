@@ -1,37 +1,20 @@
 //! What several of these tests need.
 
-use std::path::PathBuf;
-
 use half::f16;
 use roughcast::texture::{Layout, Part, Texture, TextureArray, TextureInfo};
 use roughcast::{Image, SampleType, Samples};
 use roughcast_io::{Decoded, Limits, Payload, ReadError, Supercompression};
-
-/// The folder of real files. Its absence is a failure, not a reason to skip.
-pub fn data_folder() -> PathBuf {
-    let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"));
-    assert!(
-        folder.join("MANIFEST.tsv").is_file(),
-        "the test files are missing: no {}/MANIFEST.tsv",
-        folder.display()
-    );
-    folder
-}
+use roughcast_testdata::{files_in, find};
 
 pub fn bytes_of(path: &str) -> Vec<u8> {
-    let path = data_folder().join(path);
+    let path = find(path);
     std::fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// Names of the files of a folder, sorted; at least one.
+/// Names of the files of a folder of the test data, sorted; at least one.
 pub fn names_in(folder: &str) -> Vec<String> {
-    let path = data_folder().join(folder);
-    let entries = std::fs::read_dir(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    let name = |entry: std::io::Result<std::fs::DirEntry>| entry.unwrap().file_name().into_string().unwrap();
-    let mut names: Vec<String> = entries.map(name).collect();
-    names.sort();
-    assert!(!names.is_empty(), "{} is empty", path.display());
-    names
+    let name = |path: String| path.rsplit('/').next().expect("a name").to_owned();
+    files_in(folder).into_iter().map(name).collect()
 }
 
 /// Reads by extension.

@@ -1,6 +1,4 @@
-//! The real maps of the shared data, by their manifest.
-
-use std::path::PathBuf;
+//! The real maps of the test data, by their manifests.
 
 use image::DynamicImage;
 use roughcast::{Image, Samples};
@@ -16,37 +14,25 @@ pub struct Entry {
     pub slope_rms: Option<f64>,
 }
 
-fn folder() -> PathBuf {
-    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"))
-}
-
 /// The manifest's entries of a kind whose files this crate's tests can read.
 pub fn entries(kind: &str) -> Vec<Entry> {
-    let path = folder().join("MANIFEST.tsv");
-    let text = std::fs::read_to_string(&path)
-        .unwrap_or_else(|error| panic!("the shared test data is not there: {}: {error}", path.display()));
-    let mut lines = text.lines().map(|line| line.split('\t').collect::<Vec<_>>());
-    let header = lines.next().expect("the manifest has a header");
-    let column =
-        |name: &str| header.iter().position(|h| *h == name).unwrap_or_else(|| panic!("no column {name}"));
-    let (path, kinds) = (column("path"), column("kind"));
-    let (convention, slope_rms) = (column("convention"), column("slope_rms"));
     let readable = |path: &str| ["png", "jpg", "webp"].iter().any(|end| path.ends_with(&format!(".{end}")));
     let in_scope = |path: &str| path.starts_with("materials/") || path.starts_with("heights/");
-    lines
-        .filter(|fields| fields[kinds] == kind && in_scope(fields[path]) && readable(fields[path]))
-        .map(|fields| Entry {
-            path: fields[path].to_owned(),
-            kind: fields[kinds].to_owned(),
-            convention: fields[convention].to_owned(),
-            slope_rms: fields[slope_rms].parse().ok(),
+    roughcast_testdata::manifest()
+        .into_iter()
+        .filter(|row| row["kind"] == kind && in_scope(&row["path"]) && readable(&row["path"]))
+        .map(|row| Entry {
+            path: row["path"].clone(),
+            kind: row["kind"].clone(),
+            convention: row["convention"].clone(),
+            slope_rms: row["slope_rms"].parse().ok(),
         })
         .collect()
 }
 
-/// Reads a file of the shared data.
+/// Reads a file of the test data.
 pub fn read(path: &str) -> Image {
-    let full = folder().join(path);
+    let full = roughcast_testdata::find(path);
     let picture = image::open(&full).unwrap_or_else(|error| panic!("{}: {error}", full.display()));
     let (width, height) = (picture.width() as usize, picture.height() as usize);
     let channels = usize::from(picture.color().channel_count());
@@ -63,7 +49,7 @@ pub fn read(path: &str) -> Image {
     Image::new(width, height, channels, samples).expect("the decoder gives what it says")
 }
 
-/// Reads a file of the shared data, of which at most so many columns and rows from the top left are kept.
+/// Reads a file of the test data, of which at most so many columns and rows from the top left are kept.
 pub fn read_part(path: &str, largest_side: usize) -> Image {
     let image = read(path);
     let (width, height) = (image.width().min(largest_side), image.height().min(largest_side));
