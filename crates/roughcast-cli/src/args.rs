@@ -45,6 +45,14 @@ pub struct SourceArgs {
     #[arg(long, value_name = "KIND", value_parser = one_of::<Kind>())]
     pub kind: Option<Kind>,
 
+    /// Channels to read, by name and in the order x, y, z; one for a height [default: those whose names leave no doubt]
+    #[arg(long, value_name = "NAME[,NAME...]", value_delimiter = ',')]
+    pub channels: Vec<String>,
+
+    /// Layer or part of an EXR to read, by name: ViewLayer.Normal, N [default: the one that leaves no doubt]
+    #[arg(long, value_name = "NAME")]
+    pub layer: Option<String>,
+
     /// Which way green points in a normal map: up is OpenGL and glTF, down is DirectX
     #[arg(long, default_value = "up", value_parser = one_of::<Green>())]
     pub green: Green,
@@ -91,7 +99,7 @@ impl SourceArgs {
 
     /// How the file is read.
     pub fn read_options(&self) -> ReadOptions {
-        self.limits().into()
+        ReadOptions { limits: self.limits(), layer: self.layer.clone(), channels: self.channels.clone() }
     }
 
     /// The library's options, once the pixels have decided what was left open.

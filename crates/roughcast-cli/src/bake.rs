@@ -25,7 +25,7 @@ use crate::{UsageError, usage};
 
 /// Turn a normal or height map into textures whose mip levels keep the bumps as roughness.
 ///
-/// The extension of the output says the format: .ktx2 or .dds, both ready for a GPU; .exr, tiled, half or float; or .png,
+/// The extension of the output says the format: .ktx2 or .dds, both ready for a GPU; .exr or .tx, a tiled EXR, half or float; or .png,
 /// one picture a level (NAME.L0.png, NAME.L1.png ...). A layout of several files writes NAME.PART.ext. With a folder as
 /// input, every map in it is baked into the output folder, and a bad file does not stop the others.
 #[derive(clap::Args)]
@@ -158,7 +158,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if args.output.is_dir() {
         return Err(usage(
             &args.output,
-            "it is a folder; name the file to write, with .ktx2, .dds, .exr or .png at its end",
+            "it is a folder; name the file to write, with .ktx2, .dds, .exr, .tx or .png at its end",
         ));
     }
     if args.format.is_some() || args.jobs.is_some() {
@@ -211,7 +211,7 @@ pub fn bake_file(input: &Path, output: &Path, args: &Args, stages: &mut Stages) 
     let inputs: Vec<&Path> = [Some(input), args.roughness.file()].into_iter().flatten().collect();
     let output_options = OutputOptions { supercompression, wrap: source.wrap, inputs: &inputs };
     let files = output::write(output, &stored, output_options)?;
-    for leftover in leftover_parts(output, options.layout, &files)? {
+    for leftover in leftover_parts(output, options.layout, &files) {
         warnings.push(format!(
             "{} is left from an earlier bake and does not belong to these files: remove it",
             leftover.display()

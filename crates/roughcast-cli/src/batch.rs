@@ -16,8 +16,10 @@ use crate::report::FileReport;
 use crate::{complain, one_line, say_json, usage};
 
 /// Extensions of the files that are tried.
-const EXTENSIONS: [&str; 14] =
-    ["png", "jpg", "jpeg", "tga", "bmp", "webp", "tif", "tiff", "hdr", "exr", "ktx2", "dds", "rgbe", "pic"];
+const EXTENSIONS: [&str; 15] = [
+    "png", "jpg", "jpeg", "tga", "bmp", "webp", "tif", "tiff", "hdr", "exr", "ktx2", "dds", "rgbe", "pic",
+    "tx",
+];
 
 /// Most jobs at the same time that nobody asked for: each holds a whole map in memory.
 const DEFAULT_JOBS: usize = 4;

@@ -11,7 +11,7 @@ use roughcast_io::{Decoded, FileInfo};
 use serde_json::{Map as JsonMap, Value, json};
 
 use crate::args::{REPORT, SourceArgs};
-use crate::input::{image_of, layout_named_in, map_of};
+use crate::input::{image_of, layout_named_in, map_of, with_options};
 use crate::{say, say_json, textures, warn};
 
 /// Show what a file holds: size, format, levels, layout, scale, value ranges, and the slopes of each level.
@@ -57,12 +57,12 @@ fn look_at(args: &Args) -> Result<Findings> {
     match textures::read_bytes(&bytes, &limits) {
         Ok(array) => {
             drop(bytes);
-            findings.describe(&picture?.info);
+            findings.describe(&picture.map_err(with_options)?.info);
             findings.textures(args, array);
         }
         Err(fault) => {
             drop(bytes);
-            let picture = picture?;
+            let picture = picture.map_err(with_options)?;
             if layout_named_in(&picture.info).is_some() {
                 warn(
                     &args.file,

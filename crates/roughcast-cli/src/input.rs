@@ -25,7 +25,19 @@ pub struct Map {
 
 /// Reads an image file. The error names the path.
 pub fn read_image(path: &Path, options: &ReadOptions) -> Result<Decoded> {
-    roughcast_io::read_image_file(path, options).with_context(|| path.display().to_string())
+    roughcast_io::read_image_file(path, options)
+        .map_err(with_options)
+        .with_context(|| path.display().to_string())
+}
+
+/// Adds the options that answer what a reader asks.
+pub fn with_options(error: ReadError) -> anyhow::Error {
+    match error {
+        ReadError::OpenChannels { .. } | ReadError::NoSuchChannel { .. } => {
+            anyhow!("{error}: say --layer NAME or --channels NAME[,NAME...]")
+        }
+        error => error.into(),
+    }
 }
 
 /// Reads the bytes of an image file; the path's extension helps where they leave the format open.

@@ -1,6 +1,7 @@
 //! Writing what was baked: one file for each of a layout's parts, all of them or none.
 
 use std::collections::BTreeMap;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
@@ -41,10 +42,12 @@ impl Container {
     /// The container that a path's extension names.
     pub fn of(path: &Path) -> Result<Self> {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+        // OpenImageIO's extension for a texture of any format; with float texels and levels it is a tiled EXR.
+        let extension = if extension == "tx" { "exr" } else { extension.as_str() };
         Self::all().iter().copied().find(|container| container.name() == extension).ok_or_else(|| {
             usage(
                 path,
-                "the extension of the output says the format: end its name in .ktx2, .dds, .exr or .png",
+                "the extension of the output says the format: end its name in .ktx2, .dds, .exr, .tx or .png",
             )
         })
     }
@@ -115,7 +118,7 @@ pub struct OutputOptions<'a> {
 pub fn check_destination(path: &Path, container: Container, first: Part) -> Result<()> {
     let target = match container {
         Container::Png => path.with_extension("L0.png"),
-        _ => part_path(path, first, container),
+        _ => part_path(path, first),
     };
     // Creating the temporary file finds whatever is wrong; it vanishes when dropped.
     AtomicFile::create(&target).map(drop).with_context(|| target.display().to_string())
@@ -131,7 +134,7 @@ pub fn write(path: &Path, stored: &[Stored], options: OutputOptions<'_>) -> Resu
     let container = Container::of(path)?;
     let mut files = Files { set: AtomicSet::new(), written: Vec::new(), inputs: options.inputs };
     for part in stored {
-        let target = part_path(path, part.part(), container);
+        let target = part_path(path, part.part());
         match (container, part) {
             (Container::Png, Stored::Texels(array)) => write_png(&mut files, &target, array)?,
             (Container::Exr, Stored::Texels(array)) => {
@@ -196,11 +199,14 @@ fn write_png(files: &mut Files<'_>, path: &Path, array: &TextureArray) -> Result
 }
 
 /// The path of a part: the path itself for a layout of one file, else `NAME.PART.ext`.
-pub fn part_path(path: &Path, part: Part, container: Container) -> PathBuf {
-    match part {
-        Part::Whole | Part::Split => path.to_owned(),
-        part => path.with_extension(format!("{}.{}", part.name(), container.name())),
+pub fn part_path(path: &Path, part: Part) -> PathBuf {
+    if matches!(part, Part::Whole | Part::Split) {
+        return path.to_owned();
     }
+    let mut extension = OsString::from(part.name());
+    extension.push(".");
+    extension.push(path.extension().unwrap_or_default());
+    path.with_extension(extension)
 }
 
 /// OpenImageIO's words for what lies beyond the edge.

@@ -6,7 +6,7 @@ use anyhow::{Context, Result, anyhow};
 use clap::Args;
 use roughcast::texture::{Base, Brdf, RoughnessStored};
 use roughcast::{BaseRoughness, Image, RoughnessMap, RoughnessTexture, variance_from_stored};
-use roughcast_io::{Decoded, Limits};
+use roughcast_io::{Decoded, FileInfo, Limits, ReadError, ReadOptions};
 
 use crate::UsageError;
 use crate::args::{one_of, positive};
@@ -25,8 +25,9 @@ pub struct RoughnessArgs {
     #[arg(long, value_name = "FILE|VALUE")]
     pub roughness: Option<String>,
 
-    /// Channel of the picture that holds roughness: r, g, b or a [default: g in colour, the only one in grey]
-    #[arg(long, value_name = "CHANNEL", value_parser = ["r", "g", "b", "a"], requires = "roughness")]
+    /// Channel of the picture that contains the roughness, by name: r, g, b, a, or any channel of an EXR [default: g in
+    /// colour, the only one in grey]
+    #[arg(long, value_name = "CHANNEL", requires = "roughness")]
     pub roughness_channel: Option<String>,
 
     /// How roughness is stored, in the picture and in what pbr writes: perceptual is what glTF and most tools paint, alpha
@@ -85,6 +86,13 @@ fn is_grey(image: &Image) -> bool {
     })
 }
 
+/// The place of a channel of this name. The only channel of a grey picture is its red as well.
+fn channel_of(info: &FileInfo, name: &str) -> Option<usize> {
+    let is_grey = info.channels.len() == 1 && info.channels[0] == "Y";
+    let place = info.channels.iter().position(|channel| channel.eq_ignore_ascii_case(name));
+    place.or_else(|| (is_grey && name.eq_ignore_ascii_case("r")).then_some(0))
+}
+
 impl RoughnessArgs {
     /// How roughness is stored where nothing was said.
     pub fn stored(&self) -> RoughnessStored {
@@ -124,21 +132,30 @@ impl RoughnessArgs {
         Ok(Roughness::Variance(variance_from_stored(value, stored)))
     }
 
+    /// The picture, or of it the channel that was named where the picture as such does not have it: a layer of an EXR may.
+    fn read(&self, path: &Path, limits: &Limits) -> Result<Decoded> {
+        let whole = ReadOptions::from(*limits);
+        let Some(name) = &self.roughness_channel else { return read_image(path, &whole) };
+        match roughcast_io::read_image_file(path, &whole) {
+            Ok(decoded) if channel_of(&decoded.info, name).is_some() => Ok(decoded),
+            Ok(_) | Err(ReadError::OpenChannels { .. }) => {
+                let named = ReadOptions { channels: vec![name.clone()], ..whole };
+                roughcast_io::read_image_file(path, &named)
+                    .map_err(|error| anyhow!("{error}: name one of these with --roughness-channel"))
+                    .with_context(|| path.display().to_string())
+            }
+            Err(error) => Err(error).with_context(|| path.display().to_string()),
+        }
+    }
+
     fn map(&self, path: &Path, limits: &Limits) -> Result<Roughness> {
-        let Decoded { image, info } = read_image(path, &(*limits).into())?;
+        let Decoded { image, info } = self.read(path, limits)?;
         refuse_baked(&info).with_context(|| path.display().to_string())?;
-        let channel = match self.roughness_channel.as_deref() {
-            Some(name) => "rgba".find(name).expect("the parser lets only these through"),
+        let channel = match &self.roughness_channel {
+            Some(name) => channel_of(&info, name).unwrap_or(0),
             None if image.channels() >= 3 => 1,
             None => 0,
         };
-        if channel >= image.channels() {
-            return Err(anyhow!(
-                "it has {} channels, and --roughness-channel asks for another one",
-                image.channels()
-            ))
-            .with_context(|| path.display().to_string());
-        }
         Ok(Roughness::Map { image, channel, stored: self.stored() })
     }
 }

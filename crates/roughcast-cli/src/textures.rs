@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use roughcast::texture::{Layout, Part, TextureArray};
 use roughcast_io::{Limits, ReadError, dds, exr, ktx2};
 
-use crate::output::{Container, part_path};
+use crate::output::part_path;
 
 /// Reads a file that we wrote. The error names the path.
 fn read(path: &Path, limits: &Limits) -> Result<TextureArray> {
@@ -41,10 +41,9 @@ pub fn with_other_parts(path: &Path, first: TextureArray, limits: &Limits) -> Re
         return Ok(arrays);
     }
     let whole = whole_path(path, part);
-    let container = Container::of(path)?;
     let has_a_name = |other: Part| !matches!(other, Part::Whole | Part::Split);
     for other in layout.parts().iter().filter(|other| **other != part && has_a_name(**other)) {
-        let beside = part_path(&whole, *other, container);
+        let beside = part_path(&whole, *other);
         if beside.exists() {
             let array = read(&beside, limits)?;
             check_set(path, &arrays[0], &beside, &array)?;
@@ -67,10 +66,9 @@ fn check_set(path: &Path, first: &TextureArray, beside: &Path, other: &TextureAr
 }
 
 /// The files that would be taken for parts of this output, but are left from an earlier bake.
-pub fn leftover_parts(output: &Path, layout: Layout, written: &[PathBuf]) -> Result<Vec<PathBuf>> {
-    let container = Container::of(output)?;
-    let paths = layout.parts().iter().map(|part| part_path(output, *part, container));
-    Ok(paths.filter(|path| path != output && !written.contains(path) && path.exists()).collect())
+pub fn leftover_parts(output: &Path, layout: Layout, written: &[PathBuf]) -> Vec<PathBuf> {
+    let paths = layout.parts().iter().map(|part| part_path(output, *part));
+    paths.filter(|path| path != output && !written.contains(path) && path.exists()).collect()
 }
 
 /// `NAME.ext` of `NAME.PART.ext`; a file that was renamed stays what it is, and its other parts are not found.

@@ -40,6 +40,24 @@ pub enum ReadError {
         /// [`crate::Limits::max_pixels`].
         max_pixels: u64,
     },
+    /// The names of the channels leave open which of them to read.
+    #[error("{format}: the names of its channels leave open which to read: {contents}")]
+    OpenChannels {
+        /// The container.
+        format: &'static str,
+        /// The layers, and in brackets their channels.
+        contents: String,
+    },
+    /// A layer or channel was asked for that is not there, or is there several times.
+    #[error("{format}: it has no layer or channel '{wanted}', or several: {contents}")]
+    NoSuchChannel {
+        /// The container.
+        format: &'static str,
+        /// What was asked for.
+        wanted: String,
+        /// The layers, and in brackets their channels.
+        contents: String,
+    },
     /// A texture file without, or with unreadable, roughcast metadata.
     #[error(transparent)]
     Info(#[from] roughcast::texture::InfoError),

@@ -92,7 +92,7 @@ fn every_lossless_layout_gives_the_same_pixels() {
 }
 
 #[test]
-fn the_first_of_several_parts_is_read() {
+fn each_of_several_parts_is_read_by_its_name() {
     let tiled = Encoding {
         compression: Compression::ZIP16,
         blocks: Blocks::Tiles(Vec2(16, 16)),
@@ -101,10 +101,13 @@ fn the_first_of_several_parts_is_read() {
     let first = layer(&["R", "G"], tiled);
     let second = layer(&["X", "Y", "Z"], Encoding::FAST_LOSSLESS);
     let file = write(vec![first, second], Vec2(3, -4));
-    let decoded = read(&file).unwrap();
-    assert_eq!(decoded.info.channels, ["R", "G"]);
-    assert_eq!(decoded.info.metadata["name"], "R-G");
-    assert_pixels(&decoded, 2, "first part");
+    for (name, channels) in [("R-G", &["R", "G"][..]), ("X-Y-Z", &["X", "Y", "Z"])] {
+        let options = ReadOptions { layer: Some(name.to_owned()), ..ReadOptions::default() };
+        let decoded = read_image(&file, None, &options).unwrap();
+        assert_eq!(decoded.info.channels, channels);
+        assert_eq!(decoded.info.metadata["name"], name);
+        assert_pixels(&decoded, channels.len(), name);
+    }
 }
 
 #[test]

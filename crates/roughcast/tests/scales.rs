@@ -234,7 +234,6 @@ fn no_advice_is_given_where_it_would_not_help() {
 #[test]
 fn combinations_that_make_no_sense_are_refused() {
     let (image, source) = maps::plain_normal_map(8, 6, 56);
-    let other_size = maps::image(8, 5, 1, Samples::U8(vec![9; 40]));
     let two_channels = maps::image(8, 6, 2, Samples::U8(vec![9; 96]));
     let three_channels = maps::image(8, 6, 3, Samples::U8(vec![9; 144]));
     let map = |image, channel| {
@@ -277,7 +276,6 @@ fn combinations_that_make_no_sense_are_refused() {
         ),
         ("finite and not negative", &image, source, Some(BaseRoughness::Variance(-1.0)), plain),
         ("finite and not negative", &image, source, Some(BaseRoughness::Variance(f32::NAN)), plain),
-        ("resize", &image, source, map(&other_size, 0), plain),
         ("4 channels or more", &image, source, map(&three_channels, 3), plain),
         ("3 channels or more", &two_channels, source, None, plain),
         (

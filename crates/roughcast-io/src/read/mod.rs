@@ -4,6 +4,7 @@
 //! its extension.
 
 mod bmp_webp_tga;
+mod choice;
 mod exr;
 mod hdr;
 mod jpeg;
@@ -37,6 +38,9 @@ enum Format {
 /// range), 16-bit ones `U16`, half floats `F16`, floats and doubles `F32`. Grey stays one channel, named `Y`; colour
 /// profiles and gamma are ignored, since these files hold data, not colours.
 ///
+/// EXR may contain many layers and channels: [`ReadOptions::layer`] and [`ReadOptions::channels`] choose. Of the other formats,
+/// which have no layers, channels are chosen by their names in [`crate::FileInfo::channels`].
+///
 /// `extension`, in lower case and without the dot, only decides for TGA files without a footer: all other formats are
 /// known by their first bytes.
 ///
@@ -49,7 +53,7 @@ pub fn read_image(
     options: &ReadOptions,
 ) -> Result<Decoded, ReadError> {
     let limits = &options.limits;
-    match format_of(bytes, extension)? {
+    let decoded = match format_of(bytes, extension)? {
         Format::Png => png::read(bytes, limits),
         Format::Jpeg => jpeg::read(bytes, limits),
         Format::Tga => bmp_webp_tga::read_tga(bytes, limits),
@@ -57,10 +61,11 @@ pub fn read_image(
         Format::WebP => bmp_webp_tga::read_webp(bytes, limits),
         Format::Tiff => tiff::read(bytes, limits),
         Format::Hdr => hdr::read(bytes, limits),
-        Format::Exr => exr::read(bytes, options),
+        Format::Exr => return exr::read(bytes, options),
         Format::Ktx2 => crate::ktx2::read_image(bytes, limits),
         Format::Dds => crate::dds::read_image(bytes, limits),
-    }
+    }?;
+    choice::chosen(decoded, options)
 }
 
 /// Reads level 0 of layer 0 of an image file, by [`read_image`].

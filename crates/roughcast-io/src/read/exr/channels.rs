@@ -1,27 +1,38 @@
 //! Which channels of an EXR are read, and in which order.
 
 use exr::math::Vec2;
-use exr::meta::attribute::{ChannelDescription, ChannelList, SampleType as ExrSample};
+use exr::meta::MetaData;
+use exr::meta::attribute::{ChannelDescription, SampleType as ExrSample};
+use exr::meta::header::Header;
 use roughcast::SampleType;
 
 use super::super::memory::{malformed, unsupported};
 use super::FORMAT;
-use crate::ReadError;
+use super::names::{Choice, choose};
+use crate::{ReadError, ReadOptions};
 
 /// Channels of one image. OpenImageIO's bump slopes have six.
 const MAX_CHANNELS: usize = 16;
 /// Channels of one file. Renderers write some two hundred; each costs time for every block.
 const MAX_STORED_CHANNELS: usize = 1024;
+/// Layers that a question lists.
+const MAX_LISTED: usize = 24;
+/// The first of the six channels of OpenImageIO's and RenderMan's bump slopes, which belong together.
+const FIRST_BUMP_SLOPE: &str = "b0_h";
 
 /// The channels that become the image.
 #[derive(Debug)]
 pub(super) struct Selection {
+    /// The part that they belong to.
+    pub(super) part: usize,
     /// In the order of the image.
     pub(super) channels: Vec<SelectedChannel>,
     /// Half where all of them are halves, else float.
     pub(super) sample_type: SampleType,
     /// The layer that they belong to, where the file has no channels without one.
     pub(super) layer: Option<String>,
+    /// What else the file contains, in words, where nobody chose.
+    pub(super) left_out: Option<String>,
 }
 
 /// One channel of the file that becomes one of the image.
@@ -35,49 +46,15 @@ pub(super) struct SelectedChannel {
     pub(super) bytes_before: usize,
 }
 
-/// Chooses the channels of the image.
-///
-/// Channels without a layer win over those of layers, of which only the first is read. Among them red, green and blue
-/// make R, G, B with A where there is one; so do any of these four alone; else X, Y, Z in this order, or Y with A; else
-/// all channels in alphabetical order, which is the file's.
-///
-/// # Errors
-/// [`ReadError::Unsupported`]: luminance with chroma, subsampled channels, integers, more than 16 channels.
-pub(super) fn select(list: &ChannelList) -> Result<Selection, ReadError> {
-    let stored = &list.list;
-    if stored.is_empty() {
-        return Err(malformed(FORMAT, "it has no channels"));
-    }
-    if stored.len() > MAX_STORED_CHANNELS {
-        let what = format!("a file of {} channels", stored.len());
-        return Err(unsupported(FORMAT, what, "save the channels that are meant to a file of their own"));
-    }
-    let (layer, candidates) = first_layer(list);
-    let has = |name: &str| candidates.iter().any(|candidate| candidate.is(name));
-    if has("RY") || has("BY") {
-        return Err(unsupported(FORMAT, "luminance with chroma", "save it as RGB"));
-    }
-    // Every block holds every channel: one that is subsampled moves all that follow it.
-    if stored.iter().any(|channel| channel.sampling != Vec2(1, 1)) {
-        return Err(unsupported(FORMAT, "a subsampled channel", "save all channels in full size"));
-    }
-    let chosen = order(candidates);
-    if chosen.len() > MAX_CHANNELS {
-        let what = format!("an image of {} channels", chosen.len());
-        return Err(unsupported(
-            FORMAT,
-            what,
-            "save the channels that are meant, at most 16, to a file of their own",
-        ));
-    }
-    let channels: Vec<SelectedChannel> =
-        chosen.into_iter().map(Candidate::selected).collect::<Result<_, _>>()?;
-    let all_half = channels.iter().all(|channel| channel.stored == SampleType::F16);
-    let sample_type = if all_half { SampleType::F16 } else { SampleType::F32 };
-    Ok(Selection { channels, sample_type, layer })
+/// The channels of one layer of one part.
+struct Group<'a> {
+    part: usize,
+    /// As users call it: the part's name, the layer's, or both; empty for channels without any.
+    name: String,
+    channels: Vec<Candidate<'a>>,
 }
 
-/// A channel of the layer that is read.
+/// A channel of the file.
 struct Candidate<'a> {
     /// Its name without the layer.
     name: String,
@@ -85,12 +62,195 @@ struct Candidate<'a> {
     bytes_before: usize,
 }
 
-impl Candidate<'_> {
-    fn is(&self, name: &str) -> bool {
-        self.name.eq_ignore_ascii_case(name)
+/// Chooses the channels of the image: those that `options` name, or those that the names leave no doubt about.
+///
+/// Channels without a layer win over those of layers; of several layers one must be chosen, unless only one has anything to
+/// read. `keep_all` takes all channels of the first part as they are.
+///
+/// # Errors
+/// [`ReadError::Unsupported`]: luminance with chroma, subsampled channels, integers, more than 16 channels.
+/// [`ReadError::OpenChannels`] and [`ReadError::NoSuchChannel`], which list what the file contains.
+pub(super) fn select(meta: &MetaData, options: &ReadOptions, keep_all: bool) -> Result<Selection, ReadError> {
+    let groups = groups(meta)?;
+    if !options.channels.is_empty() {
+        return named(&groups, options);
     }
+    if let Some(layer) = &options.layer {
+        let group = layer_of(&groups, layer)?;
+        return clear(group, choice_of(group)).ok_or_else(|| open(&groups))?;
+    }
+    if keep_all || groups[0].channels[0].name == FIRST_BUMP_SLOPE {
+        return selection(
+            &groups[0],
+            (0..groups[0].channels.len()).map(|i| (i, groups[0].channels[i].name.clone())).collect(),
+        );
+    }
+    let choices: Vec<(&Group<'_>, Choice)> = groups.iter().map(|group| (group, choice_of(group))).collect();
+    let promising: Vec<&(&Group<'_>, Choice)> =
+        choices.iter().filter(|(_, choice)| *choice != Choice::Nothing).collect();
+    // Of one part alone, channels without a layer are the picture, and layers what a renderer computed beside it.
+    let one_part = groups.iter().all(|group| group.part == groups[0].part);
+    let bare = promising.iter().find(|(group, _)| one_part && group.name.is_empty());
+    let (group, choice) = match (bare, &promising[..]) {
+        (Some(bare), _) => bare,
+        (None, [only]) => only,
+        _ => return Err(open(&groups)),
+    };
+    let mut selection = clear(group, choice.clone()).ok_or_else(|| open(&groups))??;
+    let others: Vec<&Group<'_>> = groups.iter().filter(|other| other.name != group.name).collect();
+    selection.left_out = (!others.is_empty()).then(|| listed(others.into_iter()));
+    Ok(selection)
+}
 
-    fn selected(self) -> Result<SelectedChannel, ReadError> {
+/// The layers of all flat parts, in the order of the file.
+fn groups(meta: &MetaData) -> Result<Vec<Group<'_>>, ReadError> {
+    let flat: Vec<(usize, &Header)> =
+        meta.headers.iter().enumerate().filter(|(_, header)| !header.deep).collect();
+    if flat.is_empty() {
+        return Err(unsupported(FORMAT, "deep data", "flatten it first"));
+    }
+    let several_parts = meta.headers.len() > 1;
+    let mut groups: Vec<Group<'_>> = Vec::new();
+    for (part, header) in flat {
+        let stored = &header.channels.list;
+        if stored.len() > MAX_STORED_CHANNELS {
+            let what = format!("a file of {} channels", stored.len());
+            return Err(unsupported(FORMAT, what, "save the channels that are meant to a file of their own"));
+        }
+        let part_name = header.own_attributes.layer_name.as_ref().map(super::text).filter(|_| several_parts);
+        for (bytes_before, channel) in header.channels.channels_with_byte_offset() {
+            let full = super::text(&channel.name);
+            let (layer, name) = match full.rsplit_once('.') {
+                Some((layer, name)) => (layer.to_owned(), name.to_owned()),
+                None => (String::new(), full),
+            };
+            let name_of_group = group_name(part_name.as_deref(), &layer, several_parts.then_some(part));
+            let candidate = Candidate { name, channel, bytes_before };
+            match groups.iter_mut().find(|group| group.part == part && group.name == name_of_group) {
+                Some(group) => group.channels.push(candidate),
+                None => groups.push(Group { part, name: name_of_group, channels: vec![candidate] }),
+            }
+        }
+    }
+    if groups.is_empty() { Err(malformed(FORMAT, "it has no channels")) } else { Ok(groups) }
+}
+
+/// `part.layer`, but `layer` where the part has the same name, as Nuke and Blender write it; parts without a name are known
+/// by their number.
+fn group_name(part_name: Option<&str>, layer: &str, part: Option<usize>) -> String {
+    let part_name = part_name.map(str::to_owned).or_else(|| part.map(|number| number.to_string()));
+    match part_name {
+        None => layer.to_owned(),
+        Some(part) if layer.is_empty() || layer == part => part,
+        Some(part) if layer.starts_with(&format!("{part}.")) => layer.to_owned(),
+        Some(part) => format!("{part}.{layer}"),
+    }
+}
+
+fn choice_of(group: &Group<'_>) -> Choice {
+    let names: Vec<&str> = group.channels.iter().map(|candidate| candidate.name.as_str()).collect();
+    choose(&names)
+}
+
+/// The selection that a clear choice makes; `None` where it is not clear.
+fn clear(group: &Group<'_>, choice: Choice) -> Option<Result<Selection, ReadError>> {
+    match choice {
+        Choice::Clear(chosen) => Some(selection(group, chosen)),
+        Choice::Nothing | Choice::Open => None,
+    }
+}
+
+/// The layer of this name, the last part of its name, or the part of this number.
+fn layer_of<'g, 'a>(groups: &'g [Group<'a>], wanted: &str) -> Result<&'g Group<'a>, ReadError> {
+    let by = |test: &dyn Fn(&Group<'_>) -> bool| {
+        let found: Vec<&Group<'a>> = groups.iter().filter(|group| test(group)).collect();
+        if let [one] = found[..] { Some(one) } else { None }
+    };
+    let last = |group: &Group<'_>| group.name.rsplit('.').next().unwrap_or_default().to_owned();
+    by(&|group| group.name == wanted)
+        .or_else(|| by(&|group| group.name.eq_ignore_ascii_case(wanted)))
+        .or_else(|| by(&|group| last(group).eq_ignore_ascii_case(wanted)))
+        .or_else(|| by(&|group| wanted.parse() == Ok(group.part)))
+        .ok_or_else(|| missing(groups, wanted))
+}
+
+/// The channels that the options name, in that order.
+fn named(groups: &[Group<'_>], options: &ReadOptions) -> Result<Selection, ReadError> {
+    let within: Vec<&Group<'_>> = match &options.layer {
+        Some(layer) => vec![layer_of(groups, layer)?],
+        None => groups.iter().collect(),
+    };
+    let mut chosen: Vec<(&Group<'_>, usize)> = Vec::new();
+    for wanted in &options.channels {
+        let full = |group: &Group<'_>, name: &str| {
+            if group.name.is_empty() { name.to_owned() } else { format!("{}.{name}", group.name) }
+        };
+        let all = || within.iter().flat_map(|group| (0..group.channels.len()).map(move |i| (*group, i)));
+        let by = |test: &dyn Fn(&Group<'_>, &str) -> bool| {
+            let found: Vec<_> = all().filter(|(group, i)| test(group, &group.channels[*i].name)).collect();
+            if let [one] = found[..] { Some(one) } else { None }
+        };
+        let found = by(&|group, name| full(group, name) == *wanted)
+            .or_else(|| by(&|group, name| full(group, name).eq_ignore_ascii_case(wanted)))
+            .or_else(|| by(&|_, name| name == wanted))
+            .or_else(|| by(&|_, name| name.eq_ignore_ascii_case(wanted)));
+        chosen.push(found.ok_or_else(|| missing(groups, wanted))?);
+    }
+    let part = chosen[0].0.part;
+    if chosen.iter().any(|(group, _)| group.part != part) {
+        return Err(unsupported(
+            FORMAT,
+            "an image made of channels of several parts",
+            "choose channels of one part",
+        ));
+    }
+    let channels = chosen.iter().map(|(group, i)| {
+        let candidate = &group.channels[*i];
+        // Whoever names a channel means its values, also those of an alpha.
+        let name = if candidate.name.eq_ignore_ascii_case("A") { "alpha" } else { &candidate.name };
+        candidate.selected(name)
+    });
+    of_channels(part, channels.collect::<Result<_, _>>()?, Some(chosen[0].0.name.clone()))
+}
+
+fn selection(group: &Group<'_>, chosen: Vec<(usize, String)>) -> Result<Selection, ReadError> {
+    let has = |name: &str| group.channels.iter().any(|channel| channel.name.eq_ignore_ascii_case(name));
+    if has("RY") || has("BY") {
+        return Err(unsupported(FORMAT, "luminance with chroma", "save it as RGB"));
+    }
+    let channels = chosen.into_iter().map(|(place, name)| group.channels[place].selected(&name));
+    of_channels(group.part, channels.collect::<Result<_, _>>()?, Some(group.name.clone()))
+}
+
+fn of_channels(
+    part: usize,
+    channels: Vec<SelectedChannel>,
+    layer: Option<String>,
+) -> Result<Selection, ReadError> {
+    if channels.len() > MAX_CHANNELS {
+        let what = format!("an image of {} channels", channels.len());
+        return Err(unsupported(
+            FORMAT,
+            what,
+            "save the channels that are meant, at most 16, to a file of their own",
+        ));
+    }
+    let all_half = channels.iter().all(|channel| channel.stored == SampleType::F16);
+    let sample_type = if all_half { SampleType::F16 } else { SampleType::F32 };
+    let layer = layer.filter(|name| !name.is_empty());
+    Ok(Selection { part, channels, sample_type, layer, left_out: None })
+}
+
+/// Every block holds every channel: one that is subsampled moves all that follow it.
+pub(super) fn check_sampling(header: &Header) -> Result<(), ReadError> {
+    if header.channels.list.iter().any(|channel| channel.sampling != Vec2(1, 1)) {
+        return Err(unsupported(FORMAT, "a subsampled channel", "save all channels in full size"));
+    }
+    Ok(())
+}
+
+impl Candidate<'_> {
+    fn selected(&self, name: &str) -> Result<SelectedChannel, ReadError> {
         let stored = match self.channel.sample_type {
             ExrSample::F16 => SampleType::F16,
             ExrSample::F32 => SampleType::F32,
@@ -99,122 +259,48 @@ impl Candidate<'_> {
                 return Err(unsupported(FORMAT, what, "save it as half or float"));
             }
         };
-        Ok(SelectedChannel { name: self.name, stored, bytes_before: self.bytes_before })
+        Ok(SelectedChannel { name: name.to_owned(), stored, bytes_before: self.bytes_before })
     }
 }
 
-/// The channels without a layer, or those of the layer that comes first, and its name.
-fn first_layer(list: &ChannelList) -> (Option<String>, Vec<Candidate<'_>>) {
-    let split = |channel: &ChannelDescription| -> (Option<String>, String) {
-        let name = super::text(&channel.name);
-        match name.rsplit_once('.') {
-            Some((layer, name)) => (Some(layer.to_owned()), name.to_owned()),
-            None => (None, name),
-        }
-    };
-    let layers: Vec<(Option<String>, String)> = list.list.iter().map(split).collect();
-    let wanted = if layers.iter().any(|(layer, _)| layer.is_none()) { None } else { layers[0].0.clone() };
-    let candidates = list.channels_with_byte_offset().zip(layers).filter(|(_, (layer, _))| *layer == wanted);
-    let candidates = candidates
-        .map(|((bytes_before, channel), (_, name))| Candidate { name, channel, bytes_before })
-        .collect();
-    (wanted, candidates)
+fn open(groups: &[Group<'_>]) -> ReadError {
+    ReadError::OpenChannels { format: FORMAT, contents: listed(groups.iter()) }
 }
 
-/// The candidates that are read, in the order of the image. Well-known names come out in capitals.
-fn order(mut candidates: Vec<Candidate<'_>>) -> Vec<Candidate<'_>> {
-    const COLOUR: &[&str] = &["R", "G", "B", "A"];
-    const POSITION: &[&str] = &["X", "Y", "Z"];
-    const LUMINANCE: &[&str] = &["Y", "A"];
-    let has = |name: &&str| candidates.iter().any(|candidate| candidate.is(name));
-    let only =
-        |names: &[&str]| candidates.iter().all(|candidate| names.iter().any(|name| candidate.is(name)));
+fn missing(groups: &[Group<'_>], wanted: &str) -> ReadError {
+    ReadError::NoSuchChannel { format: FORMAT, wanted: wanted.to_owned(), contents: listed(groups.iter()) }
+}
 
-    let names = if COLOUR[..3].iter().all(has) || only(COLOUR) {
-        COLOUR
-    } else if POSITION.iter().all(has) {
-        POSITION
-    } else if only(LUMINANCE) {
-        LUMINANCE
-    } else {
-        return candidates;
-    };
-    let mut ordered = Vec::new();
-    for name in names {
-        if let Some(i) = candidates.iter().position(|candidate| candidate.is(name)) {
-            let candidate = candidates.swap_remove(i);
-            ordered.push(Candidate { name: (*name).to_owned(), ..candidate });
+/// Layers with their channels, in words: `Depth (Z), Normal (X, Y, Z)`.
+fn listed<'g, 'a: 'g>(groups: impl Iterator<Item = &'g Group<'a>>) -> String {
+    let words = |group: &Group<'_>| {
+        let names: Vec<&str> = group.channels.iter().map(|channel| channel.name.as_str()).collect();
+        if group.name.is_empty() {
+            names.join(", ")
+        } else {
+            format!("{} ({})", group.name, names.join(", "))
         }
+    };
+    let mut all: Vec<String> = groups.map(words).collect();
+    if all.len() > MAX_LISTED {
+        let more = all.len() - MAX_LISTED;
+        all.truncate(MAX_LISTED);
+        all.push(format!("{more} more"));
     }
-    ordered
+    all.join("; ")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn list(names: &[&str]) -> ChannelList {
-        let half = |name: &&str| ChannelDescription::named(*name, ExrSample::F16);
-        ChannelList::new(names.iter().map(half).collect())
-    }
-
-    fn names(stored: &[&str]) -> Vec<String> {
-        select(&list(stored)).unwrap().channels.into_iter().map(|channel| channel.name).collect()
-    }
-
     #[test]
-    fn well_known_names_have_their_own_order() {
-        assert_eq!(names(&["A", "B", "G", "R"]), ["R", "G", "B", "A"]);
-        assert_eq!(names(&["B", "G", "R", "Y", "Z"]), ["R", "G", "B"]);
-        assert_eq!(names(&["b", "g", "r"]), ["R", "G", "B"]);
-        assert_eq!(names(&["G", "R"]), ["R", "G"]);
-        assert_eq!(names(&["X", "Y", "Z", "w"]), ["X", "Y", "Z"]);
-        assert_eq!(names(&["A", "Y"]), ["Y", "A"]);
-    }
-
-    #[test]
-    fn other_names_stay_as_the_file_has_them() {
-        let slopes = ["b0_h", "b1_dhds", "b2_dhdt", "b3_dhds2", "b4_dhdt2", "b5_dh2dsdt"];
-        assert_eq!(names(&slopes), slopes);
-        assert_eq!(names(&["A", "height"]), ["A", "height"]);
-    }
-
-    #[test]
-    fn channels_without_a_layer_win() {
-        assert_eq!(names(&["R", "diffuse.B", "diffuse.G", "diffuse.R"]), ["R"]);
-        let layered = select(&list(&["n.X", "n.Y", "n.Z", "p.X", "p.Y", "p.Z"])).unwrap();
-        assert_eq!(layered.layer.as_deref(), Some("n"));
-        assert_eq!(layered.channels.len(), 3);
-    }
-
-    #[test]
-    fn a_channel_knows_the_bytes_before_it() {
-        let red = ChannelDescription::named("R", ExrSample::F32);
-        let mut list = list(&["A", "B", "G"]);
-        list.list.push(red);
-        let selection = select(&ChannelList::new(list.list)).unwrap();
-        let bytes: Vec<usize> = selection.channels.iter().map(|channel| channel.bytes_before).collect();
-        assert_eq!(bytes, [6, 4, 2, 0]);
-        assert_eq!(selection.sample_type, SampleType::F32);
-    }
-
-    #[test]
-    fn refusals_name_the_reason() {
-        let many: Vec<String> = (0..17).map(|i| format!("c{i:02}")).collect();
-        let many: Vec<&str> = many.iter().map(String::as_str).collect();
-        let mut subsampled = list(&["R"]);
-        subsampled.list[0].sampling = Vec2(2, 2);
-        let integer =
-            ChannelList::new([ChannelDescription::named("Z", ExrSample::U32)].into_iter().collect());
-        let cases = [
-            (list(&["BY", "RY", "Y"]), "luminance with chroma"),
-            (list(&many), "17 channels"),
-            (subsampled, "subsampled"),
-            (integer, "integer channel Z"),
-        ];
-        for (channels, reason) in cases {
-            let error = select(&channels).unwrap_err().to_string();
-            assert!(error.contains(reason), "{error}");
-        }
+    fn groups_are_called_as_users_know_them() {
+        assert_eq!(group_name(None, "ViewLayer.Normal", None), "ViewLayer.Normal");
+        assert_eq!(group_name(Some("N"), "", Some(1)), "N");
+        assert_eq!(group_name(Some("N"), "N", Some(1)), "N");
+        assert_eq!(group_name(Some("View"), "View.Normal", Some(0)), "View.Normal");
+        assert_eq!(group_name(Some("beauty"), "diffuse", Some(0)), "beauty.diffuse");
+        assert_eq!(group_name(None, "", Some(2)), "2");
     }
 }

@@ -1,4 +1,4 @@
-//! OpenEXR: scan lines and tiles, level 0 of mip and rip maps, the first flat part of several.
+//! OpenEXR: scan lines and tiles, level 0 of mip and rip maps, any flat part of several.
 //!
 //! The `exr` crate reads the header and undoes the compression. The way from one to the other, that is, which block
 //! lies where in the file and where its rows belong in the image, is taken here, since the crate's own way allocates by
@@ -7,6 +7,8 @@
 mod blocks;
 mod channels;
 mod dwa;
+mod names;
+mod window;
 
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -18,58 +20,60 @@ use exr::meta::{BlockDescription, MetaData, compute_level_count};
 use roughcast::{Image, SampleType, Samples};
 
 use self::channels::Selection;
-use super::memory::{check_size, malformed, unsupported, zeros};
+use self::window::Windows;
+use super::memory::{malformed, unsupported, zeros};
 use crate::metadata::insert;
 use crate::{Decoded, FileInfo, ReadError, ReadOptions, ValueRange};
 
 const FORMAT: &str = "EXR";
 /// The compressions numbered 10 and above came after those that are read here.
 const FIRST_UNKNOWN_COMPRESSION: u8 = 10;
+/// The key by which a file says that roughcast wrote it.
+const LAYOUT_KEY: &str = "roughcast.layout";
 const SAVE_AS_ZIP: &str = "save it with ZIP compression";
 
-/// Reads the first flat part of an EXR: the pixels of its data window, at level 0.
+/// Reads level 0 of an EXR: the pixels of its display window, of the channels that [`channels::select`] chooses.
 ///
-/// Channels come in the order that [`channels::select`] gives; halves stay halves unless a channel beside them is a
+/// Halves stay halves unless a channel beside them is a
 /// float. Unsigned integers are refused, for they name objects, and a float would round them. Text attributes become
 /// metadata. `FileInfo::levels` of a rip map counts the levels along its longer side.
 pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<Decoded, ReadError> {
     let mut input = Cursor::new(bytes);
     let meta = MetaData::read_from_buffered(&mut input, false).map_err(|e| header_fault(bytes, e))?;
     let tables_start = input.position();
-    let part = meta
-        .headers
-        .iter()
-        .position(|header| !header.deep)
-        .ok_or_else(|| unsupported(FORMAT, "deep data", "flatten it first"))?;
-    let header = &meta.headers[part];
-    let (width, height) = check_size(
-        FORMAT,
-        header.layer_size.width() as u64,
-        header.layer_size.height() as u64,
-        &options.limits,
-    )?;
+    // The layers of a baked texture belong together, whatever they are called.
+    let is_baked = meta.headers.iter().any(|header| text_pairs(header).contains_key(LAYOUT_KEY));
+    let selection = channels::select(&meta, options, is_baked)?;
+    let header = &meta.headers[selection.part];
+    let windows = Windows::of(header, &options.limits)?;
+    channels::check_sampling(header)?;
     if matches!(header.compression, Compression::HTJ2K32 | Compression::HTJ2K256) {
         return Err(unsupported(FORMAT, "HTJ2K compression", SAVE_AS_ZIP));
     }
-    let selection = channels::select(&header.channels)?;
-    let source = blocks::Source::locate(bytes, tables_start, &meta, part)?;
+    let source = blocks::Source::locate(bytes, tables_start, &meta, selection.part)?;
 
-    let len = width * height * selection.channels.len();
+    let channels = selection.channels.len();
+    let (columns, rows) = windows.data_size();
+    let len = columns * rows * channels;
     let samples = match selection.sample_type {
         SampleType::F16 => {
             let mut samples = zeros(len)?;
             source.read_into(&selection, &mut samples)?;
-            Samples::F16(samples)
+            Samples::F16(windows.placed(samples, channels)?)
         }
         _ => {
             let mut samples = zeros(len)?;
             source.read_into(&selection, &mut samples)?;
-            Samples::F32(samples)
+            Samples::F32(windows.placed(samples, channels)?)
         }
     };
-    let channels = selection.channels.len();
+    let (width, height) = windows.size();
     let image = Image::new(width, height, channels, samples).map_err(|e| malformed(FORMAT, e))?;
-    Ok(Decoded { info: file_info(header, &selection, (width, height)), image })
+    let left_out =
+        selection.left_out.as_ref().map(|others| format!("its other layers are left out: {others}"));
+    let warnings = windows.warning().into_iter().chain(left_out).collect();
+    let info = FileInfo { warnings, ..file_info(header, &selection, (width, height)) };
+    Ok(Decoded { info, image })
 }
 
 fn file_info(header: &Header, selection: &Selection, (width, height): (usize, usize)) -> FileInfo {

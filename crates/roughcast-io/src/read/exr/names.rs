@@ -1,0 +1,158 @@
+//! What the names of an EXR's channels say: which of them are components of a vector, a height, or neither.
+//!
+//! A name may begin with that of a layer: `ViewLayer.Normal.X` is channel `X` of the layer `ViewLayer.Normal`. Case does not
+//! count. The words are those of renderers and painters: OpenImageIO (which also knows `red`), Houdini (`height`, `mask`),
+//! Blender (`Depth.Z`), Arnold and others (`N.x`, `Nx`).
+
+/// Names of the first, second and third component of a vector or colour, set by set; earlier sets win.
+const VECTORS: [[&str; 3]; 5] = [
+    ["R", "G", "B"],
+    ["red", "green", "blue"],
+    ["X", "Y", "Z"],
+    ["Nx", "Ny", "Nz"],
+    ["normalX", "normalY", "normalZ"],
+];
+
+/// Names of the components of a normal without its z, beside the first two of each of [`VECTORS`].
+const PAIRS: [[&str; 2]; 1] = [["U", "V"]];
+
+/// Names of a height.
+const HEIGHTS: [&str; 9] =
+    ["height", "displacement", "disp", "elevation", "bump", "heightmap", "depth", "Z", "Y"];
+
+/// Names of coverage, which is beside the point of any map.
+const ALPHAS: [&str; 9] = ["A", "alpha", "opacity", "coverage", "RA", "GA", "BA", "AR", "AG"];
+
+/// Words in the names of selections and identifiers, which are neither heights nor components.
+const ASIDE: [&str; 8] = ["mask", "matte", "crypto", "id", "index", "debris", "water", "sediment"];
+
+/// The channels of one layer that make an image, by their places in the list of names.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Choice {
+    /// These, under these names.
+    Clear(Vec<(usize, String)>),
+    /// None: coverage, masks and identifiers alone.
+    Nothing,
+    /// Several, and the names do not say which.
+    Open,
+}
+
+/// Chooses among the names of one layer, without the layer's own.
+pub(super) fn choose(names: &[&str]) -> Choice {
+    let place = |wanted: &str| {
+        let exact = names.iter().position(|name| *name == wanted);
+        exact.or_else(|| names.iter().position(|name| name.eq_ignore_ascii_case(wanted)))
+    };
+    for (set, vector) in VECTORS.iter().enumerate() {
+        if let Some(places) = all_of(vector, place) {
+            // OpenImageIO calls them R, G and B as well.
+            let called: &[&str; 3] = if set == 1 { &VECTORS[0] } else { vector };
+            let mut chosen: Vec<_> =
+                places.into_iter().zip(called.iter().map(|&name| name.to_owned())).collect();
+            let alpha = ["A", "alpha"].iter().find_map(|name| place(name));
+            chosen.extend(alpha.filter(|_| set < 2).map(|place| (place, "A".to_owned())));
+            return Choice::Clear(chosen);
+        }
+    }
+    if let Some(choice) = luminance(names, place) {
+        return choice;
+    }
+    let heights: Vec<usize> = HEIGHTS.iter().filter_map(|name| place(name)).collect();
+    let pairs = VECTORS.iter().map(|[a, b, _]| [*a, *b]).chain(PAIRS);
+    let pairs: Vec<[usize; 2]> = pairs.filter_map(|[a, b]| Some([place(a)?, place(b)?])).collect();
+    // A Y beside an X is no luminance.
+    let heights: Vec<usize> =
+        heights.into_iter().filter(|height| !pairs.iter().any(|pair| pair.contains(height))).collect();
+    let keep = |places: &[usize]| Choice::Clear(places.iter().map(|&i| (i, names[i].to_owned())).collect());
+    match (&pairs[..], &heights[..]) {
+        ([pair], []) => return keep(pair),
+        ([], [height]) => return keep(&[*height]),
+        ([], []) => {}
+        _ => return Choice::Open,
+    }
+    let rest: Vec<usize> = (0..names.len()).filter(|&i| !is_aside(names[i])).collect();
+    match rest[..] {
+        [] => Choice::Nothing,
+        [one] => keep(&[one]),
+        _ => Choice::Open,
+    }
+}
+
+/// Grey, alone or with its coverage.
+fn luminance(names: &[&str], place: impl Fn(&str) -> Option<usize>) -> Option<Choice> {
+    let grey = place("Y")?;
+    let alone = names.len() == 1;
+    let alpha = place("A").filter(|_| names.len() == 2);
+    (alone || alpha.is_some()).then(|| {
+        let alpha = alpha.map(|place| (place, "A".to_owned()));
+        Choice::Clear([Some((grey, "Y".to_owned())), alpha].into_iter().flatten().collect())
+    })
+}
+
+fn all_of<const N: usize>(wanted: &[&str; N], place: impl Fn(&str) -> Option<usize>) -> Option<[usize; N]> {
+    let places = wanted.map(place);
+    places.iter().all(Option::is_some).then(|| places.map(|place| place.expect("all are there")))
+}
+
+/// Whether a channel is coverage, a mask or an identifier.
+fn is_aside(name: &str) -> bool {
+    let lower = name.to_ascii_lowercase();
+    let is_word = |word: &&str| {
+        lower == **word
+            || lower.ends_with(&format!("_{word}"))
+            || (word.len() > 3 && lower.starts_with(*word))
+    };
+    // `objectId` and `instanceID`: an identifier's name ends in these letters with a capital.
+    let is_id = name.ends_with("Id") || name.ends_with("ID");
+    ALPHAS.iter().any(|alpha| alpha.eq_ignore_ascii_case(name)) || ASIDE.iter().any(is_word) || is_id
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chosen(names: &[&str]) -> Vec<String> {
+        match choose(names) {
+            Choice::Clear(chosen) => {
+                chosen.into_iter().map(|(place, name)| format!("{}={name}", names[place])).collect()
+            }
+            other => panic!("{names:?}: {other:?}"),
+        }
+    }
+
+    #[test]
+    fn vectors_come_in_the_order_of_their_components() {
+        assert_eq!(chosen(&["A", "B", "G", "R"]), ["R=R", "G=G", "B=B", "A=A"]);
+        assert_eq!(chosen(&["blue", "green", "red"]), ["red=R", "green=G", "blue=B"]);
+        assert_eq!(chosen(&["A", "Nx", "Ny", "Nz"]), ["Nx=Nx", "Ny=Ny", "Nz=Nz"]);
+        assert_eq!(chosen(&["x", "y", "z"]), ["x=X", "y=Y", "z=Z"]);
+        assert_eq!(chosen(&["B", "G", "R", "height"]), ["R=R", "G=G", "B=B"]);
+    }
+
+    #[test]
+    fn coverage_and_masks_are_never_a_component_or_a_height() {
+        assert_eq!(chosen(&["A", "X", "Y"]), ["X=X", "Y=Y"]);
+        assert_eq!(chosen(&["A", "Z"]), ["Z=Z"]);
+        assert_eq!(chosen(&["A", "height"]), ["height=height"]);
+        assert_eq!(chosen(&["debris", "height", "mask"]), ["height=height"]);
+        assert_eq!(chosen(&["Displacement", "objectId"]), ["Displacement=Displacement"]);
+        assert_eq!(chosen(&["AR", "noise"]), ["noise=noise"]);
+        assert_eq!(choose(&["A", "mask"]), Choice::Nothing);
+    }
+
+    #[test]
+    fn grey_keeps_its_coverage() {
+        assert_eq!(chosen(&["A", "Y"]), ["Y=Y", "A=A"]);
+        assert_eq!(chosen(&["Y"]), ["Y=Y"]);
+        assert_eq!(chosen(&["U", "V"]), ["U=U", "V=V"]);
+    }
+
+    #[test]
+    fn what_names_leave_open_is_left_open() {
+        for names in
+            [&["foo", "bar"][..], &["U", "V", "height"], &["height", "displacement"], &["X", "Y", "height"]]
+        {
+            assert_eq!(choose(names), Choice::Open, "{names:?}");
+        }
+    }
+}
