@@ -1,4 +1,4 @@
-"""Checks the tracked files: none too large, lock files that name public registries only, no unfinished code, and no
+"""Checks the tracked files: none too large, the test data within its bounds, lock files that name public registries only, no unfinished code, and no
 paths of somebody's machine."""
 
 import json
@@ -9,6 +9,7 @@ from urllib.parse import urlsplit
 from workspace import REPOSITORY, report, tracked_files
 
 MAX_BYTES = 1 << 20
+TEST_DATA, MAX_TEST_DATA_BYTES = "testdata", 10 << 20
 
 CRATES_IO = "registry+https://github.com/rust-lang/crates.io-index"
 # Hosts that Python's and npm's lock files may name.
@@ -83,11 +84,19 @@ def file_faults(path, data):
         yield f"{path}: {fault}"
 
 
+def test_data_faults(size):
+    """The fault of test data of this many bytes, if any."""
+    if size > MAX_TEST_DATA_BYTES:
+        yield f"{TEST_DATA}/: {size} bytes, more than the {MAX_TEST_DATA_BYTES} that it may have"
+
+
 def main():
     files = tracked_files()
     if not files:
         sys.exit("git tracks no file here")
-    found = [fault for path in files for fault in file_faults(path, (REPOSITORY / path).read_bytes())]
+    test_data = sum((REPOSITORY / path).stat().st_size for path in files if path.parts[0] == TEST_DATA)
+    found = list(test_data_faults(test_data))
+    found += [fault for path in files for fault in file_faults(path, (REPOSITORY / path).read_bytes())]
     return report(found, f"{len(files)} tracked files are in order")
 
 

@@ -25,6 +25,12 @@ def metadata(*packages, others=()):
     return {"packages": [*packages, *others], "workspace_members": [package["id"] for package in packages]}
 
 
+class TestData(unittest.TestCase):
+    def test_its_size_is_bounded(self):
+        self.assertEqual(list(hygiene.test_data_faults(10 << 20)), [])
+        self.assertEqual(len(list(hygiene.test_data_faults((10 << 20) + 1))), 1)
+
+
 class Arrows(unittest.TestCase):
     library = package("roughcast", ("rayon", None, "registry"), ("image", "dev", "registry"))
 
