@@ -3,7 +3,7 @@
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueHint};
 use roughcast::{
-    Gradient, Green, HeightSense, Kind, Named, NormalChannels, NormalRange, SourceOptions, Wrap,
+    Gradient, Green, HeightSense, Kind, Named, NormalChannels, NormalRange, Red, SourceOptions, Wrap,
 };
 use roughcast_io::{Limits, ReadOptions};
 
@@ -57,12 +57,21 @@ pub struct SourceArgs {
     #[arg(long, default_value = "up", value_parser = one_of::<Green>())]
     pub green: Green,
 
+    /// Which way red points in a normal map
+    #[arg(long, default_value = "right", value_parser = one_of::<Red>())]
+    pub red: Red,
+
+    /// Strength of a normal map: x and y are multiplied by it, as by glTF's normalTexture.scale
+    #[arg(long, value_name = "X", value_parser = finite, allow_negative_numbers = true)]
+    pub normal_scale: Option<f32>,
+
     /// How a normal's components are stored: unorm, 0 to 1 with 0.5 for none, as in pictures; or signed, -1 to 1 [default: by the
     /// file's format, for floats by the pixels]
     #[arg(long, value_parser = one_of::<NormalRange>())]
     pub range: Option<NormalRange>,
 
-    /// Channels that hold the normal: xyz, xy (z is worked out), or ag (x in alpha, "DXT5nm") [default: decided from the pixels]
+    /// Channels that contain the normal: xyz; xy or yx, the first two (z is worked out); ag, x in alpha and y in green
+    /// ("DXT5nm", BC3n, RXGB); or ra, x in red, y in alpha (KTX's normal mode) [default: decided from the file and its pixels]
     #[arg(long, value_name = "CHANNELS", value_parser = one_of::<NormalChannels>())]
     pub normal_channels: Option<NormalChannels>,
 
@@ -107,6 +116,8 @@ impl SourceArgs {
         SourceOptions {
             kind,
             green: self.green,
+            red: self.red,
+            normal_scale: self.normal_scale.unwrap_or(1.0),
             range,
             normal_channels: channels,
             height_scale: self.height_scale,

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use anyhow::{Context, Result, anyhow};
 use roughcast::detect::{
-    GreenVerdict, KindGuess, guess_channels, guess_kind, guess_range, test_green_of_map,
+    GreenVerdict, KindGuess, guess_channels, guess_kind, guess_order, guess_range, test_green_of_map,
 };
 use roughcast::{Green, Image, Kind, NormalChannels, NormalRange, SourceOptions};
-use roughcast_io::{Decoded, FileInfo, ReadError, ReadOptions, ValueRange};
+use roughcast_io::{Decoded, FileInfo, NormalEncoding, ReadError, ReadOptions, ValueRange};
 
 use crate::UsageError;
 use crate::args::SourceArgs;
@@ -61,12 +61,30 @@ pub fn map_of(Decoded { image, info }: Decoded, args: &SourceArgs) -> Result<Map
     }
     let range = args.range.unwrap_or_else(|| range_of(&image, &info));
     let kind = kind_of(&image, &info, range, args.kind)?;
-    let channels = args.normal_channels.unwrap_or_else(|| match kind {
-        Kind::Normal => guess_channels(&image, &info.channels, range),
-        Kind::Height => NormalChannels::Xyz,
-    });
+    if kind == Kind::Height && args.normal_scale.is_some() {
+        let line =
+            "--normal-scale is for normal maps, and this is a height map: say --height-scale".to_owned();
+        return Err(UsageError(line).into());
+    }
+    let mut warnings = info.warnings.clone();
+    let channels = match (args.normal_channels, info.normal_encoding) {
+        (Some(channels), _) => channels,
+        (None, NormalEncoding::Stated(channels)) if channels.needed() <= image.channels() => channels,
+        (None, NormalEncoding::EitherOrder) => {
+            let read = args.options(kind, range, NormalChannels::Xy);
+            guess_order(&image, &read, [NormalChannels::Xy, NormalChannels::Yx]).unwrap_or_else(|| {
+                warnings.push(format!(
+                    "writers of {} disagree about which channel comes first, and the pixels do not tell: the first is read \
+                     as x; say --normal-channels xy or yx",
+                    info.format
+                ));
+                NormalChannels::Xy
+            })
+        }
+        _ if kind == Kind::Normal => guess_channels(&image, &info.channels, range),
+        _ => NormalChannels::Xyz,
+    };
     let options = args.options(kind, range, channels);
-    let warnings = info.warnings.clone();
     let mut map = Map { image, info, options, green_correlation: None, warnings };
     map.test_green();
     Ok(map)
@@ -90,9 +108,13 @@ fn kind_of(image: &Image, info: &FileInfo, range: NormalRange, wanted: Option<Ki
     }
     match guess_kind(image, &info.channels, range) {
         KindGuess::Certain(kind) => Ok(kind),
-        KindGuess::Doubtful { reason } => Err(anyhow!(
-            "it looks like neither a normal nor a height map ({reason}): say --kind normal or --kind height"
-        )),
+        KindGuess::Doubtful { reason } => {
+            let has_alpha = info.channels.iter().any(|name| name == "A");
+            let channels = if has_alpha { ", and for normals --normal-channels" } else { "" };
+            Err(anyhow!(
+                "it looks like neither a normal nor a height map ({reason}): say --kind normal or --kind height{channels}"
+            ))
+        }
     }
 }
 

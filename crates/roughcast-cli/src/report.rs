@@ -151,6 +151,8 @@ impl FileReport {
             "outputs": self.files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>(),
             "kind": self.source.kind.name(),
             "green": (self.source.kind == Kind::Normal).then(|| self.source.green.name()),
+            "red": (self.source.kind == Kind::Normal).then(|| self.source.red.name()),
+            "normal_scale": (self.source.kind == Kind::Normal).then_some(self.source.normal_scale),
             "green_correlation": self.green_correlation,
             "range": self.source.range.name(),
             "normal_channels": self.source.normal_channels.name(),

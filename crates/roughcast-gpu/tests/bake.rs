@@ -9,7 +9,7 @@ use pollster::block_on;
 use roughcast::texture::{Base, Layout, TextureArray};
 use roughcast::{
     BakeOptions, BaseRoughness, Bits, Gradient, Green, HeightSense, Image, Kind, NormalChannels, NormalRange,
-    PyramidFilter, SampleType, Samples, ScaleChoice, SourceOptions, Wrap,
+    PyramidFilter, Red, SampleType, Samples, ScaleChoice, SourceOptions, Wrap,
 };
 use roughcast_gpu::bake::{BakePath, GpuBaker};
 use roughcast_gpu::{Gpu, GpuError};
@@ -174,6 +174,13 @@ fn every_way_to_store_normals_is_the_cpus_bake() {
                 let source = SourceOptions { normal_channels: *order, green: *green, ..normal_source() };
                 Case::new(&image, source, Layout::Lean, Bits::Half).check(&gpu);
             }
+        }
+    }
+    for (red, normal_scale) in [(Red::Left, 1.0), (Red::Right, 0.5), (Red::Left, 1.75)] {
+        for order in NormalChannels::ALL {
+            let image = normals(44, 36, 4, SampleType::U8);
+            let source = SourceOptions { normal_channels: *order, red, normal_scale, ..normal_source() };
+            Case::new(&image, source, Layout::Lean, Bits::Half).check(&gpu);
         }
     }
     let unsigned = normals(44, 36, 3, SampleType::F32);

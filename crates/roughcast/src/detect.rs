@@ -8,9 +8,11 @@ mod correlation;
 mod field;
 mod green;
 mod kind;
+mod order;
 mod sample;
 mod vectors;
 
 pub use channels::{guess_channels, guess_range};
 pub use green::{GreenTest, GreenVerdict, test_green, test_green_against_height, test_green_of_map};
 pub use kind::{KindGuess, guess_kind};
+pub use order::guess_order;

@@ -86,7 +86,7 @@ pub use moments::{Covariance, Moments};
 pub use named::{Named, UnknownName};
 pub use options::{
     BakeOptions, Bits, Blocks, Gradient, Green, HeightSense, Kind, Lobe, NormalChannels, NormalRange,
-    PyramidFilter, RoughnessTexture, ScaleChoice, SourceOptions, Wrap,
+    PyramidFilter, Red, RoughnessTexture, ScaleChoice, SourceOptions, Wrap,
 };
 pub use pyramid::{LevelStats, level_sizes, levels_of_four};
 pub use slope::{Normal, Slope, SourceCounts, mended_slope, normal_from_slope, slope_from_normal};

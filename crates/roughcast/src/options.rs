@@ -25,6 +25,16 @@ named_enum! {
 }
 
 named_enum! {
+    /// Which way a normal map's red channel points.
+    pub enum Red: "direction of red" {
+        /// To the right of the picture: all common conventions.
+        Right = "right",
+        /// To the left.
+        Left = "left",
+    }
+}
+
+named_enum! {
     /// The numbers by which a normal's components are stored.
     pub enum NormalRange: "range" {
         /// 0 ..= 1 stands for -1 ..= 1.
@@ -50,10 +60,33 @@ named_enum! {
     pub enum NormalChannels: "choice of channels" {
         /// Red, green, blue: x, y, z. Used by direction; the length does not matter.
         Xyz = "xyz",
-        /// Red and green: x, y; z follows.
+        /// The first two: x, y; z follows. BC5, and RG textures.
         Xy = "xy",
-        /// Alpha and green: x, y; z follows ("DXT5nm").
+        /// Alpha and green: x, y; z follows. "DXT5nm", BC3n, and Doom 3's RXGB.
         Ag = "ag",
+        /// The first two: y, x; z follows. The older order of 3Dc and ATI2.
+        Yx = "yx",
+        /// Red and alpha: x, y; z follows. KTX's normal mode, which repeats x in red, green and blue.
+        Ra = "ra",
+    }
+}
+
+impl NormalChannels {
+    /// Indices of the channels with x, y and, where it is stored, z.
+    pub fn indices(self) -> (usize, usize, Option<usize>) {
+        match self {
+            NormalChannels::Xyz => (0, 1, Some(2)),
+            NormalChannels::Xy => (0, 1, None),
+            NormalChannels::Yx => (1, 0, None),
+            NormalChannels::Ag => (3, 1, None),
+            NormalChannels::Ra => (0, 3, None),
+        }
+    }
+
+    /// Channels that a map must have.
+    pub fn needed(self) -> usize {
+        let (x, y, z) = self.indices();
+        1 + x.max(y).max(z.unwrap_or(0))
     }
 }
 
@@ -101,6 +134,11 @@ pub struct SourceOptions {
     pub kind: Kind,
     /// Direction of a normal map's green channel.
     pub green: Green,
+    /// Direction of a normal map's red channel.
+    pub red: Red,
+    /// Factor of a normal's x and y, which is that of the slope: glTF's `normalTexture.scale`. Heights have
+    /// [`SourceOptions::height_scale`].
+    pub normal_scale: f32,
     /// Numbers by which a normal's components are stored.
     pub range: NormalRange,
     /// Channels of a normal's components.
@@ -132,6 +170,13 @@ impl SourceOptions {
     pub const DEFAULT_HEIGHT_SCALE: f32 = 0.02;
     /// Default largest slope: 89.55 degrees.
     pub const DEFAULT_MAX_SLOPE: f32 = 128.0;
+
+    /// What x and y of a normal are multiplied by, as read.
+    pub fn normal_factors(&self) -> [f32; 2] {
+        let x = if self.red == Red::Left { -self.normal_scale } else { self.normal_scale };
+        let y = if self.green == Green::Down { -self.normal_scale } else { self.normal_scale };
+        [x, y]
+    }
 }
 
 impl Default for SourceOptions {
@@ -140,6 +185,8 @@ impl Default for SourceOptions {
         Self {
             kind: Kind::Normal,
             green: Green::Up,
+            red: Red::Right,
+            normal_scale: 1.0,
             range: NormalRange::Unorm,
             normal_channels: NormalChannels::Xyz,
             height_scale: Self::DEFAULT_HEIGHT_SCALE,

@@ -11,8 +11,9 @@ struct Params {
     height_scale: f32,
     // Slope variance of a base roughness that is folded in (LEAN Eq. 6), else zero.
     base_variance: f32,
-    // Of a normal map's green: 1 up, -1 down.
-    green: f32,
+    // What x and y of a normal are multiplied by.
+    normal_factor_x: f32,
+    normal_factor_y: f32,
 }
 
 // `Stores` and the scale behind them.

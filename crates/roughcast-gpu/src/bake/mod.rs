@@ -329,6 +329,7 @@ impl Job {
     fn params(&self, device: &wgpu::Device, level: u32) -> wgpu::Buffer {
         let (width, height) = self.level_size(level);
         let source = &self.plan.source;
+        let [factor_x, factor_y] = source.normal_factors();
         let words = [
             width,
             height,
@@ -337,7 +338,12 @@ impl Job {
             source.max_slope.to_bits(),
             source::texels_from_height(source, self.size.width).to_bits(),
             self.base_variance.to_bits(),
-            source::sign_of_green(source.green).to_bits(),
+            factor_x.to_bits(),
+            factor_y.to_bits(),
+            // Up to a multiple of 16 bytes.
+            0,
+            0,
+            0,
         ];
         device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("bake"),

@@ -2,8 +2,8 @@
 
 use half::f16;
 use roughcast::{
-    BakeError, Gradient, Green, HeightSense, Image, Kind, NormalChannels, NormalRange, SampleType, Samples,
-    SourceError, SourceOptions, Wrap,
+    BakeError, Gradient, HeightSense, Image, Kind, NormalRange, SampleType, Samples, SourceError,
+    SourceOptions, Wrap,
 };
 
 use crate::{Gpu, GpuError};
@@ -86,12 +86,10 @@ impl MapFormat {
 
     /// Channels that the options need and this format lacks are an error.
     pub fn check_channels(self, options: &SourceOptions) -> Result<(), GpuError> {
-        let needed = match (options.kind, options.normal_channels) {
-            (Kind::Height, _) => 1,
-            (Kind::Normal, NormalChannels::Xy) => 2,
-            // The third of three channels is the third of a texture's four.
-            (Kind::Normal, NormalChannels::Xyz) => 3,
-            (Kind::Normal, NormalChannels::Ag) => 4,
+        // The third of three channels is the third of a texture's four.
+        let needed = match options.kind {
+            Kind::Height => 1,
+            Kind::Normal => options.normal_channels.needed(),
         };
         if self.channels < needed {
             let error = SourceError::Channels { wanted: "normal map", needed, got: self.channels };
@@ -128,18 +126,18 @@ impl MapFormat {
             (Texel::Value, NormalRange::Unorm) => "2.0 * stored - 1.0".to_owned(),
             (Texel::Value, NormalRange::Signed) => "stored".to_owned(),
         };
-        let slope = match options.normal_channels {
-            NormalChannels::Xyz => {
-                "slope_from_normal(vec3f(map_component(texel.x), y, map_component(texel.z)), "
-            }
-            NormalChannels::Xy => "slope_from_normal_xy(vec2f(map_component(texel.x), y), ",
-            NormalChannels::Ag => "slope_from_normal_xy(vec2f(map_component(texel.w), y), ",
+        let (x, y, z) = options.normal_channels.indices();
+        let stored = |channel: usize| format!("map_component(texel[{channel}])");
+        let xy = format!("vec2f({}, {})", stored(x), stored(y));
+        let slope = match z {
+            Some(z) => format!("slope_from_normal(vec3f({xy} * factors, {}), ", stored(z)),
+            None => format!("slope_from_normal_xy({xy}, factors, "),
         };
         format!(
             "fn map_component(stored: f32) -> f32 {{ return {component}; }}\n\
              fn map_slope(at: vec2u) -> MendedSlope {{\n    \
                  let texel = map_texel(vec2i(at));\n    \
-                 let y = params.green * map_component(texel.y);\n    \
+                 let factors = vec2f(params.normal_factor_x, params.normal_factor_y);\n    \
                  return {slope}params.max_slope);\n}}\n"
         )
     }
@@ -172,14 +170,6 @@ impl MapFormat {
                  let below = neighbour(at.y + 1, size.y, params.wrap);\n    \
                  return slope_from_gradient({gradient}, params.max_slope);\n}}\n"
         )
-    }
-}
-
-/// The sign of green, as `Params` has it.
-pub(super) fn sign_of_green(green: Green) -> f32 {
-    match green {
-        Green::Up => 1.0,
-        Green::Down => -1.0,
     }
 }
 

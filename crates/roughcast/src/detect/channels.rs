@@ -1,6 +1,7 @@
 //! Guesses how normals are stored: in which channels, and in which range.
 
 use super::green::test_green_of_map;
+use super::order::{GreyAndAlpha, guess_grey_and_alpha};
 use super::sample::{SAME, quantile, share, spread, texels};
 use super::vectors::{MAX_MEAN_TILT, MAX_XY_LENGTH, UNIT, decoded, length, mean_xy};
 use crate::{Image, Kind, NormalChannels, NormalRange, Samples, SourceOptions};
@@ -46,10 +47,14 @@ const ALPHA: usize = 3;
 ///
 /// One or two channels hold x and y. So do the first two of three whose blue is not z with scale and bias, as
 /// that of x and y is: maps exist with a blue that is constant (0, 128 or 255), and with z itself over 0 ..=
-/// 1. Alpha and green hold them where red and blue are constant.
+/// 1. Alpha and green hold them where red and blue are constant, and grey and alpha, in either order, where those two are the
+/// slopes of a surface.
 ///
 /// `channels` and `range` as for [`crate::detect::guess_kind`].
 pub fn guess_channels(image: &Image, channels: &[impl AsRef<str>], range: NormalRange) -> NormalChannels {
+    if let GreyAndAlpha::Normals(normal_channels) = guess_grey_and_alpha(image, channels, range) {
+        return normal_channels;
+    }
     match *colour_channels(image, channels) {
         [_, _, _] if x_is_in_alpha(image) => NormalChannels::Ag,
         [r, g, b, ..] => match guess_blue(&decoded(texels(image, [r, g, b]), range), range) {
@@ -89,8 +94,17 @@ pub fn guess_range(image: &Image) -> NormalRange {
 
 /// Indices of the channels that are no alpha.
 pub(super) fn colour_channels(image: &Image, channels: &[impl AsRef<str>]) -> Vec<usize> {
-    let is_alpha = |name: &str| name == "A" || name.ends_with(".A");
-    (0..image.channels()).filter(|&i| !channels.get(i).is_some_and(|name| is_alpha(name.as_ref()))).collect()
+    (0..image.channels()).filter(|&i| !is_alpha(channels, i)).collect()
+}
+
+/// Index of the alpha.
+pub(super) fn alpha_of(image: &Image, channels: &[impl AsRef<str>]) -> Option<usize> {
+    (0..image.channels()).find(|&i| is_alpha(channels, i))
+}
+
+fn is_alpha(channels: &[impl AsRef<str>], index: usize) -> bool {
+    let name = channels.get(index).map_or("", AsRef::as_ref);
+    name == "A" || name.ends_with(".A")
 }
 
 /// Whether, of four channels, red and blue are constant while green and alpha vary: x is in alpha and y in

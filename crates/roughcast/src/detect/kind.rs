@@ -1,6 +1,7 @@
 //! Guesses from channels and texels whether a map holds normals or heights.
 
 use super::channels::{Blue, colour_channels, guess_blue, looks_like_slopes, x_is_in_alpha};
+use super::order::{GreyAndAlpha, guess_grey_and_alpha};
 use super::sample::{SAME, quantile, share, spread, texels};
 use super::vectors::{MAX_MEAN_TILT, MAX_XY_LENGTH, UNIT, decoded, length, mean_xy};
 use crate::{Image, Kind, NormalChannels, NormalRange};
@@ -61,6 +62,13 @@ impl KindGuess {
 /// come with constants instead of z. Maps of roughness or
 /// occlusion are grey, too, and are taken for heights: no pixel tells the difference.
 pub fn guess_kind(image: &Image, channels: &[impl AsRef<str>], range: NormalRange) -> KindGuess {
+    match guess_grey_and_alpha(image, channels, range) {
+        GreyAndAlpha::Normals(_) => return KindGuess::Certain(Kind::Normal),
+        GreyAndAlpha::EitherOrder => {
+            return KindGuess::doubtful("its grey and its alpha can be x and y of a normal, in either order");
+        }
+        GreyAndAlpha::Other => {}
+    }
     match *colour_channels(image, channels) {
         [_] => KindGuess::Certain(Kind::Height),
         [x, y] => guess_two(&decoded(texels(image, [x, y]), range)),

@@ -53,7 +53,7 @@ impl<'a> MapSource<'a> {
     ) -> Result<Self, SourceError> {
         check_numbers(&options)?;
         if options.kind == Kind::Normal {
-            let needed = normal_map::channels_needed(options.normal_channels);
+            let needed = options.normal_channels.needed();
             if image.channels() < needed {
                 let got = image.channels();
                 return Err(SourceError::Channels { wanted: "normal map", needed, got });
@@ -76,6 +76,12 @@ pub(crate) fn check_numbers(options: &SourceOptions) -> Result<(), SourceError> 
         return Err(SourceError::Option(format!(
             "the largest slope must be above zero, not {}",
             options.max_slope
+        )));
+    }
+    if !options.normal_scale.is_finite() {
+        return Err(SourceError::Option(format!(
+            "the normal scale must be a finite number, not {}",
+            options.normal_scale
         )));
     }
     if !options.height_scale.is_finite() {

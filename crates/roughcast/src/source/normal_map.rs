@@ -3,7 +3,7 @@
 use half::f16;
 
 use super::{count_unusable, mend};
-use crate::options::{Green, NormalChannels, SourceOptions};
+use crate::options::{NormalChannels, SourceOptions};
 use crate::row::SourceScratch;
 use crate::slope::SourceCounts;
 use crate::vectorised::vectorised;
@@ -13,15 +13,6 @@ use crate::{Image, Samples};
 /// is then zero. Further out than this (squared) they are no normals at all but an empty background, such as (0, 0)
 /// stored as unorm = (-1, -1), and become flat.
 const INVALID_XY_SQUARED: f32 = 1.2;
-
-/// Channels that a map must have.
-pub(super) fn channels_needed(channels: NormalChannels) -> usize {
-    match channels {
-        NormalChannels::Xy => 2,
-        NormalChannels::Xyz => 3,
-        NormalChannels::Ag => 4,
-    }
-}
 
 /// Writes the slopes of a stretch of row `y` that starts at column `x`.
 pub(super) fn fill(
@@ -39,15 +30,19 @@ pub(super) fn fill(
     }
     let [nx, ny, nz] = &mut scratch.planes;
     load_components(image, options, x, y, nx, ny, nz);
-    if options.green == Green::Down {
-        ny.iter_mut().for_each(|v| *v = -*v);
-    }
     let z_from_xy = options.normal_channels != NormalChannels::Xyz;
     if z_from_xy {
         for ((z, x), y) in nz.iter_mut().zip(nx.iter()).zip(ny.iter()) {
             *z = (1.0 - x * x - y * y).max(0.0).sqrt();
         }
     }
+    // After z, which belongs to the components as they are stored.
+    for (plane, factor) in [&mut *nx, &mut *ny].into_iter().zip(options.normal_factors()) {
+        if factor != 1.0 {
+            plane.iter_mut().for_each(|value| *value *= factor);
+        }
+    }
+    let invalid_squared = INVALID_XY_SQUARED * options.normal_scale * options.normal_scale;
     divide_by_z(nx, ny, nz, bx, by);
     if count_unusable(bx, by, options.max_slope) == 0 {
         return SourceCounts::default();
@@ -55,7 +50,7 @@ pub(super) fn fill(
     mend(bx, by, options.max_slope, |i| {
         // An infinite component is no empty background: `mended_slope` counts it as what it is.
         let finite = nx[i].is_finite() && ny[i].is_finite();
-        let outside = z_from_xy && finite && nx[i] * nx[i] + ny[i] * ny[i] > INVALID_XY_SQUARED;
+        let outside = z_from_xy && finite && nx[i] * nx[i] + ny[i] * ny[i] > invalid_squared;
         (!outside).then_some([nx[i], ny[i], nz[i]])
     })
 }
@@ -146,11 +141,7 @@ impl Split {
             (NormalChannels::Xyz, 3) => split_xyz::<T, 3>(texels, nx, ny, nz, value),
             (NormalChannels::Xyz, 4) => split_xyz::<T, 4>(texels, nx, ny, nz, value),
             (order, channels) => {
-                let (x_at, y_at, z_at) = match order {
-                    NormalChannels::Xyz => (0, 1, Some(2)),
-                    NormalChannels::Xy => (0, 1, None),
-                    NormalChannels::Ag => (3, 1, None),
-                };
+                let (x_at, y_at, z_at) = order.indices();
                 for (i, texel) in texels.chunks_exact(channels).enumerate() {
                     nx[i] = value(texel[x_at]);
                     ny[i] = value(texel[y_at]);

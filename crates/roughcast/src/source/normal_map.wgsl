@@ -26,12 +26,12 @@ fn slope_from_normal(normal: vec3f, max_slope: f32) -> MendedSlope {
     return mended_slope(normal, max_slope);
 }
 
-// The slope of a two-channel normal.
-fn slope_from_normal_xy(normal_xy: vec2f, max_slope: f32) -> MendedSlope {
+// The slope of a two-channel normal, whose x and y are multiplied by the factors once z is known.
+fn slope_from_normal_xy(normal_xy: vec2f, factors: vec2f, max_slope: f32) -> MendedSlope {
     let squares = rounded2(normal_xy * normal_xy);
     let finite = is_finite(normal_xy.x) & is_finite(normal_xy.y);
     if finite & (squares.x + squares.y > INVALID_XY_SQUARED) {
         return MendedSlope(vec2f(0.0), FAULT_INVALID);
     }
-    return slope_from_normal(vec3f(normal_xy, z_from_xy(normal_xy)), max_slope);
+    return slope_from_normal(vec3f(normal_xy * factors, z_from_xy(normal_xy)), max_slope);
 }
