@@ -1,11 +1,13 @@
 //! Pixel formats of DDS files: those of DXGI by number, and those of Direct3D 9 by FourCC, number or masks.
 
-use super::header::{Masks, PixelFormat};
+use roughcast::{Kind, NormalChannels};
+
+use super::header::{Header, Masks, PixelFormat};
 use super::{malformed, unsupported};
-use crate::ReadError;
 use crate::texels::Encoding::{Float16, Float32, Snorm8, Snorm16, Unorm8, Unorm16};
 use crate::texels::Order::{Bgra, Rgba};
-use crate::texels::{BlockCode, Encoding, Order, Packed, Plain, TexelFormat, rgba_names};
+use crate::texels::{BlockCode, Encoding, Order, Packed, Plain, Source, TexelFormat, rgba_names};
+use crate::{NormalEncoding, ReadError};
 
 /// Number, name without `DXGI_FORMAT_`, channels, encoding, order. `_SRGB` and `_TYPELESS` are read as raw UNORM
 /// numbers, for the reason given with the formats of KTX2.
@@ -59,20 +61,28 @@ const BLOCKS: [(u32, &str, BlockCode); 18] = [
 ];
 
 /// Four letters, how they are called, and the blocks that they stand for.
-const FOUR_CC_BLOCKS: [([u8; 4], &str, BlockCode); 9] = [
+const FOUR_CC_BLOCKS: [([u8; 4], &str, BlockCode); 8] = [
     (*b"DXT1", "DXT1 (BC1_UNORM)", BlockCode::Bc1),
     (*b"DXT3", "DXT3 (BC2_UNORM)", BlockCode::Bc2),
     (*b"DXT5", "DXT5 (BC3_UNORM)", BlockCode::Bc3),
     (*b"ATI1", "ATI1 (BC4_UNORM)", BlockCode::Bc4),
     (*b"BC4U", "BC4_UNORM", BlockCode::Bc4),
     (*b"BC4S", "BC4_SNORM", BlockCode::Bc4Snorm),
-    (*b"A2XY", "A2XY (BC5_UNORM)", BlockCode::Bc5),
     (*b"BC5U", "BC5_UNORM", BlockCode::Bc5),
     (*b"BC5S", "BC5_SNORM", BlockCode::Bc5Snorm),
 ];
 
-/// Numbers of `D3DFORMAT` that stand in the place of a FourCC, names without `D3DFMT_` (which start at the last byte).
-const D3D9_PLAIN: [(u32, &str, usize, Encoding); 8] = [
+/// DXT5 blocks whose channels the writer has moved, so that one has the precision of alpha: four letters that say what red,
+/// green, blue and alpha contain (AMD's tools). Where no channel contains blue, it follows from the other two.
+const MOVED_IN_DXT5: [[u8; 4]; 6] = [*b"xGBR", *b"RxBG", *b"RBxG", *b"xRBG", *b"RGxB", *b"xGxR"];
+
+/// Numbers of `D3DFORMAT` that stand in the place of a FourCC, names without `D3DFMT_` (which start at the last byte). CxV8U8
+/// stores no z: it follows from x and y.
+const D3D9_PLAIN: [(u32, &str, usize, Encoding); 12] = [
+    (60, "V8U8", 2, Snorm8),
+    (63, "Q8W8V8U8", 4, Snorm8),
+    (64, "V16U16", 2, Snorm16),
+    (117, "CxV8U8", 2, Snorm8),
     (36, "A16B16G16R16", 4, Unorm16),
     (110, "Q16W16V16U16", 4, Snorm16),
     (111, "R16F", 1, Float16),
@@ -89,17 +99,49 @@ const FLAG_PALETTE: u32 = 0x8 | 0x20;
 const FLAG_RGB: u32 = 0x40;
 const FLAG_YUV: u32 = 0x200;
 const FLAG_LUMINANCE: u32 = 0x2_0000;
+const FLAG_BUMP_LUMINANCE: u32 = 0x4_0000;
 const FLAG_BUMP_DUDV: u32 = 0x8_0000;
+
+/// Bump formats of Direct3D 9 with signed fields of several lengths, by their number: bits, masks of u, v and, if there is
+/// one, w. Luminance and alpha beside them are no part of a normal.
+const BUMP_FIELDS: [(u32, &str, u32, &[u32]); 3] = [
+    (61, "L6V5U5", 16, &[0x1f, 0x3e0]),
+    (62, "X8L8V8U8", 32, &[0xff, 0xff00]),
+    (67, "A2W10V10U10", 32, &[0x3ff, 0xf_fc00, 0x3ff0_0000]),
+];
 
 const CONVERT: &str = "convert it to R8G8B8A8, R16G16, BC5 or BC7 UNORM first";
 
-/// The texel format and its name, or why it is not read.
-pub(super) fn texel_format(format: PixelFormat) -> Result<(TexelFormat, String), ReadError> {
-    match format {
-        PixelFormat::Dxgi(number) => of_dxgi(number),
+/// What the pixel format of a file says.
+pub(super) struct Format {
+    pub texels: TexelFormat,
+    /// In the words of the format.
+    pub name: String,
+    /// What the format is made for.
+    pub kind: Option<Kind>,
+    pub normals: NormalEncoding,
+    /// Where each channel of the image comes from, where the file has moved them.
+    pub moved: Option<Vec<Source>>,
+}
+
+impl Format {
+    fn plain(texels: TexelFormat, name: impl Into<String>) -> Self {
+        Self { texels, name: name.into(), kind: None, normals: NormalEncoding::Unstated, moved: None }
+    }
+
+    fn of_normals(self, normals: NormalEncoding) -> Self {
+        Self { kind: Some(Kind::Normal), normals, ..self }
+    }
+}
+
+/// The pixel format of a file, or why it is not read.
+pub(super) fn pixel_format(header: &Header) -> Result<Format, ReadError> {
+    let format = match header.pixel_format {
+        PixelFormat::Dxgi(number) => of_dxgi(number).map(|(texels, name)| Format::plain(texels, name)),
         PixelFormat::FourCc { code, swizzle_code } => of_four_cc(code, swizzle_code),
         PixelFormat::Masks(masks) => of_masks(masks),
-    }
+    }?;
+    Ok(if header.has_normals { Format { kind: Some(Kind::Normal), ..format } } else { format })
 }
 
 /// The `DXGI_FORMAT` in which a texel format is written.
@@ -152,23 +194,42 @@ fn not_read(number: u32) -> ReadError {
     unsupported(format!("{what} (DXGI format {number})"), CONVERT)
 }
 
-fn of_four_cc(code: [u8; 4], swizzle_code: [u8; 4]) -> Result<(TexelFormat, String), ReadError> {
-    // ATI2 keeps Y before X, unless the word behind it says otherwise: that is how the NVIDIA tools mark files whose
-    // order is that of BC5.
-    if code == *b"ATI2" {
-        let (block, name) = if swizzle_code == *b"A2XY" {
-            (BlockCode::Bc5, "ATI2 (BC5_UNORM)")
-        } else {
-            (BlockCode::Bc5YThenX, "ATI2 (BC5_UNORM, Y before X)")
-        };
-        return Ok((TexelFormat::Blocks(block), name.to_owned()));
+fn of_four_cc(code: [u8; 4], swizzle_code: [u8; 4]) -> Result<Format, ReadError> {
+    match &code {
+        b"ATI2" => return Ok(ati2(swizzle_code)),
+        // x first in so many letters.
+        b"A2XY" => {
+            let format = Format::plain(TexelFormat::Blocks(BlockCode::Bc5), "A2XY (BC5_UNORM)");
+            return Ok(format.of_normals(NormalEncoding::Stated(NormalChannels::Xy)));
+        }
+        // Doom 3 and the NVIDIA tools: x in alpha. Red and alpha change places, and z follows, since the blue of the blocks is
+        // too coarse.
+        b"RXGB" => {
+            let format = Format::plain(TexelFormat::Blocks(BlockCode::Bc3), "RXGB (BC3_UNORM)");
+            let moved = Some([3, 1, 2, 0].map(Source::Channel).to_vec());
+            return Ok(Format { moved, ..format }.of_normals(NormalEncoding::Stated(NormalChannels::Xy)));
+        }
+        // The NVIDIA tools' mark of a normal map in alpha and green.
+        b"DXT5" if swizzle_code == *b"A2D5" => {
+            let format = Format::plain(TexelFormat::Blocks(BlockCode::Bc3), "DXT5 (BC3_UNORM), A2D5");
+            return Ok(format.of_normals(NormalEncoding::Stated(NormalChannels::Ag)));
+        }
+        _ => {}
     }
     if let Some(&(_, name, block)) = FOUR_CC_BLOCKS.iter().find(|row| row.0 == code) {
-        return Ok((TexelFormat::Blocks(block), name.to_owned()));
+        return Ok(Format::plain(TexelFormat::Blocks(block), name));
+    }
+    if MOVED_IN_DXT5.contains(&code) {
+        return Ok(moved_in_dxt5(code));
     }
     let number = u32::from_le_bytes(code);
     if let Some(&(_, name, channels, encoding)) = D3D9_PLAIN.iter().find(|row| row.0 == number) {
-        return Ok((TexelFormat::Plain(Plain { channels, encoding, order: Rgba }), name.to_owned()));
+        let format = Format::plain(TexelFormat::Plain(Plain { channels, encoding, order: Rgba }), name);
+        let is_bump = matches!(encoding, Snorm8 | Snorm16);
+        return Ok(if is_bump { format.of_normals(NormalEncoding::Unstated) } else { format });
+    }
+    if let Some(&(_, name, bits, masks)) = BUMP_FIELDS.iter().find(|row| row.0 == number) {
+        return bump_fields(name, bits, masks);
     }
     Err(match &code {
         b"DXT2" | b"DXT4" => {
@@ -181,7 +242,26 @@ fn of_four_cc(code: [u8; 4], swizzle_code: [u8; 4]) -> Result<(TexelFormat, Stri
     })
 }
 
-fn of_masks(masks: Masks) -> Result<(TexelFormat, String), ReadError> {
+/// Two blocks of BC4. ATI's own tools wrote y first; texconv, GIMP and the NVIDIA tools write x first, the last of them with a
+/// mark behind the FourCC. Without it neither order is always right.
+fn ati2(swizzle_code: [u8; 4]) -> Format {
+    let blocks = TexelFormat::Blocks(BlockCode::Bc5);
+    if swizzle_code == *b"A2XY" {
+        let format = Format::plain(blocks, "ATI2 (BC5_UNORM), A2XY");
+        return format.of_normals(NormalEncoding::Stated(NormalChannels::Xy));
+    }
+    Format::plain(blocks, "ATI2 (BC5_UNORM)").of_normals(NormalEncoding::EitherOrder)
+}
+
+fn moved_in_dxt5(code: [u8; 4]) -> Format {
+    let place = |letter: u8| code.iter().position(|&stored| stored == letter).map(Source::Channel);
+    let moved = [b'R', b'G', b'B'].map(place).into_iter().flatten().collect();
+    let name = format!("{} (BC3_UNORM)", code.escape_ascii());
+    let format = Format::plain(TexelFormat::Blocks(BlockCode::Bc3), name);
+    Format { moved: Some(moved), ..format }.of_normals(NormalEncoding::Unstated)
+}
+
+fn of_masks(masks: Masks) -> Result<Format, ReadError> {
     let Masks { flags, bits, red, green, blue, alpha } = masks;
     if flags & FLAG_PALETTE != 0 {
         return Err(unsupported("a palette", CONVERT));
@@ -189,13 +269,15 @@ fn of_masks(masks: Masks) -> Result<(TexelFormat, String), ReadError> {
     if flags & FLAG_YUV != 0 {
         return Err(unsupported("a YUV format", CONVERT));
     }
-    if flags & FLAG_BUMP_DUDV != 0 {
+    if flags & (FLAG_BUMP_DUDV | FLAG_BUMP_LUMINANCE) != 0 {
         return of_bump_masks(masks);
     }
     let has_alpha = flags & FLAG_ALPHA_PIXELS != 0 && alpha != 0;
     let (channels, names): (&[u32], &'static [&'static str]) = if flags & FLAG_RGB != 0 {
         match (green | blue != 0, blue != 0, has_alpha) {
             (false, _, false) => (&[red], &["R"]),
+            // Luminance and alpha, called red and alpha: the NVIDIA tools' A8L8 has x in the one and y in the other.
+            (false, _, true) => (&[red, alpha], &["R", "G"]),
             (true, false, false) => (&[red, green], &["R", "G"]),
             (_, _, false) => (&[red, green, blue], &["R", "G", "B"]),
             _ => (&[red, green, blue, alpha], &["R", "G", "B", "A"]),
@@ -210,13 +292,17 @@ fn of_masks(masks: Masks) -> Result<(TexelFormat, String), ReadError> {
     let name = || format!("{bits}-bit {}", names.concat());
     let is_colour = names == rgba_names(names.len());
     if let Some(plain) = plain_of_masks(bits, channels).filter(|_| is_colour) {
-        return Ok((TexelFormat::Plain(plain), name()));
+        return Ok(Format::plain(TexelFormat::Plain(plain), name()));
     }
-    let texel_bytes = if bits % 8 == 0 { bits as usize / 8 } else { 0 };
-    match Packed::new(texel_bytes, channels, names) {
-        Some(packed) => Ok((TexelFormat::Packed(packed), name())),
+    match Packed::new(texel_bytes(bits), channels, names) {
+        Some(packed) => Ok(Format::plain(TexelFormat::Packed(packed), name())),
         None => Err(malformed(format!("{bits} bits with masks {channels:x?} are no pixel format"))),
     }
+}
+
+/// Whole bytes of a texel; 0 where its bits are no whole bytes.
+fn texel_bytes(bits: u32) -> usize {
+    if bits.is_multiple_of(8) { bits as usize / 8 } else { 0 }
 }
 
 /// The quick way for whole bytes.
@@ -235,13 +321,34 @@ fn plain_of_masks(bits: u32, channels: &[u32]) -> Option<Plain> {
     Some(Plain { channels, encoding, order })
 }
 
-/// Signed normal maps of Direct3D 9: V8U8, V16U16, Q8W8V8U8.
-fn of_bump_masks(masks: Masks) -> Result<(TexelFormat, String), ReadError> {
-    let (channels, encoding, name) = match (masks.bits, masks.red, masks.green, masks.blue, masks.alpha) {
-        (16, 0xff, 0xff00, 0, 0) => (2, Snorm8, "V8U8 (R8G8_SNORM)"),
-        (32, 0xffff, 0xffff_0000, 0, 0) => (2, Snorm16, "V16U16 (R16G16_SNORM)"),
-        (32, 0xff, 0xff00, 0xff_0000, 0xff00_0000) => (4, Snorm8, "Q8W8V8U8 (R8G8B8A8_SNORM)"),
-        _ => return Err(unsupported(format!("a bump format of {} bits", masks.bits), CONVERT)),
+/// Signed normal maps of Direct3D 9: V8U8, V16U16, Q8W8V8U8, and those of [`BUMP_FIELDS`].
+fn of_bump_masks(masks: Masks) -> Result<Format, ReadError> {
+    let Masks { flags, bits, red, green, blue, alpha } = masks;
+    let plain = match (bits, red, green, blue, alpha) {
+        (16, 0xff, 0xff00, 0, 0) => Some((2, Snorm8, "V8U8 (R8G8_SNORM)")),
+        (32, 0xffff, 0xffff_0000, 0, 0) => Some((2, Snorm16, "V16U16 (R16G16_SNORM)")),
+        (32, 0xff, 0xff00, 0xff_0000, 0xff00_0000) if flags & FLAG_BUMP_LUMINANCE == 0 => {
+            Some((4, Snorm8, "Q8W8V8U8 (R8G8B8A8_SNORM)"))
+        }
+        _ => None,
     };
-    Ok((TexelFormat::Plain(Plain { channels, encoding, order: Rgba }), name.to_owned()))
+    if let Some((channels, encoding, name)) = plain {
+        let texels = TexelFormat::Plain(Plain { channels, encoding, order: Rgba });
+        return Ok(Format::plain(texels, name).of_normals(NormalEncoding::Unstated));
+    }
+    // With luminance, the third field is brightness; without, it is z.
+    let fields: &[u32] =
+        if flags & FLAG_BUMP_LUMINANCE != 0 || blue == 0 { &[red, green] } else { &[red, green, blue] };
+    let named = BUMP_FIELDS.iter().find(|(_, _, length, known)| *length == bits && *known == fields);
+    bump_fields(named.map_or("signed masks", |row| row.1), bits, fields)
+}
+
+fn bump_fields(name: &str, bits: u32, masks: &[u32]) -> Result<Format, ReadError> {
+    match Packed::new(texel_bytes(bits), masks, rgba_names(masks.len())) {
+        Some(packed) => {
+            let format = Format::plain(TexelFormat::Packed(packed.signed()), name);
+            Ok(format.of_normals(NormalEncoding::Unstated))
+        }
+        None => Err(malformed(format!("{bits} bits with masks {masks:x?} are no bump format"))),
+    }
 }

@@ -15,6 +15,8 @@ pub(super) struct Header {
     /// `dwReserved1`, which belongs to the writer.
     pub reserved: [u32; 11],
     pub pixel_format: PixelFormat,
+    /// Whether the writer says that these are normals, as the NVIDIA tools do.
+    pub has_normals: bool,
     /// Where the texels start.
     pub data_offset: usize,
 }
@@ -45,6 +47,7 @@ pub(super) const HEADER_BYTES: usize = 128;
 pub(super) const HEADER_BYTES_WITH_DX10: usize = 148;
 
 const FLAG_FOUR_CC: u32 = 0x4;
+const FLAG_NORMAL: u32 = 0x8000_0000;
 const FLAG_DEPTH: u32 = 0x80_0000;
 const CAPS2_CUBE_MAP: u32 = 0x200;
 const CAPS2_VOLUME: u32 = 0x20_0000;
@@ -81,6 +84,7 @@ impl Header {
             layers: 1,
             reserved: words[8..19].try_into().expect("eleven words"),
             pixel_format: legacy_pixel_format(&words[20..27]),
+            has_normals: words[20] & FLAG_NORMAL != 0,
             data_offset: HEADER_BYTES,
         };
         if matches!(header.pixel_format, PixelFormat::FourCc { code: [b'D', b'X', b'1', b'0'], .. }) {

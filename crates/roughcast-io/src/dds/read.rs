@@ -4,22 +4,25 @@ use std::collections::BTreeMap;
 
 use roughcast::texture::{TextureArray, TextureInfo};
 
+use super::format::Format;
 use super::header::Header;
 use super::{CONTAINER, format, malformed, unsupported};
 use crate::payload::{Shape, textures_from};
-use crate::texels::full_chain;
+use crate::texels::{full_chain, rgba_names, swizzled};
 use crate::{Decoded, FileInfo, Limits, ReadError};
 
 /// Reads level 0 of layer 0 as an image.
 ///
-/// SNORM formats become floats in -1 ..= 1, BC4 and BC5 UNORM 16-bit samples, masks 8-bit or 16-bit ones. X and Y of an
-/// `ATI2` file are put in order. A DXT5 file comes as RGBA, also where it keeps the X of normals in its alpha.
+/// SNORM formats become floats in -1 ..= 1, BC4 and BC5 UNORM 16-bit samples, masks 8-bit or 16-bit ones. Signed bump formats
+/// become floats of two or three channels. The two channels of an `ATI2` file come as they are stored; where the file says which
+/// of them is x, [`FileInfo::normal_encoding`] has it. A DXT5 file comes as RGBA, also where it keeps the x of normals in its
+/// alpha, but in RXGB and its relatives the components are put back in their places.
 ///
 /// # Errors
 /// [`ReadError`] where the file is broken, too large for `limits`, or of a kind that is not read (see [`super`]).
 pub fn read_image(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
     let header = Header::parse(bytes)?;
-    let (mut shape, format_name) = shape_of(&header)?;
+    let (mut shape, format) = shape_of(&header)?;
     // Level 0 is all that is wanted, so a count of levels that cannot be is no reason to refuse the file.
     shape.levels = shape.levels.min(full_chain(shape.width, shape.height));
     shape.check(CONTAINER, limits)?;
@@ -27,14 +30,21 @@ pub fn read_image(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
         .layer_bytes(0)
         .and_then(|length| bytes.get(header.data_offset..header.data_offset.checked_add(length)?))
         .ok_or_else(|| too_short(&shape))?;
-    let image = shape.format.decode(texels, shape.width, shape.height);
+    let mut image = shape.format.decode(texels, shape.width, shape.height);
+    let mut channels = shape.format.channel_names();
+    if let Some(moved) = &format.moved {
+        image = swizzled(&image, moved);
+        channels = rgba_names(moved.len());
+    }
     let size = (shape.width, shape.height);
     let info = FileInfo {
         layers: shape.layers,
         levels: shape.levels,
         range: shape.format.range(),
         metadata: metadata_of(&header.reserved),
-        ..FileInfo::of_picture(CONTAINER, format_name, size, shape.format.channel_names())
+        kind: format.kind,
+        normal_encoding: format.normals,
+        ..FileInfo::of_picture(CONTAINER, format.name, size, channels)
     };
     Ok(Decoded { image, info })
 }
@@ -47,10 +57,10 @@ pub fn read_image(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
 pub fn read_textures(bytes: &[u8], limits: &Limits) -> Result<TextureArray, ReadError> {
     let header = Header::parse(bytes)?;
     let info = TextureInfo::from_words(&header.reserved)?;
-    let (shape, format_name) = shape_of(&header)?;
+    let (shape, format) = shape_of(&header)?;
     shape.check(CONTAINER, limits)?;
     if !shape.is_of_a_payload() {
-        return Err(unsupported(format!("a baked texture in {format_name}"), "bake it anew"));
+        return Err(unsupported(format!("a baked texture in {}", format.name), "bake it anew"));
     }
     // Layer after layer, each with all its levels, the largest first.
     let lengths: Vec<usize> = (0..shape.levels)
@@ -69,16 +79,16 @@ pub fn read_textures(bytes: &[u8], limits: &Limits) -> Result<TextureArray, Read
     })
 }
 
-fn shape_of(header: &Header) -> Result<(Shape, String), ReadError> {
-    let (format, name) = format::texel_format(header.pixel_format)?;
+fn shape_of(header: &Header) -> Result<(Shape, Format), ReadError> {
+    let format = format::pixel_format(header)?;
     let shape = Shape {
         width: header.width as usize,
         height: header.height as usize,
         layers: header.layers as usize,
         levels: header.levels as usize,
-        format,
+        format: format.texels.clone(),
     };
-    Ok((shape, name))
+    Ok((shape, format))
 }
 
 fn too_short(shape: &Shape) -> ReadError {

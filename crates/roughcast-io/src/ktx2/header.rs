@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
+use super::basis::Content;
 use super::{IDENTIFIER, IDENTIFIER_OF_KTX1, malformed, unsupported};
 use crate::texels::{Axis, Source};
 use crate::{ReadError, metadata};
@@ -11,8 +12,28 @@ use crate::{ReadError, metadata};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Scheme {
     None,
+    BasisLz,
     Zstd,
     Zlib,
+}
+
+/// A block code that Basis Universal's transcoder reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Universal {
+    Etc1s,
+    Uastc,
+    /// ASTC of low dynamic range.
+    Astc,
+}
+
+impl Universal {
+    pub fn name(self) -> &'static str {
+        match self {
+            Universal::Etc1s => "ETC1S",
+            Universal::Uastc => "UASTC",
+            Universal::Astc => "ASTC",
+        }
+    }
 }
 
 /// A file whose header makes sense. Nothing of the size of the texture has been allocated.
@@ -21,6 +42,10 @@ pub(super) struct Container<'a> {
     scheme: Scheme,
     level_index: Vec<LevelEntry>,
     pub vk_format: u32,
+    /// Where the texels are read by Basis Universal's transcoder.
+    pub universal: Option<Universal>,
+    /// The channels of the samples of the data format descriptor.
+    descriptor_channels: Vec<u8>,
     pub width: usize,
     pub height: usize,
     pub layers: usize,
@@ -65,14 +90,17 @@ impl<'a> Container<'a> {
             });
         }
         let scheme = scheme_of(scheme)?;
-        if vk_format == 0 {
-            return Err(universal_format(bytes, field(9)));
+        let universal = universal_of(bytes, vk_format, field(9))?;
+        if scheme == Scheme::BasisLz && universal != Some(Universal::Etc1s) {
+            return Err(malformed("BasisLZ supercompression of something else than ETC1S"));
         }
         Ok(Self {
             bytes,
             scheme,
             level_index: level_index(bytes, levels)?,
             vk_format,
+            universal,
+            descriptor_channels: descriptor_channels(bytes, field(9), field(10)),
             width: width as usize,
             // 1-D textures state a height of 0; one row is what they are.
             height: height.max(1) as usize,
@@ -100,9 +128,49 @@ impl<'a> Container<'a> {
             Scheme::None if data.len() != expected => {
                 Err(malformed(format!("level {level} has {} bytes, its size needs {expected}", data.len())))
             }
+            Scheme::BasisLz => Err(failed("it is no plain level")),
             Scheme::None => Ok(Cow::Borrowed(data)),
             Scheme::Zstd => inflate_zstd(data, expected).map(Cow::Owned).map_err(failed),
             Scheme::Zlib => inflate_zlib(data, expected).map(Cow::Owned).map_err(failed),
+        }
+    }
+
+    /// Holds the size that level 0 states against what its texels need, before the transcoder allocates it.
+    pub fn check_universal_level(&self, universal: Universal) -> Result<(), ReadError> {
+        let entry = self.level_index[0];
+        let too_short = || malformed("level 0 lies outside of the file");
+        let data = slice(self.bytes, entry.offset, entry.length).ok_or_else(too_short)?;
+        let blocks = |side: u32| {
+            (self.width as u64).div_ceil(side.into()) * (self.height as u64).div_ceil(side.into())
+        };
+        let layers = self.layers as u64;
+        match universal {
+            // Of a run of equal blocks each takes a fraction of a bit at best.
+            Universal::Etc1s if blocks(4) > (data.len() as u64 + 1) * ETC1S_MAX_BLOCKS_PER_BYTE => {
+                Err(too_short())
+            }
+            Universal::Etc1s => Ok(()),
+            Universal::Uastc if entry.uncompressed_length != blocks(4) * 16 * layers => {
+                Err(malformed("level 0 states another number of bytes than its size needs"))
+            }
+            // The largest block of ASTC is 12 texels wide.
+            Universal::Astc if entry.uncompressed_length < blocks(12) * 16 * layers => Err(too_short()),
+            _ if entry.uncompressed_length > (data.len() as u64).saturating_mul(ZSTD_MAX_RATIO as u64) => {
+                Err(too_short())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// What the samples of the data format descriptor say the channels contain.
+    pub fn universal_content(&self, universal: Universal) -> Content {
+        // Numbers of `khr_df_channels`; 15 is alpha.
+        match (universal, &self.descriptor_channels[..]) {
+            (Universal::Etc1s, [3]) | (Universal::Uastc, [4]) => Content::Red,
+            (Universal::Etc1s, [3, 4]) | (Universal::Uastc, [5]) => Content::RedAndAlpha,
+            (Universal::Uastc, [6]) => Content::RedGreen,
+            (Universal::Etc1s, [0, 15]) | (Universal::Uastc, [3]) | (Universal::Astc, _) => Content::Rgba,
+            _ => Content::Rgb,
         }
     }
 
@@ -162,25 +230,51 @@ fn slice(bytes: &[u8], offset: u64, length: u64) -> Option<&[u8]> {
 fn scheme_of(number: u32) -> Result<Scheme, ReadError> {
     match number {
         0 => Ok(Scheme::None),
-        1 => Err(unsupported("BasisLZ supercompression (ETC1S)", TRANSCODE)),
+        1 => Ok(Scheme::BasisLz),
         2 => Ok(Scheme::Zstd),
         3 => Ok(Scheme::Zlib),
         _ => Err(unsupported(format!("supercompression scheme {number}"), "save it with none, zstd or zlib")),
     }
 }
 
-const TRANSCODE: &str = "transcode it first, for example with `ktx transcode --target bc7`";
+/// Blocks of ETC1S of which a run can be coded in a byte; far more than the encoder reaches, to bound what a short file asks for.
+const ETC1S_MAX_BLOCKS_PER_BYTE: u64 = 4096;
 
+/// The block code of files for Basis Universal's transcoder; `None` for those that a `vkFormat` describes.
+///
 /// Files without a `vkFormat` say in their data format descriptor what they are.
-fn universal_format(bytes: &[u8], descriptor_offset: u32) -> ReadError {
+fn universal_of(
+    bytes: &[u8],
+    vk_format: u32,
+    descriptor_offset: u32,
+) -> Result<Option<Universal>, ReadError> {
+    const ASTC: std::ops::RangeInclusive<u32> = 157..=184;
+    if ASTC.contains(&vk_format) {
+        return Ok(Some(Universal::Astc));
+    }
+    if vk_format != 0 {
+        return Ok(None);
+    }
     // The colour model stands behind the total size and two words of the block.
     let model = slice(bytes, u64::from(descriptor_offset) + 12, 1).map(|model| model[0]);
     match model {
-        Some(163) => unsupported("ETC1S compression", TRANSCODE),
-        Some(166) => unsupported("UASTC compression", TRANSCODE),
-        Some(model) => unsupported(format!("colour model {model} without a vkFormat"), TRANSCODE),
-        None => malformed("neither a vkFormat nor a data format descriptor says what the texels are"),
+        Some(163) => Ok(Some(Universal::Etc1s)),
+        Some(166) => Ok(Some(Universal::Uastc)),
+        Some(model) => Err(unsupported(
+            format!("colour model {model} without a vkFormat"),
+            "convert it to BC5 or BC7, for example with `ktx transcode --target bc5`",
+        )),
+        None => Err(malformed("neither a vkFormat nor a data format descriptor says what the texels are")),
     }
+}
+
+/// The channel of each sample of the basic data format descriptor; none where it is cut.
+fn descriptor_channels(bytes: &[u8], offset: u32, length: u32) -> Vec<u8> {
+    const BEFORE_SAMPLES: usize = 28;
+    const SAMPLE_BYTES: usize = 16;
+    let samples = slice(bytes, offset.into(), length.into()).and_then(|block| block.get(BEFORE_SAMPLES..));
+    // Bits 24 to 27 of the first word of a sample; the bits above are qualifiers.
+    samples.unwrap_or_default().chunks_exact(SAMPLE_BYTES).map(|sample| sample[3] & 15).collect()
 }
 
 fn level_index(bytes: &[u8], levels: u32) -> Result<Vec<LevelEntry>, ReadError> {

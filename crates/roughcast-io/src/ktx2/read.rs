@@ -1,12 +1,13 @@
 //! Reading KTX2.
 
 use roughcast::texture::{TextureArray, TextureInfo};
+use roughcast::{Kind, NormalChannels};
 
 use super::header::Container;
-use super::{CONTAINER, format, malformed, unsupported};
+use super::{CONTAINER, basis, format, malformed, unsupported};
 use crate::payload::{Shape, textures_from};
 use crate::texels::{flipped, rgba_names, swizzled};
-use crate::{Decoded, FileInfo, Limits, ReadError};
+use crate::{Decoded, FileInfo, Limits, NormalEncoding, ReadError};
 
 /// Reads level 0 of layer 0 as an image.
 ///
@@ -18,24 +19,44 @@ use crate::{Decoded, FileInfo, Limits, ReadError};
 /// [`ReadError`] where the file is broken, too large for `limits`, or of a kind that is not read (see [`super`]).
 pub fn read_image(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
     let file = Container::parse(bytes)?;
-    let (shape, format_name) = shape_of(&file, limits)?;
-    let (layer_bytes, level_bytes) = sizes(&shape, 0)?;
-    let texels = file.level(0, level_bytes)?;
-    let mut image = shape.format.decode(&texels[..layer_bytes], shape.width, shape.height);
-    let mut channels = shape.format.channel_names();
+    let Decoded { mut image, mut info } = match file.universal {
+        Some(universal) => basis::read(bytes, &file, universal, limits)?,
+        None => read_texels(&file, limits)?,
+    };
     if let Some(sources) = file.swizzle(image.channels())? {
         image = swizzled(&image, &sources);
-        channels = rgba_names(sources.len());
+        info.channels = rgba_names(sources.len()).iter().map(|&name| name.to_owned()).collect();
     }
     for axis in file.flips()? {
         image = flipped(image, axis);
     }
+    if info.normal_encoding == NormalEncoding::Unstated && is_normal_mode(&file) && image.channels() == 4 {
+        info.kind = Some(Kind::Normal);
+        info.normal_encoding = NormalEncoding::Stated(NormalChannels::Ra);
+    }
+    Ok(Decoded { image, info })
+}
+
+/// Whether Khronos' tools were told to store x in red, green and blue, and y in alpha. They write down their options.
+fn is_normal_mode(file: &Container<'_>) -> bool {
+    let options = file.pairs.get("KTXwriterScParams").map_or("", String::as_str);
+    let words: Vec<String> = options.split_whitespace().map(|word| word.replace('_', "-")).collect();
+    words.iter().any(|word| word == "--normal-mode")
+}
+
+/// Level 0 of layer 0 of a file whose `vkFormat` says what its texels are.
+fn read_texels(file: &Container<'_>, limits: &Limits) -> Result<Decoded, ReadError> {
+    let (shape, format_name) = shape_of(file, limits)?;
+    let (layer_bytes, level_bytes) = sizes(&shape, 0)?;
+    let texels = file.level(0, level_bytes)?;
+    let image = shape.format.decode(&texels[..layer_bytes], shape.width, shape.height);
+    let channels = shape.format.channel_names();
     let size = (shape.width, shape.height);
     let info = FileInfo {
         layers: shape.layers,
         levels: shape.levels,
         range: shape.format.range(),
-        metadata: file.pairs,
+        metadata: file.pairs.clone(),
         ..FileInfo::of_picture(CONTAINER, format_name.to_owned(), size, channels)
     };
     Ok(Decoded { image, info })

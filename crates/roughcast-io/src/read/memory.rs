@@ -12,7 +12,7 @@ pub(super) const DEFLATE_MAX_RATIO: u64 = 1032;
 ///
 /// # Errors
 /// [`ReadError::Malformed`] where a side is zero, [`ReadError::TooLarge`] where the pixels exceed the limit.
-pub(super) fn check_size(
+pub(crate) fn check_size(
     format: &'static str,
     width: u64,
     height: u64,

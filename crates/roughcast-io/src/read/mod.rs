@@ -15,6 +15,8 @@ mod tiff_entries;
 
 use std::path::Path;
 
+pub(crate) use memory::check_size;
+
 use crate::{Decoded, ReadError, ReadOptions};
 
 /// The file formats that are read.

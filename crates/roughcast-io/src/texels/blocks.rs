@@ -27,8 +27,6 @@ pub(crate) enum BlockCode {
     Bc5,
     /// BC5, signed.
     Bc5Snorm,
-    /// The older order of ATI2 files: Y, then X.
-    Bc5YThenX,
     /// BC7.
     Bc7,
 }
@@ -46,7 +44,7 @@ impl BlockCode {
     pub fn channels(self) -> usize {
         match self {
             BlockCode::Bc4 | BlockCode::Bc4Snorm => 1,
-            BlockCode::Bc5 | BlockCode::Bc5Snorm | BlockCode::Bc5YThenX => 2,
+            BlockCode::Bc5 | BlockCode::Bc5Snorm => 2,
             BlockCode::Bc1Rgb => 3,
             BlockCode::Bc1 | BlockCode::Bc2 | BlockCode::Bc3 | BlockCode::Bc7 => 4,
         }
@@ -80,13 +78,10 @@ impl BlockCode {
                 bcdec_rs::bc4_float(block, &mut values, 4, false);
                 round_to_16_bits(&values, out);
             })),
-            BlockCode::Bc5 | BlockCode::Bc5YThenX => Samples::U16(level.decode(|block, out| {
+            BlockCode::Bc5 => Samples::U16(level.decode(|block, out| {
                 let mut values = [0.0; 32];
                 bcdec_rs::bc5_float(block, &mut values, 8, false);
                 round_to_16_bits(&values, out);
-                if self == BlockCode::Bc5YThenX {
-                    out.chunks_exact_mut(2).for_each(|texel| texel.swap(0, 1));
-                }
             })),
             BlockCode::Bc4Snorm => {
                 Samples::F32(level.decode(|block, out| bcdec_rs::bc4_float(block, out, 4, true)))
@@ -161,18 +156,6 @@ mod tests {
         let sevenths = [7, 0, 6, 5, 4, 3, 2, 1].map(|k| (k as f64 / 7.0 * 65535.0).round() as u16);
         assert_eq!(values[..8], sevenths);
         assert_eq!(values[8..], sevenths);
-    }
-
-    #[test]
-    fn the_older_ati2_order_is_put_right() {
-        let flat = |value: u8| [value, value, 0, 0, 0, 0, 0, 0];
-        let block = [flat(10), flat(200)].concat();
-        let texel = |code: BlockCode| match code.decode(&block, 1, 1) {
-            Samples::U16(values) => values,
-            other => panic!("16 bits, not {other:?}"),
-        };
-        assert_eq!(texel(BlockCode::Bc5), [10 * 257, 200 * 257]);
-        assert_eq!(texel(BlockCode::Bc5YThenX), [200 * 257, 10 * 257]);
     }
 
     #[test]

@@ -6,7 +6,7 @@ mod plain;
 mod rearrange;
 
 pub(crate) use blocks::BlockCode;
-pub(crate) use packed::Packed;
+pub(crate) use packed::{Numbers, Packed};
 pub(crate) use plain::{Encoding, Order, Plain, little_endian_bytes};
 pub(crate) use rearrange::{Axis, Source, flipped, swizzled};
 
@@ -41,7 +41,10 @@ impl TexelFormat {
     pub fn range(&self) -> ValueRange {
         match self {
             TexelFormat::Plain(plain) => plain.encoding.range(),
-            TexelFormat::Packed(_) => ValueRange::Unorm,
+            TexelFormat::Packed(packed) => match packed.numbers() {
+                Numbers::Unsigned => ValueRange::Unorm,
+                Numbers::Signed => ValueRange::Snorm,
+            },
             TexelFormat::Blocks(code) => code.range(),
         }
     }

@@ -21,6 +21,14 @@ impl Field {
         (1 << self.bits) - 1
     }
 
+    /// The field of a texel as a signed number in -1 ..= 1.
+    fn signed(self, texel: u32) -> f32 {
+        let unused = 64 - self.bits;
+        let value = ((u64::from(texel >> self.shift) << unused) as i64) >> unused;
+        let full = ((1_i64 << (self.bits - 1)) - 1).max(1);
+        (value as f32 / full as f32).max(-1.0)
+    }
+
     /// The field of a texel, scaled to 0 ..= `full` and rounded to nearest.
     fn scaled(self, texel: u32, full: u64) -> u64 {
         let value = u64::from(texel >> self.shift) & self.max();
@@ -28,11 +36,21 @@ impl Field {
     }
 }
 
-/// A packed format. Fields of up to 8 bits are decoded to 8 bits, longer ones to 16.
+/// How the bits of the fields are to be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Numbers {
+    /// 0 up to all ones stands for 0 ..= 1.
+    Unsigned,
+    /// Two's complement: n bits stand for -1 ..= 1 when divided by `2^(n-1) - 1`; the one number below is -1 as well.
+    Signed,
+}
+
+/// A packed format. Unsigned fields of up to 8 bits are decoded to 8 bits, longer ones to 16, signed ones to floats.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Packed {
     texel_bytes: usize,
     fields: Vec<Field>,
+    numbers: Numbers,
     names: &'static [&'static str],
 }
 
@@ -46,7 +64,17 @@ impl Packed {
         }
         let fields: Vec<Field> = masks.iter().map(|&mask| Field::of_mask(mask)).collect::<Option<_>>()?;
         let inside = fields.iter().all(|field| field.shift + field.bits <= texel_bytes as u32 * 8);
-        inside.then_some(Self { texel_bytes, fields, names })
+        inside.then_some(Self { texel_bytes, fields, numbers: Numbers::Unsigned, names })
+    }
+
+    /// The same bits as signed numbers.
+    pub fn signed(self) -> Self {
+        Self { numbers: Numbers::Signed, ..self }
+    }
+
+    /// How the bits are read.
+    pub fn numbers(&self) -> Numbers {
+        self.numbers
     }
 
     /// Bytes of one texel.
@@ -61,7 +89,10 @@ impl Packed {
 
     /// Decodes whole texels.
     pub fn decode(&self, bytes: &[u8]) -> Samples {
-        if self.fields.iter().all(|field| field.bits <= 8) {
+        if self.numbers == Numbers::Signed {
+            let signed = |texel: u32| self.fields.iter().map(move |field| field.signed(texel));
+            Samples::F32(self.texels(bytes).flat_map(signed).collect())
+        } else if self.fields.iter().all(|field| field.bits <= 8) {
             Samples::U8(self.fields_of(bytes, 255).map(|v| v as u8).collect())
         } else {
             Samples::U16(self.fields_of(bytes, 65535).map(|v| v as u16).collect())
@@ -69,11 +100,15 @@ impl Packed {
     }
 
     fn fields_of(&self, bytes: &[u8], full: u64) -> impl Iterator<Item = u64> {
-        bytes.chunks_exact(self.texel_bytes).flat_map(move |chunk| {
+        let scaled = move |texel: u32| self.fields.iter().map(move |field| field.scaled(texel, full));
+        self.texels(bytes).flat_map(scaled)
+    }
+
+    fn texels(&self, bytes: &[u8]) -> impl Iterator<Item = u32> {
+        bytes.chunks_exact(self.texel_bytes).map(|chunk| {
             let mut word = [0; 4];
             word[..chunk.len()].copy_from_slice(chunk);
-            let texel = u32::from_le_bytes(word);
-            self.fields.iter().map(move |field| field.scaled(texel, full))
+            u32::from_le_bytes(word)
         })
     }
 }
@@ -96,6 +131,14 @@ mod tests {
             Packed::new(4, &[0x3ff, 0xffc00, 0x3ff0_0000, 0xc000_0000], &["R", "G", "B", "A"]).unwrap();
         let texel = (1023_u32 | 512 << 10 | 1 << 30).to_le_bytes();
         assert_eq!(packed.decode(&texel), Samples::U16(vec![65535, 32800, 0, 21845]));
+    }
+
+    #[test]
+    fn signed_fields_are_divided_by_their_largest_number() {
+        let packed = Packed::new(2, &[0x1f, 0x3e0], &["R", "G"]).unwrap().signed();
+        let texel = |u: i16, v: i16| (((v & 0x1f) << 5) | (u & 0x1f)).to_le_bytes();
+        let texels = [texel(15, -15), texel(-16, 7), texel(0, -1)].concat();
+        assert_eq!(packed.decode(&texels), Samples::F32(vec![1.0, -1.0, -1.0, 7.0 / 15.0, 0.0, -1.0 / 15.0]));
     }
 
     #[test]
