@@ -1,25 +1,27 @@
 //! Files that appear whole or not at all.
 //!
-//! A file is written under a temporary name in the folder of its destination and renamed when it is complete. Whatever
-//! goes wrong before that leaves an older file as it was.
+//! A file is written without a name, or under a hidden one beside its destination (see [`temporary`]), and takes its place when it is
+//! complete. Whatever goes wrong before that leaves an older file as it was.
 //!
 //! The disk is not told to sync. A bake that a power cut destroyed can be repeated, and waiting for hundreds of megabytes
 //! to reach the disk takes longer than the bake; what is guarded against is a program or a disk that fails half-way.
+
+mod temporary;
 
 use std::fs::{self, Metadata, Permissions};
 use std::io::{self, BufWriter, ErrorKind, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::NamedTempFile;
+use temporary::Temporary;
 
-/// Characters of the destination's name that go into the temporary one, which a file system might else find too long.
-const NAME_CHARACTERS: usize = 48;
+/// Symbolic links that are followed one after the other, as Linux does.
+const MAX_LINKS: usize = 40;
 
 /// A file to write to, which takes its place at [`AtomicFile::commit`]; dropped before, it vanishes.
 #[derive(Debug)]
 pub struct AtomicFile {
     destination: PathBuf,
-    file: BufWriter<NamedTempFile>,
+    file: BufWriter<Temporary>,
     /// Of the file that will be replaced.
     permissions: Option<Permissions>,
 }
@@ -37,7 +39,7 @@ impl AtomicFile {
             check_replaceable(old)?;
         }
         let destination = resolved(destination)?;
-        let file = temporary(&destination).map_err(|error| explain(error, destination.parent()))?;
+        let file = Temporary::create(&destination).map_err(|error| explain(error, destination.parent()))?;
         let permissions = old.map(|old| old.permissions());
         Ok(Self { file: BufWriter::new(file), permissions, destination })
     }
@@ -79,12 +81,12 @@ impl Seek for AtomicFile {
 /// A file of which all bytes are written.
 struct Complete {
     destination: PathBuf,
-    file: NamedTempFile,
+    file: Temporary,
 }
 
 impl Complete {
     fn rename(self) -> io::Result<()> {
-        self.file.persist(&self.destination).map(drop).map_err(|error| error.error)
+        self.file.persist(&self.destination)
     }
 }
 
@@ -155,6 +157,7 @@ fn resolved(destination: &Path) -> io::Result<PathBuf> {
     if let Ok(existing) = fs::canonicalize(destination) {
         return Ok(existing);
     }
+    let destination = &linked(destination)?;
     let Some(name) = destination.file_name() else {
         return Err(io::Error::new(ErrorKind::InvalidInput, "the path names no file: add a file name"));
     };
@@ -166,25 +169,30 @@ fn resolved(destination: &Path) -> io::Result<PathBuf> {
     Ok(folder.join(name))
 }
 
-/// An empty file beside the resolved `destination`, with a hidden name that tells what it will become.
-fn temporary(destination: &Path) -> io::Result<NamedTempFile> {
-    let name = destination.file_name().unwrap_or_default().to_string_lossy();
-    let prefix = format!(".{}.", name.chars().take(NAME_CHARACTERS).collect::<String>());
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(&prefix).suffix(".tmp");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // As for any new file, of which the umask takes its part; temporary files are else for their owner alone.
-        builder.permissions(Permissions::from_mode(0o666));
+/// Where a chain of symbolic links leads, whether anything is there or not; a path that is no link itself.
+fn linked(destination: &Path) -> io::Result<PathBuf> {
+    let mut path = destination.to_owned();
+    for _ in 0..MAX_LINKS {
+        match fs::read_link(&path) {
+            // A relative target starts at the folder of the link.
+            Ok(target) => path = path.parent().unwrap_or(Path::new("")).join(target),
+            Err(_) => return Ok(path),
+        }
     }
-    builder.tempfile_in(destination.parent().unwrap_or(Path::new(".")))
+    Err(io::Error::new(
+        ErrorKind::InvalidInput,
+        "its symbolic links lead in a circle: give the name of a file",
+    ))
 }
 
 /// Says what is wrong with the folder.
 fn explain(error: io::Error, folder: Option<&Path>) -> io::Error {
-    let folder = folder.unwrap_or(Path::new(".")).display();
+    let path = folder.unwrap_or(Path::new("."));
+    let folder = path.display();
     let message = match error.kind() {
+        ErrorKind::NotFound if path.is_dir() => {
+            format!("the folder {folder} takes no new files: write elsewhere")
+        }
         ErrorKind::NotFound => format!("the folder {folder} does not exist: create it first"),
         ErrorKind::NotADirectory => format!("{folder} is not a folder: give another path"),
         ErrorKind::PermissionDenied => {
@@ -225,8 +233,7 @@ mod tests {
         file.seek(SeekFrom::Start(2)).expect("a file");
         file.write_all(b"ab").expect("space");
         file.flush().expect("space");
-        let temporary = names(folder.path());
-        assert!(temporary.len() == 1 && temporary[0].starts_with(".map.exr."), "{temporary:?}");
+        assert!(!path.exists());
         file.commit().expect("a writable folder");
         assert_eq!(names(folder.path()), ["map.exr"]);
         assert_eq!(fs::read(&path).expect("the file"), b"01ab456789");
@@ -289,6 +296,37 @@ mod tests {
         assert!(fs::symlink_metadata(&link).expect("the link").is_symlink());
     }
 
+    #[cfg(unix)]
+    #[test]
+    fn a_link_to_nothing_is_followed_to_where_it_leads() {
+        use std::os::unix::fs::symlink;
+        let folder = folder();
+        fs::create_dir(folder.path().join("below")).expect("space");
+        let (first, second) = (folder.path().join("first"), folder.path().join("second"));
+        symlink("second", &first).expect("a link");
+        symlink("below/target", &second).expect("a link");
+        let mut file = AtomicFile::create(&first).expect("a writable folder");
+        file.write_all(b"new").expect("space");
+        file.commit().expect("a writable folder");
+        assert_eq!(fs::read(folder.path().join("below/target")).expect("the file"), b"new");
+        assert!(fs::symlink_metadata(&first).expect("the link").is_symlink());
+        // A link into a folder that is not there, and links that lead in a circle.
+        symlink("missing/target", folder.path().join("nowhere")).expect("a link");
+        symlink("circle", folder.path().join("circle")).expect("a link");
+        let refusal =
+            |name| AtomicFile::create(&folder.path().join(name)).expect_err("a bad link").to_string();
+        assert!(refusal("nowhere").contains("create it first"));
+        assert!(refusal("circle").contains("in a circle"));
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_folder_that_takes_no_files_is_not_called_missing() {
+        let message =
+            AtomicFile::create(Path::new("/proc/map.exr")).expect_err("no new files there").to_string();
+        assert!(message.contains("/proc takes no new files"), "{message}");
+    }
+
     #[test]
     fn bad_destinations_are_refused_with_the_mend() {
         let folder = folder();
@@ -318,7 +356,7 @@ mod tests {
             file.write_all(name.as_bytes()).expect("space");
             set.push(file).expect("another name");
         }
-        assert!(names(folder.path()).iter().all(|name| name.starts_with('.')));
+        assert!(!folder.path().join("a").exists() && !folder.path().join("b").exists());
         // The same file by another way.
         let detour = folder.path().join("..").join(folder.path().file_name().expect("it has a name"));
         let again = AtomicFile::create(&detour.join("a")).expect("a writable folder");
