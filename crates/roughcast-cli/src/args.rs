@@ -53,9 +53,14 @@ pub struct SourceArgs {
     #[arg(long, value_name = "NAME")]
     pub layer: Option<String>,
 
-    /// Which way green points in a normal map: up is OpenGL and glTF, down is DirectX
-    #[arg(long, default_value = "up", value_parser = one_of::<Green>())]
-    pub green: Green,
+    /// Which way green points in a normal map: up is OpenGL and glTF, down is DirectX [default: up; in a folder, what the
+    /// name of the file says]
+    #[arg(long, value_parser = one_of::<Green>())]
+    pub green: Option<Green>,
+
+    /// What the name of a file in a folder says of green.
+    #[arg(skip)]
+    pub green_by_name: Option<Green>,
 
     /// Which way red points in a normal map
     #[arg(long, default_value = "right", value_parser = one_of::<Red>())]
@@ -115,7 +120,7 @@ impl SourceArgs {
     pub fn options(&self, kind: Kind, range: NormalRange, channels: NormalChannels) -> SourceOptions {
         SourceOptions {
             kind,
-            green: self.green,
+            green: self.green.or(self.green_by_name).unwrap_or(Green::Up),
             red: self.red,
             normal_scale: self.normal_scale.unwrap_or(1.0),
             range,

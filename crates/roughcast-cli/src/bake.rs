@@ -11,10 +11,12 @@ use roughcast::{
     BakeError, BakeOptions, Baked, Bits, Blocks, Lobe, Named, PyramidFilter, RoughnessTexture, ScaleChoice,
     bake, refuse_filter,
 };
+use roughcast_io::material_names::{MaterialRole, role_of};
 use roughcast_io::{BlockFormat, FileInfo, Supercompression, compress, decompress};
 
 use crate::args::{READING, REPORT, SourceArgs, one_of, positive};
 use crate::batch;
+use crate::fault::guarded;
 use crate::input::{Map, read_map};
 use crate::output::{self, Container, OutputOptions, Stored};
 use crate::progress::Stages;
@@ -28,7 +30,7 @@ use crate::{UsageError, usage};
 /// The extension of the output says the format: .ktx2 or .dds, both ready for a GPU; .exr or .tx, a tiled EXR, half or float; or .png,
 /// one picture a level (NAME.L0.png, NAME.L1.png ...). A layout of several files writes NAME.PART.ext. With a folder as
 /// input, every map in it is baked into the output folder, and a bad file does not stop the others.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone)]
 #[command(after_help = LAYOUT_HELP)]
 pub struct Args {
     /// A normal or height map (PNG, JPEG, TGA, BMP, WebP, TIFF, HDR, EXR, KTX2, DDS), or a folder of them
@@ -82,6 +84,10 @@ pub struct Args {
     /// Maps baked at the same time [default: the number of processors, at most 4]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256), help_heading = FOLDERS)]
     pub jobs: Option<u16>,
+
+    /// Bake only files whose names match, such as '*_normal*': * stands for any letters, ? for one; may be repeated
+    #[arg(long = "match", value_name = "PATTERN", help_heading = FOLDERS)]
+    pub matching: Vec<String>,
 
     /// Format of the outputs [default: ktx2]
     #[arg(long, value_parser = one_of::<Container>(), help_heading = FOLDERS)]
@@ -161,21 +167,34 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             "it is a folder; name the file to write, with .ktx2, .dds, .exr, .tx or .png at its end",
         ));
     }
-    if args.format.is_some() || args.jobs.is_some() {
+    if args.format.is_some() || args.jobs.is_some() || !args.matching.is_empty() {
         return Err(usage(
             &args.input,
-            "--format and --jobs are for folders, and this is a file: leave them out",
+            "--format, --jobs and --match are for folders, and this is a file: leave them out",
         ));
     }
     let mut stages = Stages::new(4);
-    let report = bake_file(&args.input, &args.output, args, &mut stages);
+    let report = guarded(&args.input, || bake_file(&args.input, &args.output, args, &mut stages));
     let times = stages.finish().to_vec();
     let mut report = report?;
+    report.warnings.extend(name_warning(&args.input, args));
     if args.verbose {
         report.times = times;
     }
     report.print(args.json)?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// A warning where the name of a file says that it is no map of bumps, and nobody has said otherwise.
+fn name_warning(input: &Path, args: &Args) -> Option<String> {
+    let named = role_of(input.file_stem()?.to_str()?)
+        .filter(|named| !named.by_letter && args.source.kind.is_none())?;
+    match named.role {
+        MaterialRole::Other(what) => Some(format!(
+            "its name says that it is {what}, and it is read as a map of bumps: say --kind if that is what it is"
+        )),
+        _ => None,
+    }
 }
 
 /// Bakes one map. Nothing is written unless everything went well.
@@ -198,7 +217,7 @@ pub fn bake_file(input: &Path, output: &Path, args: &Args, stages: &mut Stages) 
             .with_context(named);
     }
     // The pixels are not needed any more, and what follows needs room.
-    let Map { image, info, options: source, green_correlation, mut warnings } = map;
+    let Map { image, info, options: source, green_correlation, mut warnings, .. } = map;
     drop(image);
     stages.begin("compressing");
     let Baked { arrays, report } = baked;

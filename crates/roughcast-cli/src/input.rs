@@ -1,12 +1,14 @@
 //! Loading a map: the file, what it is, and what is odd about it.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow};
 use roughcast::detect::{
-    GreenVerdict, KindGuess, guess_channels, guess_kind, guess_order, guess_range, test_green_of_map,
+    GreenTest, GreenVerdict, KindGuess, guess_channels, guess_kind, guess_order, guess_range,
+    test_green_against_height, test_green_of_map,
 };
 use roughcast::{Green, Image, Kind, NormalChannels, NormalRange, SourceOptions};
+use roughcast_io::material_names::{MaterialRole, role_of};
 use roughcast_io::{Decoded, FileInfo, NormalEncoding, ReadError, ReadOptions, ValueRange};
 
 use crate::UsageError;
@@ -19,6 +21,8 @@ pub struct Map {
     pub options: SourceOptions,
     /// The curl test's correlation; `None` for heights and where there is too little to judge by.
     pub green_correlation: Option<f64>,
+    /// What the test says of the direction of green.
+    pub green: Option<GreenVerdict>,
     /// What the user should hear about.
     pub warnings: Vec<String>,
 }
@@ -48,7 +52,30 @@ pub fn image_of(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<Deco
 
 /// Reads a map and settles what the arguments left open.
 pub fn read_map(path: &Path, args: &SourceArgs) -> Result<Map> {
-    map_of(read_image(path, &args.read_options())?, args).with_context(|| path.display().to_string())
+    let mut map =
+        map_of(read_image(path, &args.read_options())?, args).with_context(|| path.display().to_string())?;
+    if map.green == Some(GreenVerdict::Undecided)
+        && let Some(heights) = height_beside(path, &args.limits().into())
+    {
+        map.test_green_against(&heights.0, &heights.1);
+    }
+    Ok(map)
+}
+
+/// The height map of the same material in the same folder, by its name.
+fn height_beside(path: &Path, options: &ReadOptions) -> Option<(PathBuf, Image)> {
+    let material = role_of(path.file_stem()?.to_str()?)?.material;
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let is_its_height = |other: &PathBuf| {
+        let named = other.file_stem().and_then(|stem| stem.to_str()).and_then(role_of);
+        named.is_some_and(|named| named.role == MaterialRole::Height && named.material == material)
+    };
+    let mut files: Vec<PathBuf> =
+        std::fs::read_dir(folder).ok()?.flatten().map(|entry| entry.path()).collect();
+    files.sort();
+    let found = files.into_iter().find(is_its_height)?;
+    let decoded = roughcast_io::read_image_file(&found, options).ok()?;
+    Some((found, decoded.image))
 }
 
 /// Settles what the arguments left open for an image that was read.
@@ -85,8 +112,16 @@ pub fn map_of(Decoded { image, info }: Decoded, args: &SourceArgs) -> Result<Map
         _ => NormalChannels::Xyz,
     };
     let options = args.options(kind, range, channels);
-    let mut map = Map { image, info, options, green_correlation: None, warnings };
+    let mut map = Map { image, info, options, green_correlation: None, green: None, warnings };
     map.test_green();
+    if let (Some(name), None, Some(GreenVerdict::Down)) = (args.green_by_name, args.green, map.green) {
+        // The name and the slopes contradict each other: the slopes know better.
+        let args = SourceArgs { green_by_name: None, green: Some(turned(name)), ..args.clone() };
+        let Map { image, info, .. } = map;
+        map = map_of(Decoded { image, info }, &args)?;
+        map.warnings
+            .push(format!("its name says green {name}, but its slopes say the opposite, and are believed"));
+    }
     Ok(map)
 }
 
@@ -110,22 +145,66 @@ fn kind_of(image: &Image, info: &FileInfo, range: NormalRange, wanted: Option<Ki
         KindGuess::Certain(kind) => Ok(kind),
         KindGuess::Doubtful { reason } => {
             let has_alpha = info.channels.iter().any(|name| name == "A");
-            let channels = if has_alpha { ", and for normals --normal-channels" } else { "" };
-            Err(anyhow!(
-                "it looks like neither a normal nor a height map ({reason}): say --kind normal or --kind height{channels}"
-            ))
+            Err(NoMap::Undecided { reason, has_alpha }.into())
         }
     }
+}
+
+/// Why a picture is no map of bumps, or may be none.
+#[derive(Clone, Debug)]
+pub enum NoMap {
+    /// `bake` wrote it, in this layout.
+    Baked(String),
+    /// Its pixels are neither normals nor heights for certain.
+    Undecided {
+        /// What was seen.
+        reason: String,
+        /// Whether its alpha may be a component of a normal.
+        has_alpha: bool,
+    },
+}
+
+impl std::fmt::Display for NoMap {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            NoMap::Baked(layout) => write!(
+                f,
+                "it is baked already (layout '{layout}'), and its values are no longer those of a map: give the map that it \
+                 was made from; `roughcast info` and `roughcast unpack` read baked files"
+            ),
+            NoMap::Undecided { reason, has_alpha } => {
+                let channels = if *has_alpha { ", and for normals --normal-channels" } else { "" };
+                write!(
+                    f,
+                    "it looks like neither a normal nor a height map ({reason}): say --kind normal or --kind \
+                     height{channels}"
+                )
+            }
+        }
+    }
+}
+
+impl std::error::Error for NoMap {}
+
+/// The kind of map that the pixels of a file are for certain; `None` also where it cannot be read.
+pub fn kind_by_pixels(path: &Path, args: &SourceArgs) -> Option<Kind> {
+    let Decoded { image, info } = roughcast_io::read_image_file(path, &args.read_options()).ok()?;
+    let range = args.range.unwrap_or_else(|| range_of(&image, &info));
+    kind_of(&image, &info, range, None).ok()
 }
 
 /// Refuses a file that `bake` wrote: its channels are not those of a map, or hold a roughness that includes the bumps.
 pub fn refuse_baked(info: &FileInfo) -> Result<()> {
     match layout_named_in(info) {
-        Some(layout) => Err(anyhow!(
-            "it is baked already (layout '{layout}'), and its values are no longer those of a map: give the map that it \
-             was made from; `roughcast info` and `roughcast unpack` read baked files"
-        )),
+        Some(layout) => Err(NoMap::Baked(layout.to_owned()).into()),
         None => Ok(()),
+    }
+}
+
+fn turned(green: Green) -> Green {
+    match green {
+        Green::Up => Green::Down,
+        Green::Down => Green::Up,
     }
 }
 
@@ -141,15 +220,27 @@ impl Map {
             return;
         }
         let Some(test) = test_green_of_map(&self.image, &self.options) else { return };
+        let how = "the map's slopes are not those of a surface";
+        self.take(test, how);
+    }
+
+    /// Where the curl does not tell, a height map of the same material does.
+    fn test_green_against(&mut self, path: &Path, heights: &Image) {
+        let Some(test) = test_green_against_height(&self.image, &self.options, heights) else { return };
+        let how = format!("the map contradicts the height map {}", path.display());
+        self.take(test, &how);
+    }
+
+    fn take(&mut self, test: GreenTest, how: &str) {
         self.green_correlation = Some(test.correlation);
+        self.green = Some(test.verdict());
         if test.verdict() == GreenVerdict::Down {
             let (read, other) = match self.options.green {
                 Green::Up => ("up", "down"),
                 Green::Down => ("down", "up"),
             };
             self.warnings.push(format!(
-                "read with green {read}, the map's slopes are not those of a surface (correlation {:.2}): green \
-                 probably points {other}; say --green {other}",
+                "read with green {read}, {how} (correlation {:.2}): green probably points {other}; say --green {other}",
                 test.correlation
             ));
         }

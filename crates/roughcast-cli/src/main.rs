@@ -9,6 +9,7 @@ mod batch;
 mod bench;
 mod compare;
 mod display;
+mod fault;
 mod figures;
 mod html;
 mod info;
@@ -56,6 +57,7 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    fault::install_hook();
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => return explain(&error),
@@ -74,7 +76,7 @@ fn main() -> ExitCode {
     match result {
         Ok(code) => code,
         Err(error) => {
-            complain(&one_line(&error));
+            complain(&format!("error: {}", one_line(&error)));
             let usage = error.chain().any(|cause| cause.is::<UsageError>());
             ExitCode::from(if usage { 2 } else { 1 })
         }
@@ -119,7 +121,7 @@ fn usage(path: &Path, line: &str) -> anyhow::Error {
 /// An error with its causes on one line. Decoders' messages may hold line breaks or control characters, of which a
 /// terminal should see none.
 fn one_line(error: &anyhow::Error) -> String {
-    let text = format!("error: {error:#}");
+    let text = format!("{error:#}");
     // Spaces stay as they are, since they may be part of a file's name.
     let pieces = text.split(char::is_control).map(str::trim).filter(|piece| !piece.is_empty());
     pieces.collect::<Vec<_>>().join(" ")

@@ -46,6 +46,7 @@ mod error;
 pub mod exr;
 mod file_info;
 pub mod ktx2;
+pub mod material_names;
 mod metadata;
 mod payload;
 pub mod picture;
