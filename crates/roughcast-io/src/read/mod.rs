@@ -11,7 +11,6 @@ mod jpeg;
 mod memory;
 mod png;
 mod tiff;
-mod tiff_entries;
 
 use std::path::Path;
 
@@ -61,7 +60,7 @@ pub fn read_image(
         Format::Tga => bmp_webp_tga::read_tga(bytes, limits),
         Format::Bmp => bmp_webp_tga::read_bmp(bytes, limits),
         Format::WebP => bmp_webp_tga::read_webp(bytes, limits),
-        Format::Tiff => tiff::read(bytes, limits),
+        Format::Tiff => tiff::read(bytes, options),
         Format::Hdr => hdr::read(bytes, limits),
         Format::Exr => return exr::read(bytes, options),
         Format::Ktx2 => crate::ktx2::read_image(bytes, limits),
