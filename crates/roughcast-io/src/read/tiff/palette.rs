@@ -9,8 +9,8 @@ use super::{FORMAT, SAVE_PLAIN};
 use crate::ReadError;
 use crate::read::memory::{malformed, unsupported};
 
-/// What an 8-bit value is multiplied by to get the 16-bit one.
-const EIGHT_BITS: u16 = 257;
+/// By what a colour of 8 bits is multiplied: so that the largest becomes the largest, or by many writers shifted.
+const EIGHT_BITS: [u16; 2] = [257, 256];
 
 /// Reads the colours of an image of indices: 8 bits where that is exact, else 16.
 pub(super) fn read(
@@ -24,12 +24,12 @@ pub(super) fn read(
     let mut table = table_of(directory, 1 << layout.bits)?;
     // Some writers stored 8 bits; libtiff, too, tells them by their being small.
     if table.iter().flatten().all(|&value| value <= 255) {
-        table.iter_mut().flatten().for_each(|value| *value *= EIGHT_BITS);
+        table.iter_mut().flatten().for_each(|value| *value <<= 8);
     }
     // Every word of so many bits has its entry.
-    if table.iter().flatten().all(|value| value.is_multiple_of(EIGHT_BITS)) {
-        let table: Vec<[u8; 3]> =
-            table.iter().map(|color| color.map(|value| (value / EIGHT_BITS) as u8)).collect();
+    let are_multiples = |factor: &u16| table.iter().flatten().all(|value| value.is_multiple_of(*factor));
+    if EIGHT_BITS.iter().any(are_multiples) {
+        let table: Vec<[u8; 3]> = table.iter().map(|color| color.map(|value| (value >> 8) as u8)).collect();
         let colors = chunks.decode(layout, [0; 3], |index| table[index as usize])?;
         return Ok(Samples::U8(colors.into_flattened()));
     }
