@@ -81,8 +81,9 @@ impl Nodata {
             (None, _) => "by its mask".to_owned(),
             (Some(_), Some(_)) => format!("by its mask, or the value {}", self.text),
         };
-        let (texels, have, are) = if count == 1 { ("texel", "has", "is") } else { ("texels", "have", "are") };
-        format!("{count} {texels} {have} no data ({by}) and {are} taken as flat")
+        let (texels, have, they) =
+            if count == 1 { ("texel", "has", "it and its") } else { ("texels", "have", "they and their") };
+        format!("{count} {texels} {have} no data ({by}): {they} neighbours are taken as flat")
     }
 }
 

@@ -146,8 +146,8 @@ fn normalise_if_full_range(stored: &mut Stored, bits: u32) {
     let Samples::F32(samples) = &mut stored.samples else { return };
     let largest = samples.iter().copied().fold(0.0, f32::max);
     if largest >= 2f32.powi((bits - HIGH_BITS) as i32) {
-        let scale = 1.0 / (2f64.powi(bits as i32) - 1.0);
-        samples.iter_mut().for_each(|sample| *sample = (f64::from(*sample) * scale) as f32);
+        let white = 2f64.powi(bits as i32) - 1.0;
+        samples.iter_mut().for_each(|sample| *sample = (f64::from(*sample) / white) as f32);
         stored.range = ValueRange::Unorm;
     }
 }
