@@ -37,6 +37,7 @@ def picture(dtype, channels, bits=None):
 def with_oiio(name, array, **attributes):
     types = {"float16": "half", "float32": "float", "float64": "double"}
     spec = oiio.ImageSpec(WIDTH, HEIGHT, array.shape[2], types.get(array.dtype.name, array.dtype.name))
+    spec["DateTime"] = "2026:01:01 00:00:00"
     for key, value in attributes.items():
         key = key.replace("_", ":", 1)
         if key == "tile":
@@ -131,7 +132,8 @@ def float24(array):
 
 
 def uint24(array):
-    raw = array.astype("<u4").view("u1").reshape(HEIGHT, WIDTH, 4)[..., :3]
+    """The most significant byte first, as OpenImageIO and tifffile read it in files of either byte order."""
+    raw = array.astype(">u4").view("u1").reshape(HEIGHT, WIDTH, 4)[..., 1:]
     by_hand("uint24_full_range.tif", raw.tobytes(), 24, 1)
 
 

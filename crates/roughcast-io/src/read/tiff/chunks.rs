@@ -211,12 +211,16 @@ impl<'a> Chunks<'a> {
                     });
                     continue;
                 }
-                let row_layout =
-                    RowLayout { bits: layout.bits, samples, is_big_endian: self.file.is_big_endian };
+                let row_layout = RowLayout {
+                    bits: layout.bits,
+                    is_bit_stream: layout.is_bit_stream(),
+                    samples,
+                    is_big_endian: self.file.is_big_endian,
+                };
                 let row_bytes = self.unpack(index, rows_of(targets.len(), self), row_layout, scratch)?;
                 for (target, row) in targets.zip(scratch.unpacked.chunks_exact_mut(row_bytes)) {
                     predictor::undo(self.predictor, row, row_layout, &mut scratch.sorted);
-                    words::unpack(row, layout.bits, visible * samples, &mut scratch.words);
+                    words::unpack(row, row_layout, visible * samples, &mut scratch.words);
                     let pixels = target.chunks_exact_mut(channels).zip(scratch.words.chunks_exact(samples));
                     for (pixel, stored) in pixels {
                         sources

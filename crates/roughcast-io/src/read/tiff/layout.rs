@@ -172,6 +172,15 @@ impl Layout {
         Ok(())
     }
 
+    /// Whether the bits of all samples follow each other, the most significant first. So do integers of 24 bits in
+    /// OpenImageIO and tifffile, although libtiff swaps their bytes as if the byte order of the file applied to them.
+    pub fn is_bit_stream(&self) -> bool {
+        match self.numbers {
+            Numbers::Float => false,
+            _ => !matches!(self.bits, 8 | 16 | 32),
+        }
+    }
+
     /// `RGB 16-bit unsigned` and the like.
     pub fn words(&self) -> String {
         let colours = match self.colours {

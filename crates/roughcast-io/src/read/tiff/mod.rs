@@ -56,6 +56,9 @@ pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<Decoded, ReadE
     let mask = read_mask(file, &directories, (width, height), &options.limits)?;
     let Stored { samples, range, warnings: of_samples } = samples::read(directory, &chunks, &layout, mask)?;
     warnings.extend(of_samples);
+    if layout.bits == 24 && layout.is_bit_stream() && !file.is_big_endian {
+        warnings.push("the byte order of its integers of 24 bits is not defined: the first byte is taken for the highest".to_owned());
+    }
     let left_out = chunks.left_out();
     if left_out > 0 {
         warnings

@@ -15,6 +15,8 @@ pub(super) enum Predictor {
 #[derive(Clone, Copy)]
 pub(super) struct RowLayout {
     pub bits: u32,
+    /// Whether the bits of all samples follow each other, the most significant first, whatever the byte order of the file.
+    pub is_bit_stream: bool,
     /// Samples of a pixel.
     pub samples: usize,
     pub is_big_endian: bool,
@@ -66,7 +68,7 @@ pub(super) fn is_defined(predictor: Predictor, bits: u32, is_float: bool) -> boo
 
 fn to_little_endian(row: &mut [u8], layout: RowLayout) {
     let bytes = layout.bits as usize / 8;
-    if layout.is_big_endian && layout.bits.is_multiple_of(8) && bytes > 1 {
+    if layout.is_big_endian && !layout.is_bit_stream && bytes > 1 {
         row.chunks_exact_mut(bytes).for_each(<[u8]>::reverse);
     }
 }
@@ -89,7 +91,7 @@ mod tests {
             let stored = [1000u16, 5, 65535, 1, 300, 2];
             let bytes = stored.map(|v| if is_big_endian { v.to_be_bytes() } else { v.to_le_bytes() });
             let mut row = bytes.concat();
-            let layout = RowLayout { bits: 16, samples: 2, is_big_endian };
+            let layout = RowLayout { bits: 16, is_bit_stream: false, samples: 2, is_big_endian };
             undo(Predictor::Horizontal, &mut row, layout, &mut Vec::new());
             assert_eq!(row, [1000u16, 5, 999, 6, 1299, 8].map(u16::to_le_bytes).concat());
         }
@@ -101,7 +103,7 @@ mod tests {
         let sorted: Vec<u8> = (0..4).flat_map(|i| floats.map(|v| v.to_be_bytes()[i])).collect();
         let mut row = sorted.clone();
         (1..row.len()).for_each(|i| row[i] = sorted[i].wrapping_sub(sorted[i - 1]));
-        let layout = RowLayout { bits: 32, samples: 1, is_big_endian: false };
+        let layout = RowLayout { bits: 32, is_bit_stream: false, samples: 1, is_big_endian: false };
         undo(Predictor::FloatingPoint, &mut row, layout, &mut Vec::new());
         assert_eq!(row, floats.map(f32::to_le_bytes).concat());
     }

@@ -1,13 +1,16 @@
 //! Rows of packed samples as one word a sample.
 
-/// The first `count` samples of a row, each as the bits in which it is stored. Samples of whole bytes are little-endian; others
-/// follow each other from the most significant bit, and rows begin at whole bytes.
-pub(super) fn unpack(row: &[u8], bits: u32, count: usize, words: &mut Vec<u64>) {
+use super::predictor::RowLayout;
+
+/// The first `count` samples of a row, each as the bits in which it is stored. Samples of whole bytes are little-endian; rows
+/// begin at whole bytes.
+pub(super) fn unpack(row: &[u8], layout: RowLayout, count: usize, words: &mut Vec<u64>) {
     words.clear();
+    let bits = layout.bits;
     match bits {
         8 => words.extend(row[..count].iter().map(|&byte| u64::from(byte))),
         16 => words.extend(whole_bytes::<2>(row, count)),
-        24 => words.extend(whole_bytes::<3>(row, count)),
+        24 if !layout.is_bit_stream => words.extend(whole_bytes::<3>(row, count)),
         32 => words.extend(whole_bytes::<4>(row, count)),
         64 => words.extend(whole_bytes::<8>(row, count)),
         _ => {
@@ -61,7 +64,8 @@ mod tests {
 
     fn unpacked(row: &[u8], bits: u32, count: usize) -> Vec<u64> {
         let mut words = Vec::new();
-        unpack(row, bits, count, &mut words);
+        let is_bit_stream = !matches!(bits, 8 | 16 | 24 | 32);
+        unpack(row, RowLayout { bits, is_bit_stream, samples: 1, is_big_endian: false }, count, &mut words);
         words
     }
 
