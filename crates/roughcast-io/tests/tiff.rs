@@ -139,7 +139,10 @@ fn picture_of_samples(name: &str, channels: &[&str]) -> Image {
 
 #[test]
 fn another_image_of_the_file_is_chosen_by_its_number() {
-    assert_eq!(info("two_images.tif").warnings, ["it has 2 images, of which the first is read"]);
+    assert_eq!(
+        info("two_images.tif").warnings,
+        ["it has 2 images, of which the first is read; others are chosen by their number"]
+    );
     let nth = |layer: &str| {
         let options = ReadOptions { layer: Some(layer.to_owned()), ..ReadOptions::default() };
         read("two_images.tif", &options)

@@ -121,7 +121,9 @@ fn choose<'d, 'a>(
     let count = images.len();
     let Some(name) = layer else {
         let first = images.first().copied().ok_or_else(|| malformed(FORMAT, "it has no image"))?;
-        let warning = (count > 1).then(|| format!("it has {count} images, of which the first is read"));
+        let warning = (count > 1).then(|| {
+            format!("it has {count} images, of which the first is read; others are chosen by their number")
+        });
         return Ok((first, warning.into_iter().collect()));
     };
     let number = name.parse::<usize>().ok().and_then(|number| number.checked_sub(1));
