@@ -49,7 +49,8 @@ pub struct SourceArgs {
     #[arg(long, value_name = "NAME[,NAME...]", value_delimiter = ',')]
     pub channels: Vec<String>,
 
-    /// Layer or part of an EXR to read, by name: ViewLayer.Normal, N [default: the one that leaves no doubt]
+    /// Layer or part of an EXR to read, by name: ViewLayer.Normal, N; image of a TIFF, by number [default: the one that leaves no
+    /// doubt; of a TIFF the first]
     #[arg(long, value_name = "NAME")]
     pub layer: Option<String>,
 

@@ -9,7 +9,7 @@ use roughcast::{Kind, NormalChannels};
 pub struct ReadOptions {
     /// How much the reader may allocate.
     pub limits: Limits,
-    /// The layer, part or subimage to read, by name. `None` reads the one that the file leaves no doubt about.
+    /// The layer or part of an EXR to read, by name, or the image of a TIFF, by number from 1. `None` reads the one that the file leaves no doubt about.
     pub layer: Option<String>,
     /// The channels to read, by name and in this order. Empty reads those that the file's names leave no doubt about.
     pub channels: Vec<String>,

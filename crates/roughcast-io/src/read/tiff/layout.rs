@@ -133,9 +133,14 @@ impl Layout {
         };
         if !wanted.is_empty() {
             let find = |name: &String| names.iter().position(|known| known.eq_ignore_ascii_case(name));
+            // Whoever names a channel means its values, also those of an alpha.
+            let called = |sample: usize| {
+                let name = if names[sample] == "A" { "alpha" } else { &names[sample] };
+                Channel { sample, name: name.to_owned(), is_alpha: false }
+            };
             self.channels = wanted
                 .iter()
-                .map(|name| find(name).map(channel).ok_or_else(|| no_such_channel(name, &names)))
+                .map(|name| find(name).map(called).ok_or_else(|| no_such_channel(name, &names)))
                 .collect::<Result<_, _>>()?;
             return Ok(());
         }
@@ -146,11 +151,7 @@ impl Layout {
         let alpha = (colours..self.samples).find(|&sample| alphas[sample] != Alpha::No);
         let fourth = (self.samples == 4 && colours == 3).then_some(3);
         if self.colours != Colours::Rgb && self.samples > 4 && alpha.is_none() {
-            return Err(unsupported(
-                FORMAT,
-                format_args!("{} samples a pixel without names", self.samples),
-                "choose the channels to read: R, G, B, channel3, channel4 and so on",
-            ));
+            return Err(ReadError::OpenChannels { format: FORMAT, contents: list_of(&names) });
         }
         self.channels = (0..colours).chain(alpha.or(fourth)).map(channel).collect();
         if let Some(last) = self.channels.get_mut(3) {
@@ -205,11 +206,16 @@ impl Layout {
 }
 
 fn no_such_channel(name: &str, names: &[String]) -> ReadError {
-    unsupported(
-        FORMAT,
-        format_args!("the channel '{name}', of which there is none among {},", names.join(", ")),
-        "choose of those",
-    )
+    ReadError::NoSuchChannel { format: FORMAT, wanted: name.to_owned(), contents: list_of(names) }
+}
+
+/// Names in one line of bounded length: those of many samples are numbered.
+fn list_of(names: &[String]) -> String {
+    const MOST: usize = 16;
+    match names {
+        [first @ .., last] if names.len() > MOST => format!("{} ... {last}", first[..MOST - 1].join(", ")),
+        _ => names.join(", "),
+    }
 }
 
 /// What a sample beside the colours is.

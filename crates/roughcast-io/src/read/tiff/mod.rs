@@ -20,7 +20,8 @@ mod words;
 
 use roughcast::Image;
 
-use super::memory::{check_size, malformed, unsupported};
+use super::choice::chosen;
+use super::memory::{check_size, malformed};
 use crate::{Decoded, FileInfo, Limits, ReadError, ReadOptions};
 use chunks::Chunks;
 use directory::{Directory, File, tag};
@@ -76,7 +77,12 @@ pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<Decoded, ReadE
         pixel_size: geo::pixel_size(directory),
         ..FileInfo::of_picture(FORMAT, layout.words(), (width, height), &channels)
     };
-    Ok(Decoded { image, info })
+    let decoded = Decoded { image, info };
+    match layout.colours {
+        // Its channels are those of its colours, which have only now come to be.
+        Colours::Palette => chosen(decoded, &ReadOptions { layer: None, ..options.clone() }),
+        _ => Ok(decoded),
+    }
 }
 
 /// Bits of the tag NewSubfileType: a smaller version of another image, and a mask of another.
@@ -128,12 +134,11 @@ fn choose<'d, 'a>(
     };
     let number = name.parse::<usize>().ok().and_then(|number| number.checked_sub(1));
     let image = number.and_then(|index| images.get(index)).copied();
-    let image = image.ok_or_else(|| {
-        unsupported(
-            FORMAT,
-            format_args!("the layer '{name}'"),
-            "name an image by its number, from 1 to that of the last",
-        )
+    let contents = || if count == 1 { "1".to_owned() } else { format!("1 to {count}") };
+    let image = image.ok_or_else(|| ReadError::NoSuchChannel {
+        format: FORMAT,
+        wanted: name.to_owned(),
+        contents: contents(),
     })?;
     Ok((image, Vec::new()))
 }
