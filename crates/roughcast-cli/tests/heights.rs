@@ -45,14 +45,14 @@ fn the_report_has_the_warning_too() {
 
 #[test]
 fn a_geotiff_gets_the_very_scale() {
-    let map = data("tiff/nodata_int16_projected.tif");
+    let map = data("generated/tiff/nodata_int16_projected.tif");
     let warnings = warnings_of(&map, &[]);
     // 1 / (30 m x 37 pixels).
     let words =
         "its pixels are 30 metres wide: give --height-scale 0.0009009 if the heights are in the same unit";
     assert!(warnings.iter().any(|warning| warning.ends_with(words)), "{warnings:?}");
     // Degrees are no length.
-    let warnings = warnings_of(&data("tiff/heights_geographic.tif"), &[]);
+    let warnings = warnings_of(&data("generated/tiff/heights_geographic.tif"), &[]);
     let words = "give --height-scale 1/(37 x P), with P the width of a pixel in the unit of the heights, which its \
                  0.0002778 degrees do not tell";
     assert!(warnings.iter().any(|warning| warning.ends_with(words)), "{warnings:?}");
@@ -83,7 +83,7 @@ const ROUNDING: f64 = 1e-4;
 
 #[test]
 fn heights_from_0_to_1_get_no_warning_in_any_format() {
-    for map in ["heights/t3d_stones.exr", "heights/canyon_height.jpg", "tiff/grey_12bit.tif"] {
+    for map in ["heights/t3d_stones.exr", "heights/canyon_height.jpg", "generated/tiff/grey_12bit.tif"] {
         let warnings = warnings_of(&data(map), &[]);
         assert!(warnings.iter().all(|warning| !warning.contains("its heights run")), "{map}: {warnings:?}");
     }

@@ -1,6 +1,6 @@
 //! TIFFs of other writers: their pixels, what the tags say of these, and what is refused.
 //!
-//! `testdata/tiff/make.py` made most of the files, with the checksums of the pixels that tifffile decodes.
+//! `testdata/generated/tiff/make.py` made most of the files, with the checksums of the pixels that tifffile decodes.
 
 use roughcast::{Image, Samples};
 use roughcast_io::{
@@ -19,7 +19,7 @@ const CASES: [&str; 7] = [
     "b3cbb077 F32 1 cases/missing-height-units-nodata/dem_nodata.tif",
 ];
 
-/// Files of `testdata/tiff` that are refused, with words of the reason and of the advice.
+/// Files of `testdata/generated/tiff` that are refused, with words of the reason and of the advice.
 const REFUSED: [(&str, [&str; 2]); 4] = [
     ("refused_lerc.tif", ["LERC compression", "LZW, deflate or ZSTD"]),
     ("refused_lzma.tif", ["LZMA compression", "LZW, deflate or ZSTD"]),
@@ -31,7 +31,7 @@ const REFUSED: [(&str, [&str; 2]); 4] = [
 const WIDTH: usize = 37;
 
 fn bytes_of(name: &str) -> Vec<u8> {
-    std::fs::read(find(&format!("tiff/{name}"))).expect("a readable file")
+    std::fs::read(find(&format!("generated/tiff/{name}"))).expect("a readable file")
 }
 
 fn read(name: &str, options: &ReadOptions) -> Result<Decoded, ReadError> {
@@ -63,10 +63,10 @@ fn checksum(image: &Image) -> String {
 
 #[test]
 fn pixels_are_those_of_tifffile() {
-    let checksums = std::fs::read_to_string(find("tiff/checksums.txt")).expect("text");
+    let checksums = std::fs::read_to_string(find("generated/tiff/checksums.txt")).expect("text");
     let lines = checksums.lines().filter(|line| !line.starts_with('#'));
     let expected: Vec<(String, String)> =
-        (lines.map(|line| (line, "tiff/")).chain(CASES.map(|line| (line, ""))))
+        (lines.map(|line| (line, "generated/tiff/")).chain(CASES.map(|line| (line, ""))))
             .map(|(line, folder)| {
                 let (checksum, name) = line.rsplit_once(' ').expect("four columns");
                 (checksum.to_owned(), format!("{folder}{name}"))
@@ -87,8 +87,8 @@ fn pixels_are_those_of_tifffile() {
 
 #[test]
 fn every_file_is_read_or_refused_with_advice() {
-    for path in files_in("tiff").iter().filter(|path| path.ends_with(".tif")) {
-        let name = path.strip_prefix("tiff/").expect("a file of the folder");
+    for path in files_in("generated/tiff").iter().filter(|path| path.ends_with(".tif")) {
+        let name = path.strip_prefix("generated/tiff/").expect("a file of the folder");
         let refusal = REFUSED.iter().find(|(refused, _)| *refused == name).map(|(_, words)| words);
         match (read(name, &ReadOptions::default()), refusal) {
             (Ok(_), None) => {}
@@ -234,7 +234,7 @@ const CUTS: [usize; 5] = [1, 10, 40, 70, 90];
 
 #[test]
 fn a_file_that_was_cut_is_an_error() {
-    for path in files_in("tiff").iter().filter(|path| path.ends_with(".tif")) {
+    for path in files_in("generated/tiff").iter().filter(|path| path.ends_with(".tif")) {
         // The second image of these is no more needed than the tags of others.
         if path.contains("two_images") || path.contains("mask_") {
             continue;
