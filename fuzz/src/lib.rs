@@ -14,7 +14,7 @@ use std::io::Cursor;
 
 use roughcast::Moments;
 use roughcast::texture::{Part, TextureArray, TextureInfo, layers_of};
-use roughcast_io::{Decoded, Limits, Payload, ReadError, Supercompression};
+use roughcast_io::{Decoded, Limits, Payload, ReadError, ReadOptions, Supercompression};
 
 /// Something that takes hostile bytes.
 pub struct Target {
@@ -33,6 +33,7 @@ pub const TARGETS: &[Target] = &[
     Target { name: "bc", extensions: &[], run: bc },
     Target { name: "exr_textures", extensions: &["exr"], run: exr_textures },
     Target { name: "image", extensions: IMAGES, run: image },
+    Target { name: "tiff", extensions: &["tif", "tiff"], run: tiff },
     Target { name: "info", extensions: &[], run: info },
     Target { name: "decode", extensions: &["ktx2", "dds", "exr"], run: decode },
 ];
@@ -83,6 +84,19 @@ pub fn image(data: &[u8]) {
     for extension in [None, Some("tga")] {
         check_image(roughcast_io::read_image(data, extension, &LIMITS.into()));
     }
+}
+
+/// TIFF, whose tags and arrangement of pixels are parsed here: whole, and with another image or other channels chosen.
+pub fn tiff(data: &[u8]) {
+    let read = |layer: Option<&str>, channels: &[&str]| {
+        let layer = layer.map(str::to_owned);
+        let channels = channels.iter().map(|&name| name.to_owned()).collect();
+        roughcast_io::read_image(data, Some("tif"), &ReadOptions { limits: LIMITS, layer, channels })
+    };
+    check_image(read(None, &[]));
+    check_image(read(Some("2"), &[]));
+    check_image(read(None, &["R"]));
+    check_image(read(None, &["channel4", "Y"]));
 }
 
 /// The meaning of texels, as pairs of text (lines of `key=value`) and as the words of a DDS header. What is valid reads

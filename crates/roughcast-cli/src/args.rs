@@ -49,7 +49,8 @@ pub struct SourceArgs {
     #[arg(long, value_name = "NAME[,NAME...]", value_delimiter = ',')]
     pub channels: Vec<String>,
 
-    /// Layer or part of an EXR to read, by name: ViewLayer.Normal, N [default: the one that leaves no doubt]
+    /// Layer or part of an EXR to read, by name: ViewLayer.Normal, N; image of a TIFF, by number [default: the one that leaves no
+    /// doubt; of a TIFF the first]
     #[arg(long, value_name = "NAME")]
     pub layer: Option<String>,
 
@@ -80,9 +81,10 @@ pub struct SourceArgs {
     #[arg(long, value_name = "CHANNELS", value_parser = one_of::<NormalChannels>())]
     pub normal_channels: Option<NormalChannels>,
 
-    /// Height from black to white, as a part of the map's width: 0.02 is 20 texels on a map of 1000
-    #[arg(long, value_name = "X", default_value_t = SourceOptions::DEFAULT_HEIGHT_SCALE, value_parser = finite, allow_negative_numbers = true)]
-    pub height_scale: f32,
+    /// Height of a value of 1 (white), as a part of the map's width: 0.02 is 20 texels on a map of 1000. For heights in metres
+    /// 1 / (width in pixels x metres a pixel) [default: 0.02]
+    #[arg(long, value_name = "X", value_parser = finite, allow_negative_numbers = true)]
+    pub height_scale: Option<f32>,
 
     /// White is deep, not high: the map holds depths
     #[arg(long)]
@@ -125,7 +127,7 @@ impl SourceArgs {
             normal_scale: self.normal_scale.unwrap_or(1.0),
             range,
             normal_channels: channels,
-            height_scale: self.height_scale,
+            height_scale: self.height_scale.unwrap_or(SourceOptions::DEFAULT_HEIGHT_SCALE),
             height_sense: if self.invert_height { HeightSense::WhiteDeep } else { HeightSense::WhiteHigh },
             gradient: self.gradient,
             wrap: self.wrap,

@@ -4,12 +4,14 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow};
 use roughcast::detect::{
-    GreenTest, GreenVerdict, KindGuess, guess_channels, guess_kind, guess_order, guess_range,
-    test_green_against_height, test_green_of_map,
+    GreenTest, GreenVerdict, HeightRange, KindGuess, guess_channels, guess_kind, guess_order, guess_range,
+    height_range, height_scale_for_units, test_green_against_height, test_green_of_map,
 };
 use roughcast::{Green, Image, Kind, NormalChannels, NormalRange, SourceOptions};
 use roughcast_io::material_names::{MaterialRole, role_of};
-use roughcast_io::{Decoded, FileInfo, NormalEncoding, ReadError, ReadOptions, ValueRange};
+use roughcast_io::{
+    Decoded, FileInfo, LengthUnit, NormalEncoding, PixelSize, ReadError, ReadOptions, ValueRange,
+};
 
 use crate::UsageError;
 use crate::args::SourceArgs;
@@ -122,6 +124,9 @@ pub fn map_of(Decoded { image, info }: Decoded, args: &SourceArgs) -> Result<Map
         map.warnings
             .push(format!("its name says green {name}, but its slopes say the opposite, and are believed"));
     }
+    if args.height_scale.is_none() {
+        map.warn_of_units();
+    }
     Ok(map)
 }
 
@@ -214,6 +219,16 @@ pub fn layout_named_in(info: &FileInfo) -> Option<&str> {
 }
 
 impl Map {
+    /// Heights in metres at a scale that is made for 0 to 1 give walls instead of hills.
+    fn warn_of_units(&mut self) {
+        if self.options.kind != Kind::Height || self.info.range != ValueRange::Float {
+            return;
+        }
+        if let Some(range) = height_range(&self.image).filter(|range| !range.is_normalised()) {
+            self.warnings.push(words_on_units(range, &self.info));
+        }
+    }
+
     /// Most maps are read with green up because nobody said otherwise; the curl of the slopes tells if that is wrong.
     fn test_green(&mut self) {
         if self.options.kind != Kind::Normal {
@@ -244,5 +259,57 @@ impl Map {
                 test.correlation
             ));
         }
+    }
+}
+
+/// What to do about heights that are not from 0 to 1.
+fn words_on_units(range: HeightRange, info: &FileInfo) -> String {
+    let width = info.width;
+    let scale_for = |pixel: f64| four_digits(height_scale_for_units(pixel, width));
+    let formula =
+        format!("--height-scale 1/({width} x P), with P the width of a pixel in the unit of the heights");
+    let advice = match info.pixel_size {
+        Some(PixelSize { width: pixel, unit: LengthUnit::Degree }) => {
+            format!("give {formula}, which its {} degrees do not tell", four_digits(pixel))
+        }
+        Some(PixelSize { width: pixel, unit }) => {
+            let unit = match unit {
+                LengthUnit::Metre => "metres",
+                LengthUnit::Foot => "feet",
+                _ => "units",
+            };
+            format!(
+                "its pixels are {} {unit} wide: give --height-scale {} if the heights are in the same unit",
+                four_digits(pixel),
+                scale_for(pixel)
+            )
+        }
+        None => format!("give {formula} ({} for P = 1)", scale_for(1.0)),
+    };
+    format!(
+        "its heights run from {} to {}, not from 0 to 1, so they are probably in metres or another unit, and the default \
+         scale makes each unit {} of the map's width: {advice}",
+        range.min,
+        range.max,
+        SourceOptions::DEFAULT_HEIGHT_SCALE
+    )
+}
+
+/// A number above zero with four significant digits.
+fn four_digits(number: f64) -> String {
+    let decimals = (3.0 - number.log10().floor()).clamp(0.0, 20.0) as usize;
+    let text = format!("{number:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::four_digits;
+
+    #[test]
+    fn numbers_are_written_with_four_digits_and_no_exponent() {
+        let numbers = [0.015625, 30.0, 1.0 / (30.0 * 1201.0), 1.0 / 3600.0, 12345.6, 1.0];
+        let texts = ["0.01562", "30", "0.00002776", "0.0002778", "12346", "1"];
+        assert_eq!(numbers.map(four_digits), texts);
     }
 }

@@ -206,6 +206,20 @@ fn bad_texels_are_mended_and_counted_as_on_the_cpu() {
 }
 
 #[test]
+fn holes_in_heights_are_flat_and_counted_as_on_the_cpu() {
+    let gpu = gpu();
+    let holes = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
+    let values = (0..32 * 32).map(|i| if i % 29 == 0 { holes[i % 3] } else { (i % 13) as f32 / 13.0 });
+    let image = Image::new(32, 32, 1, Samples::F32(values.collect())).expect("as many");
+    for gradient in [Gradient::Sobel, Gradient::Central, Gradient::Forward] {
+        let source = SourceOptions { gradient, ..height_source() };
+        for path in PATHS {
+            Case { path, ..Case::new(&image, source, Layout::Lean, Bits::Half) }.check(&gpu);
+        }
+    }
+}
+
+#[test]
 fn base_roughness_and_fixed_scales_are_the_cpus_bake() {
     let gpu = gpu();
     let image = normals(44, 36, 3, SampleType::U8);

@@ -9,7 +9,7 @@ use roughcast::{Kind, NormalChannels};
 pub struct ReadOptions {
     /// How much the reader may allocate.
     pub limits: Limits,
-    /// The layer, part or subimage to read, by name. `None` reads the one that the file leaves no doubt about.
+    /// The layer or part of an EXR to read, by name, or the image of a TIFF, by number from 1. `None` reads the one that the file leaves no doubt about.
     pub layer: Option<String>,
     /// The channels to read, by name and in this order. Empty reads those that the file's names leave no doubt about.
     pub channels: Vec<String>,
@@ -58,6 +58,28 @@ pub enum NormalEncoding {
     EitherOrder,
 }
 
+/// Unit of a length on the ground.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LengthUnit {
+    /// Metres.
+    Metre,
+    /// International or US survey feet.
+    Foot,
+    /// Degrees of longitude, which have no one length.
+    Degree,
+    /// The file does not say.
+    Unstated,
+}
+
+/// How wide a pixel is on the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PixelSize {
+    /// Width, above zero.
+    pub width: f64,
+    /// Its unit.
+    pub unit: LengthUnit,
+}
+
 /// What a file contains.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileInfo {
@@ -83,6 +105,8 @@ pub struct FileInfo {
     pub kind: Option<Kind>,
     /// Where the file says that normals are stored.
     pub normal_encoding: NormalEncoding,
+    /// What the file says of the width of a pixel on the ground (GeoTIFF).
+    pub pixel_size: Option<PixelSize>,
     /// What a user should hear about how the file was read: one clause each, without the path.
     pub warnings: Vec<String>,
 }
@@ -107,6 +131,7 @@ impl FileInfo {
             metadata: BTreeMap::new(),
             kind: None,
             normal_encoding: NormalEncoding::Unstated,
+            pixel_size: None,
             warnings: Vec::new(),
         }
     }

@@ -57,7 +57,7 @@ mod texels;
 pub use atomic::{AtomicFile, AtomicSet};
 pub use blocks::{BlockArray, BlockFormat, BlockLayer, compress, decompress};
 pub use error::{ReadError, WriteError};
-pub use file_info::{FileInfo, Limits, NormalEncoding, ReadOptions, ValueRange};
+pub use file_info::{FileInfo, LengthUnit, Limits, NormalEncoding, PixelSize, ReadOptions, ValueRange};
 pub use payload::{Payload, Supercompression};
 pub use read::{read_image, read_image_file};
 

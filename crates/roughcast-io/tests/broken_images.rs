@@ -9,11 +9,12 @@ use roughcast_testdata::{available, find};
 use shared_data::manifest;
 
 /// Odd files that hold a whole image all the same, and why.
-const READABLE: [(&str, &str); 9] = [
+const READABLE: [(&str, &str); 10] = [
     ("exr_v1.7.test.interleaved.exr", "two float channels, which only stay out of order"),
     ("go_invalid-palette.png", "indices past the palette, which the format's own library reads as black"),
     ("magnum_openexr_levels-cube-incomplete.exr", "level 0 is whole, lower levels are not"),
     ("oiio_bad.exr", "a broken attribute beside whole pixels"),
+    ("oiio_check1.tif", "whole: planar tiles of floats with their predictor, which other readers lack"),
     ("oiio_corrupt-exif.jpg", "damage within the EXIF data"),
     ("oiio_corrupt-exif-recursive-ifd.jpg", "damage within the EXIF data"),
     ("oiio_corrupt-xmp-deep-nesting.jpg", "XMP that a parser of XMP would choke on"),
@@ -36,7 +37,7 @@ const REASONS: [(&str, &str); 14] = [
     ("imgrs_flip-zero-height2.tga", "there is no image type 0"),
     ("oiio_crash1708.tga", "Invalid color map index"),
     ("oiio_corrupt-icc-4552.jpg", "the file ends too early"),
-    ("imgrs_TODO_hpredict_cmyk.tiff", "the colour type CMYKA(8)"),
+    ("imgrs_TODO_hpredict_cmyk.tiff", "CMYK colour"),
     ("exr_asan_heap-oob_4cb169_978_5f00ce89c3847e739b256efc49f312cf_exr.exr", "points to another block"),
     ("exr_asan_heap-oob_7f4d5072b39d_561_5f5e4ef49a581edaf7bf0858fbfcfdd1_exr.exr", "outside of the file"),
 ];

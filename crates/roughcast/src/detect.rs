@@ -7,6 +7,7 @@ mod channels;
 mod correlation;
 mod field;
 mod green;
+mod heights;
 mod kind;
 mod order;
 mod sample;
@@ -14,5 +15,6 @@ mod vectors;
 
 pub use channels::{guess_channels, guess_range};
 pub use green::{GreenTest, GreenVerdict, test_green, test_green_against_height, test_green_of_map};
+pub use heights::{HeightRange, height_range, height_scale_for_units};
 pub use kind::{KindGuess, guess_kind};
 pub use order::guess_order;

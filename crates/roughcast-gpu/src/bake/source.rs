@@ -158,12 +158,20 @@ impl MapFormat {
                 "forward(map_heights(xs, above), map_heights(xs, at.y), params.height_scale)"
             }
         };
+        // A gradient may leave out its own texel: it is then finite also where there is no height.
+        let check_of_hole = match self.texel {
+            Texel::Value => {
+                "if !is_finite(map_height(at)) { return MendedSlope(vec2f(0.0), FAULT_NON_FINITE); }\n    "
+            }
+            Texel::Unorm(_) | Texel::Code(_) => "",
+        };
         format!(
             "fn map_height(at: vec2i) -> f32 {{ let stored = map_texel(at).x; return {height}; }}\n\
              fn map_heights(xs: vec3i, y: i32) -> vec3f {{\n    \
                  return vec3f(map_height(vec2i(xs.x, y)), map_height(vec2i(xs.y, y)), map_height(vec2i(xs.z, y)));\n}}\n\
              fn map_slope(unsigned_at: vec2u) -> MendedSlope {{\n    \
                  let at = vec2i(unsigned_at);\n    \
+                 {check_of_hole}\
                  let size = vec2i(params.size);\n    \
                  let xs = vec3i(neighbour(at.x - 1, size.x, params.wrap), at.x, neighbour(at.x + 1, size.x, params.wrap));\n    \
                  let above = neighbour(at.y - 1, size.y, params.wrap);\n    \

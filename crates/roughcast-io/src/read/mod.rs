@@ -11,7 +11,6 @@ mod jpeg;
 mod memory;
 mod png;
 mod tiff;
-mod tiff_entries;
 
 use std::path::Path;
 
@@ -40,8 +39,8 @@ enum Format {
 /// range), 16-bit ones `U16`, half floats `F16`, floats and doubles `F32`. Grey stays one channel, named `Y`; colour
 /// profiles and gamma are ignored, since these files hold data, not colours.
 ///
-/// EXR may contain many layers and channels: [`ReadOptions::layer`] and [`ReadOptions::channels`] choose. Of the other formats,
-/// which have no layers, channels are chosen by their names in [`crate::FileInfo::channels`].
+/// EXR may contain many layers and channels: [`ReadOptions::layer`] and [`ReadOptions::channels`] choose. TIFF may contain many
+/// images, which the former names by their number. Of the other formats, which have no layers, channels are chosen by their names in [`crate::FileInfo::channels`].
 ///
 /// `extension`, in lower case and without the dot, only decides for TGA files without a footer: all other formats are
 /// known by their first bytes.
@@ -61,7 +60,7 @@ pub fn read_image(
         Format::Tga => bmp_webp_tga::read_tga(bytes, limits),
         Format::Bmp => bmp_webp_tga::read_bmp(bytes, limits),
         Format::WebP => bmp_webp_tga::read_webp(bytes, limits),
-        Format::Tiff => tiff::read(bytes, limits),
+        Format::Tiff => return tiff::read(bytes, options),
         Format::Hdr => hdr::read(bytes, limits),
         Format::Exr => return exr::read(bytes, options),
         Format::Ktx2 => crate::ktx2::read_image(bytes, limits),

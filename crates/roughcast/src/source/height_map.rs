@@ -45,12 +45,38 @@ pub(super) fn fill(
         Gradient::Central => central(above, here, below, scale, bx, by),
         Gradient::Forward => forward(above, here, scale, bx, by),
     }
+    // A gradient may leave out its own texel: it is then finite also where there is no height.
+    let heights = &here[1..=width];
+    if image.samples().sample_type().is_float() && count_non_finite(heights) > 0 {
+        let holes = bx.iter_mut().zip(heights).filter(|(_, height)| !height.is_finite());
+        holes.for_each(|(slope, _)| *slope = f32::NAN);
+    }
     if count_unusable(bx, by, options.max_slope) == 0 {
         return SourceCounts::default();
     }
-    // The unmended slope as a vector over a z of one: `mended_slope` tells too steep from not finite.
+    // The slope before it is repaired as a vector over a z of one: `mended_slope` tells too steep from not finite.
     let (raw_x, raw_y) = (bx.to_vec(), by.to_vec());
     mend(bx, by, options.max_slope, |i| Some([raw_x[i], raw_y[i], 1.0]))
+}
+
+/// The mean of all heights that are finite: what stands for the others where heights are stored. 0 where none is.
+pub(super) fn mean_height(image: &Image) -> f32 {
+    let mut row = vec![0.0; image.width()];
+    let (mut sum, mut count) = (0.0, 0u64);
+    for y in 0..image.height() {
+        load_channel(image, 0, 0, y, &mut row);
+        for height in row.iter().filter(|height| height.is_finite()) {
+            sum += f64::from(*height);
+            count += 1;
+        }
+    }
+    (sum / count.max(1) as f64) as f32
+}
+
+vectorised! {
+    fn count_non_finite(heights: &[f32]) -> u32 {
+        heights.iter().map(|height| u32::from(!height.is_finite())).sum()
+    }
 }
 
 /// Loads `plane.len()` heights of a row, from the one left of column `x` to the one right of the stretch.

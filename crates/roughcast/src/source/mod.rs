@@ -42,6 +42,8 @@ pub(crate) struct MapSource<'a> {
     options: SourceOptions,
     base: Option<BaseSource<'a>>,
     extras: Vec<Extra>,
+    /// The height that is stored where there is none. A fixed one would be a cliff, and draw the averages towards itself.
+    height_of_holes: f32,
 }
 
 impl<'a> MapSource<'a> {
@@ -59,14 +61,20 @@ impl<'a> MapSource<'a> {
                 return Err(SourceError::Channels { wanted: "normal map", needed, got });
             }
         }
-        Ok(Self { image, options, base, extras })
+        let stores_heights = options.kind == Kind::Height && extras.contains(&Extra::Height);
+        let height_of_holes = if stores_heights && image.samples().sample_type().is_float() {
+            height_map::mean_height(image)
+        } else {
+            0.0
+        };
+        Ok(Self { image, options, base, extras, height_of_holes })
     }
 }
 
 impl MapSource<'_> {
     /// The same slopes with nothing beside them, for passes that store nothing.
     pub fn slopes_only(&self) -> Self {
-        Self { image: self.image, options: self.options, base: self.base, extras: Vec::new() }
+        Self { extras: Vec::new(), ..*self }
     }
 }
 
@@ -140,7 +148,7 @@ impl MapSource<'_> {
             Extra::Height => match self.options.kind {
                 Kind::Height => {
                     load_channel(self.image, 0, x, y, plane);
-                    plane.iter_mut().filter(|v| !v.is_finite()).for_each(|v| *v = 0.0);
+                    plane.iter_mut().filter(|v| !v.is_finite()).for_each(|v| *v = self.height_of_holes);
                 }
                 // What maketx writes where there is no height.
                 Kind::Normal => plane.fill(-1.0),
