@@ -31,7 +31,7 @@ KINDS = {
     "10-bit": (32, (0x3FF00000, 0xFFC00, 0x3FF, 0)),
 }
 DEFAULT_MASKS = {16: (0x7C00, 0x3E0, 0x1F, 0), 32: (0xFF0000, 0xFF00, 0xFF, 0)}
-HEADERS = {"core": 12, "info": 40, "info with masks": 52, "info with alpha": 56, "V4": 108, "V5": 124}
+HEADERS = {"core": 12, "info": 40, "info with masks": 52, "info with alpha": 56, "V4": 108, "V5": 124, "OS/2 2.0": 64, "OS/2 2.0, short": 16}
 
 
 def field(words, mask):
@@ -88,6 +88,8 @@ def make(rng, kind, size, header, top_down, palette_entries, gap):
     height, width = size
     header_bytes = HEADERS[header]
     runs = kind.startswith("RLE")
+    if header.startswith("OS/2") and (masks or top_down or bits in (2, 16, 32) or header_bytes == 16 and runs):
+        return None
     if header == "core" and (masks or runs or top_down or bits in (2, 16, 32)):
         return None
     if runs and top_down or (masks and masks[3] and header in ("info", "info with masks")):

@@ -64,7 +64,7 @@ def runs(rng, units):
     return bytes(out)
 
 
-def make(rng, kind, size, compressed, origin, id_field, footer, index_bits, map_start):
+def make(rng, kind, size, compressed, origin, id_field, footer, index_bits, map_start, interleaving):
     image_type, bits, attributes = KINDS[kind]
     height, width = size
     mapped = image_type == 1
@@ -86,7 +86,7 @@ def make(rng, kind, size, compressed, origin, id_field, footer, index_bits, map_
         held = np.repeat(np.arange(0, count, 5), 5)[:count]
         held = np.where((np.arange(count) // 10) % 2 == 0, held, np.arange(count))
         units, values = units[held], values[held]
-    descriptor = attributes | {"bottom left": 0, "bottom right": 16, "top left": 32, "top right": 48}[origin]
+    descriptor = attributes | interleaving << 6 | {"bottom left": 0, "bottom right": 16, "top left": 32, "top right": 48}[origin]
     header = struct.pack(
         "<BBBHHBHHHHBB",
         len(id_field), int(mapped), image_type + 8 * compressed, map_start if mapped else 0, 40 if mapped else 0,
@@ -106,7 +106,7 @@ PILLOW = {"grey", "grey and alpha", "RGB", "RGBA", "palette of 24 bits"}
 
 
 def check_with_pillow(file, kind, values, origin):
-    if kind not in PILLOW or origin.endswith("right"):
+    if kind not in PILLOW or file[17] >> 6 or origin.endswith("right"):
         return
     image = Image.open(io.BytesIO(file))
     try:
@@ -130,5 +130,7 @@ def families():
         "footer": [False, True],
         "index_bits": [8, 16],
         "map_start": [0, 3],
+        "interleaving": [0],
     }
-    return [Family("TGA", axes, make)]
+    interleaved = {**axes, "interleaving": [1, 2]}
+    return [Family("TGA", axes, make), Family("TGA", interleaved, make, 10, "interleaved")]

@@ -16,9 +16,30 @@ const WORKING_BYTES_PER_PIXEL: u64 = 16;
 /// Memory that a decoder may use beside that: tables and single rows.
 const WORKING_BYTES: u64 = 64 << 20;
 
-/// Reads a BMP: RGB, or RGBA where it has an alpha channel. Palettes become RGB.
+/// Reads a BMP: RGB, or RGBA where it has an alpha mask. Palettes become RGB.
 pub(super) fn read_bmp(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
+    check_bmp_masks(bytes)?;
     decode("BMP", BmpDecoder::new(Cursor::new(bytes)).map_err(|e| fault("BMP", e))?, limits)
+}
+
+/// Refuses masks of more than 8 bits, which the decoder cuts to 8.
+fn check_bmp_masks(bytes: &[u8]) -> Result<(), ReadError> {
+    const COMPRESSION: usize = 30;
+    const BITFIELDS: [u32; 2] = [3, 6];
+    const MASKS: std::ops::Range<usize> = 54..66;
+    let word = |at: usize| bytes.get(at..)?.first_chunk().map(|&bytes| u32::from_le_bytes(bytes));
+    if !word(COMPRESSION).is_some_and(|compression| BITFIELDS.contains(&compression)) {
+        return Ok(());
+    }
+    let bits = MASKS.step_by(4).filter_map(word).map(u32::count_ones).max().unwrap_or(0);
+    if bits > 8 {
+        return Err(unsupported(
+            "BMP",
+            format_args!("a channel of {bits} bits"),
+            "save it as PNG or TIFF of 16 bits",
+        ));
+    }
+    Ok(())
 }
 
 /// Reads a WebP: RGB, or RGBA where it has an alpha channel. Animations are refused.
@@ -58,14 +79,34 @@ pub(super) fn read_tga(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadErr
     // A format without a signature: what its header says is the only sign that this is one.
     const IMAGE_TYPE_OFFSET: usize = 2;
     const IMAGE_TYPES: [u8; 6] = [1, 2, 3, 9, 10, 11];
-    match bytes.get(IMAGE_TYPE_OFFSET) {
-        Some(image_type) if IMAGE_TYPES.contains(image_type) => {}
-        Some(image_type) => {
-            return Err(malformed("TGA", format_args!("there is no image type {image_type}")));
-        }
-        None => return Err(malformed("TGA", "the file ends too early")),
+    const HEADER_BYTES: usize = 18;
+    let header: &[u8; HEADER_BYTES] =
+        bytes.first_chunk().ok_or_else(|| malformed("TGA", "the file ends too early"))?;
+    let image_type = header[IMAGE_TYPE_OFFSET];
+    if !IMAGE_TYPES.contains(&image_type) {
+        return Err(malformed("TGA", format_args!("there is no image type {image_type}")));
     }
+    check_tga_pixels(image_type, header[16], header[17])?;
     decode("TGA", TgaDecoder::new(Cursor::new(bytes)).map_err(|e| fault("TGA", e))?, limits)
+}
+
+/// Refuses what the decoder passes over, and what the format leaves open.
+fn check_tga_pixels(image_type: u8, bits: u8, descriptor: u8) -> Result<(), ReadError> {
+    const GREY: [u8; 2] = [3, 11];
+    const ATTRIBUTE_BITS: u8 = 0b1111;
+    const INTERLEAVING: u8 = 0b1100_0000;
+    if descriptor & INTERLEAVING != 0 {
+        return Err(unsupported("TGA", "interleaved rows", "save it without interleaving"));
+    }
+    if GREY.contains(&image_type) && bits == 16 && descriptor & ATTRIBUTE_BITS == 0 {
+        // Some programs mean grey and alpha, others grey of 16 bits.
+        return Err(unsupported(
+            "TGA",
+            "grey of 16 bits whose header does not say whether half of them are alpha",
+            "save it as PNG of 16 bits",
+        ));
+    }
+    Ok(())
 }
 
 fn decode(
