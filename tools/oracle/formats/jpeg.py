@@ -118,6 +118,16 @@ def pillow(rng, kind, size):
     return "jpg", data, Reference(values, tolerance=TOLERANCE, mean_tolerance=MEAN_TOLERANCE)
 
 
+ARITHMETIC = {
+    "coding": ["arithmetic"],
+    "sampling": ["1x1", "2x2"],
+    "restart": ["none"],
+    "size": [(17, 9)],
+    "quality": [90],
+    "smoothness": ["smooth"],
+}
+
+
 def families():
     if not Path("/usr/bin/cjpeg").exists():
         raise SystemExit("oracle: cjpeg is missing: install libjpeg-turbo-progs")
@@ -134,6 +144,6 @@ def families():
     kinds = ["CMYK", "EXIF orientation", "ICC profile", "comment and density", "12 bits", "lossless"]
     return [
         Family("JPEG", axes, make),
-        Family("JPEG", {**axes, "coding": ["arithmetic"], "size": [(17, 9)], "quality": [90]}, make, 20, "arithmetic"),
+        Family("JPEG", {**axes, **ARITHMETIC}, make, name="arithmetic"),
         Family("JPEG", {"kind": kinds, "size": [(16, 16), (33, 25)]}, pillow, name="kinds"),
     ]
