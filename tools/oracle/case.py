@@ -29,6 +29,8 @@ class Reference:
     tolerance: float = 0.0
     mean_tolerance: float | None = None
     channels: tuple | None = None
+    # What the reader must say that the numbers are: Unorm, Snorm or Float.
+    range: str = "Unorm"
     # How many of the last channels a reader may leave out, since nobody knows what they are.
     optional: int = 0
     # Signed integers become floats, whose last bit depends on how the division is rounded.

@@ -30,10 +30,14 @@ class Verdict:
     rule: object = None
 
 
+# Steps from 0 to 1 of unsigned samples.
+FULL = {np.dtype(np.uint8): 255, np.dtype(np.uint16): 65535}
+
+
 def value_of(samples):
     """Stored samples as float64: unsigned integers as 0 ..= 1, floats as they are."""
-    full = {np.dtype(np.uint8): 255.0, np.dtype(np.uint16): 65535.0}.get(samples.dtype, 1.0)
-    return samples.astype(np.float64) / full
+    with np.errstate(invalid="ignore"):
+        return samples.astype(np.float64) / FULL.get(samples.dtype, 1)
 
 
 def judge(case, outcome, refusals):
@@ -60,11 +64,13 @@ def difference(reference, outcome):
         return f"{shape_words(samples.shape)} instead of {shape_words(expected.shape)}"
     if reference.channels and tuple(outcome.channels) != tuple(reference.channels):
         return f"channels {', '.join(outcome.channels)} instead of {', '.join(reference.channels)}"
+    if outcome.range != reference.range:
+        return f"numbers called {outcome.range} instead of {reference.range}"
     values = value_of(samples)
     with np.errstate(invalid="ignore"):
         errors = np.where(same_non_finite(values, expected), 0.0, np.abs(values - expected))
     errors = np.where(np.isnan(errors), np.inf, errors)
-    allowed = allowance(reference)
+    allowed = allowance(reference, samples.dtype)
     wrong = errors > allowed
     if wrong.any():
         y, x, channel = np.argwhere(wrong)[0]
@@ -79,13 +85,14 @@ def difference(reference, outcome):
     return ""
 
 
-def allowance(reference):
-    """How far each value may be from the reference."""
+def allowance(reference, stored):
+    """How far each value may be from the reference: rounded to the steps of the stored type, of which there must not be
+    fewer than the reference asks for."""
     if reference.tolerance:
         # Differences of whole steps are not exact in float64.
         return np.full(reference.values.shape, reference.tolerance * (1 + 1e-9))
     if reference.full is not None:
-        return np.full(reference.values.shape, HALF_STEP / reference.full)
+        return np.full(reference.values.shape, HALF_STEP / max(reference.full, FULL.get(stored, 0)))
     with np.errstate(over="ignore", invalid="ignore"):
         single = reference.values.astype(np.float32)
         # The nearest single float, and as many more steps as the reference allows.

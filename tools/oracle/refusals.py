@@ -81,6 +81,14 @@ REFUSALS = [
     refusal("TIFF", "CMYK", "a map has no inks", "CMYK colour", layout="CMYK"),
     refusal("TIFF", "L*a*b*", "its numbers are another colour space's", r"L\*a\*b\* colour", layout="L*a*b*"),
     refusal("EXR", "unsigned integers", INTEGERS, "integer channel", types="uint"),
+    refusal(
+        "EXR",
+        "a data window outside of the display window",
+        "nothing of it is visible",
+        "outside of the display window",
+        window=["partly outside", "overscan"],
+        size=(1, 1),
+    ),
     refusal("EXR", "HTJ2K compression", "new, and no decoder in Rust has it", "HTJ2K compression", compression="htj2k256"),
     refusal(
         "KTX2",

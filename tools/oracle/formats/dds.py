@@ -156,8 +156,7 @@ def make(rng, format, size, levels, layers, oddity):
         values = values[:, :, [3, 1, 2]]
     if format == "CxV8U8" or format in ("L6V5U5", "X8L8V8U8", "A2W10V10U10"):
         optional = values.shape[2] - (3 if format == "A2W10V10U10" else 2)
-    reference = Reference(values, full=first.full, tolerance=first.tolerance, optional=optional, float_ulps=1)
-    return "dds", file + body, reference
+    return "dds", file + body, first.reference(values, optional)
 
 
 def refused(rng, format, shape):

@@ -82,7 +82,8 @@ def through_display_window(values, data, display, size):
     left, top = max(0, x0), max(0, y0)
     right, bottom = min(width, x0 + data[2]), min(height, y0 + data[3])
     if right > left and bottom > top:
-        out[top:bottom, left:right] = values[top - y0 : bottom - y0, left - x0 : right - x0]
+        with np.errstate(invalid="ignore"):
+            out[top:bottom, left:right] = values[top - y0 : bottom - y0, left - x0 : right - x0]
     return out
 
 
@@ -143,7 +144,8 @@ def make(rng, size, channels, types, compression, storage, order, window, conten
         spec.attribute("oiio:subimagename", "wanted")
         other.attribute("oiio:subimagename", "other")
         specs, pictures = [other, spec], [pixels_of(rng, (data[3], data[2], 3), "smooth"), picture]
-        chosen["layer"] = "wanted"
+        # A layer inside of a part is named by both.
+        chosen["layer"] = "wanted." + wanted[0].split(".")[0] if "." in wanted[0] else "wanted"
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "a.exr"
         if not written(specs, pictures, path):
@@ -154,7 +156,7 @@ def make(rng, size, channels, types, compression, storage, order, window, conten
     values = through_display_window(values, data, display, size)
     has_alpha = wanted[-1] == "A"
     tolerance = DWA_TOLERANCE if compression.startswith("dwa") else 0.0
-    reference = Reference(values, full=None, tolerance=tolerance, optional=int(has_alpha))
+    reference = Reference(values, full=None, range="Float", tolerance=tolerance, optional=int(has_alpha))
     return "exr", file, reference, chosen
 
 
@@ -173,7 +175,7 @@ def with_levels(rng, mode, size, compression):
         names, values = read(path)
         file = path.read_bytes()
     values = values[:, :, [names.index(name) for name in "RGB"]]
-    return "exr", file, Reference(values, full=None)
+    return "exr", file, Reference(values, full=None, range="Float")
 
 
 def families():

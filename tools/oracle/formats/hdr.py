@@ -84,7 +84,7 @@ def make(rng, size, storage, orientation, signature, header, content):
     file += b"".join(encode(np.ascontiguousarray(row)) for row in stored)
     if header in ("plain", "comments") and orientation == "-Y +X" and content == "usual exponents":
         check_with_openimageio(file, values)
-    return "hdr", file, Reference(values, full=None)
+    return "hdr", file, Reference(values, full=None, range="Float")
 
 
 def check_with_openimageio(file, values):

@@ -146,7 +146,7 @@ def make(rng, format, size, levels, layers, scheme, swizzle, orientation, writer
         stated_levels=0 if levels == "made by the loader" else count, scheme=scheme,
         pairs=b"".join(pair(*each) for each in sorted(pairs)),
     )  # fmt: skip
-    return "ktx2", file, Reference(values, full=first.full, tolerance=first.tolerance, optional=optional, float_ulps=1)
+    return "ktx2", file, first.reference(values, optional)
 
 
 def refused(rng, format, shape):

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from PIL import Image
 
+from case import Reference
+
 # Direct3D lets a decoder of BC1 to BC3 be off by one step of 8 bits; what it rounds comes on top.
 BLOCK_TOLERANCE = 1.01 / 255
 # Signed BC4 and BC5 are floats in our reader, with a few roundings of single floats.
@@ -23,6 +25,13 @@ class Texels:
     values: np.ndarray
     full: int | None = 255
     tolerance: float = 0.0
+    range: str = "Unorm"
+
+    def reference(self, values, optional=0):
+        """What an image of these texels must be, given its values after whatever moved them."""
+        return Reference(
+            values, full=self.full, tolerance=self.tolerance, range=self.range, optional=optional, float_ulps=1
+        )
 
 
 def plain(rng, height, width, encoding, channels, order="RGBA", least=None):
@@ -41,7 +50,8 @@ def plain(rng, height, width, encoding, channels, order="RGBA", least=None):
         stored = (rng.normal(0, 1, shape) * 2.0 ** rng.integers(-12, 12, shape)).astype({"half": "<f2", "float": "<f4"}[encoding])
         values, full = stored.astype(float), None
     places = [order[:channels].index(name) for name in "RGBA" if name in order[:channels]]
-    return Texels(stored.tobytes(), values[:, :, places], full)
+    kind = {"u": "Unorm", "s": "Snorm"}.get(encoding[0], "Float")
+    return Texels(stored.tobytes(), values[:, :, places], full, range=kind)
 
 
 def packed(rng, height, width, bits, fields):
@@ -60,7 +70,7 @@ def packed(rng, height, width, bits, fields):
             channels.append(value / ((1 << count) - 1))
         widest, any_signed = max(widest, count), any_signed or signed
     full = None if any_signed else 255 if widest <= 8 else 65535
-    return Texels(np.ascontiguousarray(raw).tobytes(), np.stack(channels, axis=-1), full)
+    return Texels(np.ascontiguousarray(raw).tobytes(), np.stack(channels, axis=-1), full, range="Snorm" if any_signed else "Unorm")
 
 
 def colours_565(word):
@@ -137,7 +147,7 @@ def blocks(rng, height, width, code):
     signed = code.endswith("signed")
     exact = code in ("BC4", "BC5")
     tolerance = 0.0 if exact else SIGNED_BLOCK_TOLERANCE if signed else BLOCK_TOLERANCE
-    return Texels(stored.tobytes(), grid[:height, :width], 65535 if exact else 255, tolerance)
+    return Texels(stored.tobytes(), grid[:height, :width], 65535 if exact else 255, tolerance, "Snorm" if signed else "Unorm")
 
 
 def bc7_by_pillow(data, height, width):

@@ -94,6 +94,13 @@ def meaning(pixels, sample_format, bits, layout, palette):
     return (float24(pixels) if bits == 24 else pixels), None
 
 
+def range_of(values, sample_format, full):
+    """Unsigned integers are normalised; signed ones of several channels are, too."""
+    if full is not None:
+        return "Unorm"
+    return "Snorm" if sample_format == tiff.INT and np.abs(values).max() <= 1 else "Float"
+
+
 def make(rng, compression, type, layout, predictor, planar, block, order, big, size, filling, extra):
     photometric, samples, extra_samples = LAYOUTS[layout]
     sample_format, bits = TYPES[type]
@@ -140,7 +147,7 @@ def make(rng, compression, type, layout, predictor, planar, block, order, big, s
     )  # fmt: skip
     check_with_tifffile(file, pixels, bits, compression, layout)
     values, full = meaning(pixels, sample_format, bits, layout, palette)
-    reference = Reference(values, full=full, float_ulps=1, optional=OPTIONAL.get(layout, 0))
+    reference = Reference(values, full=full, float_ulps=1, range=range_of(values, sample_format, full), optional=OPTIONAL.get(layout, 0))
     return "tif", file, reference
 
 
