@@ -13,12 +13,13 @@ UINT, INT, FLOAT = 1, 2, 3
 
 
 def packed(rows, bits, order):
-    """Rows of samples[y, i] as bytes: whole bytes in the file's order, else bits from the highest down, rows padded."""
+    """Rows of samples[y, i] as bytes: whole bytes in the file's order, else bits from the highest down, rows padded.
+    Floats of 24 bits follow the file's order, integers of 24 bits do not (GDAL, OpenImageIO, tifffile)."""
     if rows.dtype == np.uint8 and bits == 8:
         return rows.tobytes()
-    if bits == 24:
+    if order == "float 24 <":
         raw = rows.astype("<u4").view(np.uint8).reshape(*rows.shape, 4)[:, :, :3]
-        return (raw if order == "<" else raw[:, :, ::-1]).tobytes()
+        return raw.tobytes()
     if bits in (8, 16, 32, 64):
         return rows.astype(rows.dtype.newbyteorder(order)).tobytes()
     spread = ((rows.astype(np.uint32)[:, :, None] >> np.arange(bits - 1, -1, -1)) & 1).astype(np.uint8)
@@ -81,6 +82,7 @@ def write(pixels, *, bits, photometric, order="<", big=False, compression=NONE, 
     """The bytes of a file with pixels[y, x, sample]; `tile` is (height, width), None for strips; `tags` are further
     (number, type, values)."""
     height, width, samples = pixels.shape
+    sample_order = "float 24 <" if (bits, sample_format, order) == (24, FLOAT, "<") else order
     planes = [pixels[:, :, i : i + 1] for i in range(samples)] if planar else [pixels]
     block_height, block_width = tile or (rows_per_strip or height, width)
     chunks = []
@@ -93,7 +95,7 @@ def write(pixels, *, bits, photometric, order="<", big=False, compression=NONE, 
                     block = np.pad(block, ((0, missing[0]), (0, missing[1]), (0, 0)), mode="edge")
                 block = np.ascontiguousarray(block)
                 rows = predicted(block, predictor, bits)
-                raw = rows.tobytes() if predictor == 3 else packed(rows.reshape(len(block), -1), bits, order)
+                raw = rows.tobytes() if predictor == 3 else packed(rows.reshape(len(block), -1), bits, sample_order)
                 data = compressed(raw, block, compression, level)
                 if reversed_bits:
                     data = imagecodecs.bitorder_encode(data)
