@@ -74,7 +74,10 @@ class Family:
     def case(self, combination):
         """The same combination always gives the same file."""
         seed = zlib.crc32(repr((self.format, self.name, sorted(combination.items(), key=str))).encode())
-        case = self.make(np.random.default_rng(seed), **combination)
+        try:
+            case = self.make(np.random.default_rng(seed), **combination)
+        except Exception as error:
+            raise GeneratorFault(f"{self.format} {combination}: {error!r}") from error
         if case is not None and isinstance(case, tuple):
             suffix, data, reference, *rest = case
             traits = {**self.traits, **combination}
@@ -121,8 +124,10 @@ def every(family):
 def at_random(families, seed):
     """Endless random combinations of random families."""
     source = random.Random(seed)
+    # Large families more often, but small ones, too.
+    weights = [float(family.size()) ** 0.25 for family in families]
     while True:
-        family = source.choice(families)
+        [family] = source.choices(families, weights)
         case = family.case({name: source.choice(values) for name, values in family.axes.items()})
         if case is not None:
             yield case
