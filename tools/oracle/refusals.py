@@ -64,6 +64,13 @@ REFUSALS = [
     ),
     refusal("BMP", "channels of more than 8 bits", "the decoder would cut them to 8", "a channel of 10 bits", kind="10-bit"),
     refusal("BMP", "headers of OS/2 2.0", RARE, "Unknown bitmap header type", header=["OS/2 2.0", "OS/2 2.0, short"]),
+    refusal(
+        "BMP",
+        "runs that leave out pixels",
+        "some programs make them black, others the first colour of the palette",
+        "leaves out pixels",
+        kind=["RLE8 with jumps", "RLE4 with jumps"],
+    ),
     refusal("WebP", "animations", NOT_2D, "an animation is not supported", frames=[2, 3]),
     refusal("HDR", "XYZE", "its numbers are another colour space's", "32-bit_rle_xyze is not supported", header="XYZE"),
     refusal("TIFF", "JPEG compression", "lossy, and rare for maps", "JPEG compression is not supported", compression="JPEG"),

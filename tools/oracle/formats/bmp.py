@@ -16,6 +16,8 @@ KINDS = {
     "8-bit palette": (8, None),
     "RLE8": (8, None),
     "RLE4": (4, None),
+    "RLE8 with jumps": (8, None),
+    "RLE4 with jumps": (4, None),
     "16-bit": (16, None),
     "24-bit": (24, None),
     "32-bit": (32, None),
@@ -54,12 +56,20 @@ def packed_rows(rows, bits):
     return bytes(out)
 
 
-def run_length(rng, rows, bits):
-    """RLE8 or RLE4 of palette indices: runs, literals, and the marks of row and picture ends."""
+def run_length(rng, rows, bits, jumps):
+    """RLE8 or RLE4 of palette indices: runs, literals, and the marks of row and picture ends. With jumps it leaves out
+    places whose index is 0, which nothing else is then written to."""
     out = bytearray()
     for row in rows:
         i = 0
         while i < len(row):
+            zeros = len(row) - i - len(np.trim_zeros(row[i:], "f"))
+            if jumps and zeros and i + zeros < len(row):
+                out += bytes([0, 2, zeros, 0])
+                i += zeros
+                continue
+            if jumps and zeros:
+                break  # The end of the row may come early.
             # RLE4 repeats two indices in turn.
             pattern = row[i : i + (2 if bits == 4 else 1)]
             same = 1
@@ -103,6 +113,9 @@ def make(rng, kind, size, header, top_down, palette_entries, gap):
         indices = noise(rng, (height, width), entries - 1)
         if runs:
             indices = np.repeat(indices, 6, axis=1)[:, 3 : 3 + width]
+            if "jumps" in kind:
+                indices[:, 4:9] = 0
+                indices[:, 12:] = 0
             indices[::2] = np.where(np.arange(width) % 14 < 7, indices[::2, :1], indices[::2])
         values = colours[indices] / 255
         order = colours[:, ::-1].astype(np.uint8)
@@ -117,8 +130,8 @@ def make(rng, kind, size, header, top_down, palette_entries, gap):
         fields = [field(rows, mask) for mask in masks or DEFAULT_MASKS[bits] if mask]
         values = np.stack([value / top for value, top in fields], axis=-1)
     stored = rows if top_down else rows[::-1]
-    body = run_length(rng, stored, bits) if runs else packed_rows(stored, bits)
-    compression = {"RLE8": 1, "RLE4": 2}.get(kind, 3 if masks else 0)
+    body = run_length(rng, stored, bits, "jumps" in kind) if runs else packed_rows(stored, bits)
+    compression = {"RLE8": 1, "RLE4": 2}.get(kind[:4], 3 if masks else 0)
     extra = struct.pack("<3I", *masks[:3]) if masks and header == "info" else b""
     offset = 14 + header_bytes + len(extra) + len(palette) + gap
     if header == "core":

@@ -87,6 +87,7 @@ BEFORE_DATA = {
     "iTXt": chunk(b"iTXt", b"Author\0\x01\0de\0Autor\0" + zlib.compress("drei ü".encode())),
     "pHYs and tIME": chunk(b"pHYs", struct.pack(">IIB", 2835, 1417, 1)) + chunk(b"tIME", bytes([7, 0xE4, 1, 1, 0, 0, 0])),
     "eXIf, rotated": chunk(b"eXIf", EXIF_ROTATED),
+    "suggested palette": chunk(b"PLTE", bytes(range(30))) + chunk(b"hIST", bytes(20)),
     "unknown chunk": chunk(b"roUg", b"any bytes"),
 }
 
@@ -102,6 +103,8 @@ def data_chunks(data, split):
 
 def make(rng, size, colour, depth, interlaced, filters, transparency, colours, extra, split, deflate, significant):
     kind, (height, width) = COLOURS[colour], size
+    if extra == "suggested palette" and (kind not in (RGB, RGBA) or transparency):
+        return None
     if depth not in DEPTHS[kind] or (transparency and kind in (GREY_ALPHA, RGBA)):
         return None
     top = (1 << depth) - 1

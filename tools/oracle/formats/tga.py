@@ -64,10 +64,12 @@ def runs(rng, units):
     return bytes(out)
 
 
-def make(rng, kind, size, compressed, origin, id_field, footer, index_bits, map_start, interleaving):
+def make(rng, kind, size, compressed, origin, id_field, footer, index_bits, map_start, interleaving, unused_palette):
     image_type, bits, attributes = KINDS[kind]
     height, width = size
     mapped = image_type == 1
+    if mapped and unused_palette:
+        return None
     if not mapped and (index_bits, map_start) != (8, 0):
         return None
     count = height * width
@@ -80,7 +82,6 @@ def make(rng, kind, size, compressed, origin, id_field, footer, index_bits, map_
         values = colours[chosen]
     else:
         units, values = pixel_bytes(rng, kind, count)
-        palette = b""
     if compressed:
         # Noise has no runs: every other stretch repeats one pixel.
         held = np.repeat(np.arange(0, count, 5), 5)[:count]
@@ -89,11 +90,12 @@ def make(rng, kind, size, compressed, origin, id_field, footer, index_bits, map_
     descriptor = attributes | interleaving << 6 | {"bottom left": 0, "bottom right": 16, "top left": 32, "top right": 48}[origin]
     header = struct.pack(
         "<BBBHHBHHHHBB",
-        len(id_field), int(mapped), image_type + 8 * compressed, map_start if mapped else 0, 40 if mapped else 0,
-        bits if mapped else 0, 0, 0, width, height, index_bits if mapped else bits, descriptor,
+        len(id_field), int(mapped or unused_palette), image_type + 8 * compressed, map_start if mapped else 0,
+        40 if mapped else 7 * unused_palette, bits if mapped else 24 * unused_palette, 0, 0, width, height, index_bits if mapped else bits, descriptor,
     )  # fmt: skip
     body = runs(rng, units) if compressed else units.tobytes()
-    file = header + id_field + bytes(memoryview(palette).tobytes() if mapped else b"") + body
+    table = palette.tobytes() if mapped else bytes(7 * 3 * unused_palette)
+    file = header + id_field + table + body
     values = values.reshape(height, width, -1)
     values = values[::-1] if origin.startswith("bottom") else values
     values = values[:, ::-1] if origin.endswith("right") else values
@@ -111,8 +113,8 @@ def check_with_pillow(file, kind, values, origin):
     image = Image.open(io.BytesIO(file))
     try:
         image.load()
-    except OSError:
-        # Pillow's runs end with the row.
+    except (OSError, ValueError):
+        # Pillow's runs end with the row, and it stumbles over palettes that are not used.
         return
     image = image.convert("RGB") if image.mode == "P" else image
     decoded = np.asarray(image).reshape(values.shape)
@@ -131,6 +133,7 @@ def families():
         "index_bits": [8, 16],
         "map_start": [0, 3],
         "interleaving": [0],
+        "unused_palette": [False, True],
     }
     interleaved = {**axes, "interleaving": [1, 2]}
     return [Family("TGA", axes, make), Family("TGA", interleaved, make, 10, "interleaved")]
