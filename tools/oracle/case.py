@@ -33,6 +33,8 @@ class Reference:
     range: str = "Unorm"
     # How many of the last channels a reader may leave out, since nobody knows what they are.
     optional: int = 0
+    # Whether the first two channels may be exchanged, since the format does not say which of them is x.
+    either_order: bool = False
     # Signed integers become floats, whose last bit depends on how the division is rounded.
     float_ulps: int = 0
 

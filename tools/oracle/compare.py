@@ -50,7 +50,15 @@ def judge(case, outcome, refusals):
                 return Verdict(REFUSED, outcome.error, rule)
         return Verdict(UNEXPECTED, outcome.error)
     fault = difference(case.reference, outcome)
+    if fault and case.reference.either_order:
+        fault = difference(exchanged(case.reference), outcome) and fault
     return Verdict(DIFFERENT, fault) if fault else Verdict(EQUAL)
+
+
+def exchanged(reference):
+    """The reference with its first two channels in the other order."""
+    order = [1, 0, *range(2, reference.values.shape[2])]
+    return replace(reference, values=reference.values[:, :, order])
 
 
 def difference(reference, outcome):

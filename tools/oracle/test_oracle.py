@@ -99,6 +99,15 @@ class Judging(unittest.TestCase):
         self.assertEqual(self.word(case, dataclasses.replace(whole, samples=whole.samples[:, :, :3])), EQUAL)
         self.assertEqual(self.word(case, dataclasses.replace(whole, samples=whole.samples[:, :, :2])), DIFFERENT)
 
+    def test_the_order_is_free_only_where_the_format_leaves_it_open(self):
+        case = png_case(np.arange(8).reshape(2, 2, 2) / 255, either_order=True)
+        turned = outcome_of(case)
+        turned.samples = turned.samples[:, :, ::-1].copy()
+        self.assertEqual(self.word(case, turned), EQUAL)
+        self.assertEqual(self.word(png_case(case.reference.values), turned), DIFFERENT)
+        turned.samples[0, 0, 0] ^= 1
+        self.assertEqual(self.word(case, turned), DIFFERENT)
+
     def test_refusals_need_a_row_and_its_words(self):
         holes = png_case(np.zeros((1, 1)), "holes")
         expected = Outcome(error="PNG: holes are not supported: fill them")

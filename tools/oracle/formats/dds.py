@@ -156,7 +156,10 @@ def make(rng, format, size, levels, layers, oddity):
         values = values[:, :, [3, 1, 2]]
     if format == "CxV8U8" or format in ("L6V5U5", "X8L8V8U8", "A2W10V10U10"):
         optional = values.shape[2] - (3 if format == "A2W10V10U10" else 2)
-    return "dds", file + body, first.reference(values, optional)
+    reference = first.reference(values, optional)
+    # Writers disagree about which block of an ATI2 is x; pixels and options decide, not the reader.
+    reference.either_order = format == "ATI2"
+    return "dds", file + body, reference
 
 
 def refused(rng, format, shape):
