@@ -194,7 +194,7 @@ class Runs(unittest.TestCase):
 class Generators(unittest.TestCase):
     def test_every_format_has_files(self):
         names = {family.format.lower() for family in formats.registry.families()}
-        self.assertEqual(names, set(formats.registry.MODULES))
+        self.assertEqual(names, {module.split("_")[0] for module in formats.registry.MODULES})
 
     def test_every_row_of_the_table_speaks_of_files_that_are_generated(self):
         families = formats.registry.families()

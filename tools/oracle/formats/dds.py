@@ -47,11 +47,13 @@ MASKS = {
 NUMBERS = {
     "A16B16G16R16": (36, "unorm16", 4), "Q16W16V16U16": (110, "snorm16", 4), "R16F": (111, "half", 1), "G16R16F": (112, "half", 2),
     "A16B16G16R16F": (113, "half", 4), "R32F": (114, "float", 1), "G32R32F": (115, "float", 2), "A32B32G32R32F": (116, "float", 4),
-    "CxV8U8": (117, "snorm8", 2),
+    "CxV8U8": (117, "snorm8", 2), "V8U8 by number": (60, "snorm8", 2), "Q8W8V8U8 by number": (63, "snorm8", 4),
+    "V16U16 by number": (64, "snorm16", 2),
 }  # fmt: skip
 FOURCCS = {
     "DXT1": "BC1", "DXT2": "BC2", "DXT3": "BC2", "DXT4": "BC3", "DXT5": "BC3", "ATI1": "BC4", "BC4U": "BC4", "BC4S": "BC4 signed",
-    "BC5U": "BC5", "BC5S": "BC5 signed", "ATI2": "BC5", "ATI2, A2XY": "BC5", "RXGB": "BC3",
+    "BC5U": "BC5", "BC5S": "BC5 signed", "ATI2": "BC5", "ATI2, A2XY": "BC5", "A2XY": "BC5", "RXGB": "BC3", "DXT5, A2D5": "BC3",
+    "xGBR": "BC3", "RxBG": "BC3", "RBxG": "BC3", "xRBG": "BC3", "RGxB": "BC3", "xGxR": "BC3",
 }  # fmt: skip
 DXGI = {
     "R8_UNORM": (61, "unorm8", 1, "RGBA"), "R8_SNORM": (63, "snorm8", 1, "RGBA"), "R8G8_UNORM": (49, "unorm8", 2, "RGBA"),
@@ -152,8 +154,11 @@ def make(rng, format, size, levels, layers, oddity):
     values = first.values
     optional = 0
     if format == "RXGB":
-        # Doom 3's: x in alpha, the rest in place.
-        values = values[:, :, [3, 1, 2]]
+        # Doom 3's: x in alpha; red, which is left over, comes last if at all.
+        values, optional = values[:, :, [3, 1, 2, 0]], 1
+    elif FOURCCS.get(format) == "BC3" and "x" in format:
+        # Four letters say which colour each stored channel contains.
+        values = values[:, :, [format.index(letter) for letter in "RGB" if letter in format]]
     if format == "CxV8U8" or format in ("L6V5U5", "X8L8V8U8", "A2W10V10U10"):
         optional = values.shape[2] - (3 if format == "A2W10V10U10" else 2)
     reference = first.reference(values, optional)

@@ -178,6 +178,44 @@ def with_levels(rng, mode, size, compression):
     return "exr", file, Reference(values, full=None, range="Float")
 
 
+OPEN = {
+    "two heights": ["displacement", "height"],
+    "unknown names": ["one", "two", "three"],
+    "mask alone": ["mask", "id"],
+    "two layers": ["N.X", "N.Y", "N.Z", "P.X", "P.Y", "P.Z"],
+}
+
+
+def left_open(rng, names, size):
+    """Channels of which nobody can know without asking which are the map."""
+    spec = spec_of((0, 0, size[1], size[0]), (0, 0), size, OPEN[names], "half", "scan lines", "increasingY", "zip")
+    picture = pixels_of(rng, (*size, len(OPEN[names])), "noise")
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "a.exr"
+        written([spec], [picture], path)
+        return "exr", path.read_bytes(), Reference(np.zeros((1, 1, 1)), full=None, range="Float")
+
+
+def deep(rng, storage, size):
+    """Several samples a pixel, each with its depth."""
+    spec = oiio.ImageSpec(size[1], size[0], 2, oiio.FLOAT)
+    spec.channelnames = ["Z", "A"]
+    spec.deep = True
+    spec.attribute("compression", "zips")
+    if storage == "deep tiles":
+        spec.tile_width = spec.tile_height = 16
+    samples = oiio.DeepData()
+    samples.init(size[0] * size[1], 2, [oiio.TypeFloat] * 2, ["Z", "A"])
+    for pixel in range(size[0] * size[1]):
+        samples.set_samples(pixel, int(rng.integers(1, 4)))
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "a.exr"
+        out = oiio.ImageOutput.create(str(path))
+        if not (out.open(str(path), spec) and out.write_deep_image(samples) and out.close()):
+            return None
+        return "exr", path.read_bytes(), Reference(np.zeros((1, 1, 1)), full=None, range="Float")
+
+
 def families():
     axes = {
         "channels": list(CHANNELS),
@@ -191,4 +229,9 @@ def families():
         "parts": ["one part", "two parts"],
     }
     levels = {"mode": ["mip map"], "size": [(16, 16), (33, 20), (64, 128)], "compression": ["zip", "piz", "none"]}
-    return [Family("EXR", axes, make), Family("EXR", levels, with_levels, name="levels")]
+    return [
+        Family("EXR", axes, make),
+        Family("EXR", levels, with_levels, name="levels"),
+        Family("EXR", {"names": list(OPEN), "size": [(3, 4), (16, 16)]}, left_open, name="left open"),
+        Family("EXR", {"storage": ["deep scan lines", "deep tiles"], "size": [(3, 4), (20, 17)]}, deep, name="deep"),
+    ]

@@ -51,7 +51,7 @@ PACKED = {
 OTHERS = {
     "8-bit integers": (13, 1), "8-bit signed integers": (14, 1), "16-bit integers": (74, 2), "32-bit integers": (98, 4),
     "doubles": (112, 8), "shared exponent": (123, 4), "11-bit floats": (122, 4), "depth": (124, 2), "BC6H": (143, 16),
-    "ETC2": (147, 8), "EAC": (153, 8), "ASTC": (157, 16), "PVRTC": (1000054000, 8), "8-bit scaled": (11, 1),
+    "ETC2": (147, 8), "EAC": (153, 8), "ASTC HDR": (1000066000, 16), "PVRTC": (1000054000, 8), "8-bit scaled": (11, 1),
 }  # fmt: skip
 SWIZZLES = ["none", "rgba", "rrrg", "gggr", "bgra", "rg01", "r001", "0r1g", "argb", "000r", "aaaa"]
 ORIENTATIONS = ["none", "rd", "ru", "ld", "lu"]
@@ -68,7 +68,8 @@ def descriptor(channels, texel_bytes):
     return struct.pack("<I", 28 + len(samples)) + head + bytes([texel_bytes]) + bytes(7) + samples
 
 
-def write(number, levels, *, type_size, texel_bytes, channels, width, height, layers, stated_levels, scheme, pairs, faces=1, depth=0):
+def write(number, levels, *, type_size, texel_bytes, channels, width, height, layers, stated_levels, scheme, pairs, faces=1, depth=0,
+          table=None):  # fmt: skip
     """The bytes of a file; `levels` are those of each level, the largest first."""
     raw = levels
     packed_levels = {
@@ -77,7 +78,7 @@ def write(number, levels, *, type_size, texel_bytes, channels, width, height, la
         "zlib": lambda data: zlib.compress(data),
     }[scheme]
     stored = [packed_levels(data) for data in raw]
-    table = descriptor(channels, texel_bytes)
+    table = table or descriptor(channels, texel_bytes)
     start = 80 + 24 * len(levels)
     pairs_start = start + len(table)
     file = bytearray(b"\xabKTX 20\xbb\r\n\x1a\n")
