@@ -89,7 +89,9 @@ pub(super) fn read(
 fn transcoded(bytes: &[u8]) -> Result<Vec<u8>, ReadError> {
     let transcode = || {
         let transcoder = Transcoder::new(bytes)?;
-        transcoder.transcode_image(0, 0, 0, TargetFormat::Rgba32, DecodeFlags::NONE)
+        // By default large blocks of ASTC are smoothed where they meet: no graphics processor does so, nor does the
+        // specification.
+        transcoder.transcode_image(0, 0, 0, TargetFormat::Rgba32, DecodeFlags::NO_DEBLOCK_FILTERING)
     };
     match catch_unwind(AssertUnwindSafe(transcode)) {
         Ok(Ok(texels)) => Ok(texels),

@@ -16,9 +16,78 @@ const WORKING_BYTES_PER_PIXEL: u64 = 16;
 /// Memory that a decoder may use beside that: tables and single rows.
 const WORKING_BYTES: u64 = 64 << 20;
 
-/// Reads a BMP: RGB, or RGBA where it has an alpha channel. Palettes become RGB.
+/// Reads a BMP: RGB, or RGBA where it has an alpha mask. Palettes become RGB.
 pub(super) fn read_bmp(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
+    let header = BmpHeader(bytes);
+    header.check_masks()?;
+    header.check_runs()?;
     decode("BMP", BmpDecoder::new(Cursor::new(bytes)).map_err(|e| fault("BMP", e))?, limits)
+}
+
+/// A look at a BMP's header before it is decoded. What is missing in it is left to the decoder.
+struct BmpHeader<'a>(&'a [u8]);
+
+impl BmpHeader<'_> {
+    fn word(&self, at: usize) -> Option<u32> {
+        self.0.get(at..)?.first_chunk().map(|&bytes| u32::from_le_bytes(bytes))
+    }
+
+    fn compression(&self) -> Option<u32> {
+        self.word(30)
+    }
+
+    /// Refuses masks of more than 8 bits, which the decoder cuts to 8.
+    fn check_masks(&self) -> Result<(), ReadError> {
+        const BITFIELDS: [u32; 2] = [3, 6];
+        const MASKS: [usize; 3] = [54, 58, 62];
+        if !self.compression().is_some_and(|compression| BITFIELDS.contains(&compression)) {
+            return Ok(());
+        }
+        let masks = MASKS.iter().filter_map(|&at| self.word(at));
+        match masks.map(u32::count_ones).max() {
+            Some(bits @ 9..) => Err(unsupported(
+                "BMP",
+                format_args!("a channel of {bits} bits"),
+                "save it as PNG or TIFF of 16 bits",
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses runs that leave out pixels: some programs make them black, others the first colour of the palette.
+    fn check_runs(&self) -> Result<(), ReadError> {
+        if self.leaves_out_pixels() == Some(true) {
+            return Err(unsupported("BMP", "run-length coding that leaves out pixels", "save it as PNG"));
+        }
+        Ok(())
+    }
+
+    /// `None` where it has no runs, or ends too early.
+    fn leaves_out_pixels(&self) -> Option<bool> {
+        const RLE8: u32 = 1;
+        const RLE4: u32 = 2;
+        let compression = self.compression().filter(|compression| [RLE8, RLE4].contains(compression))?;
+        let [width, height] = [self.word(18)? as usize, self.word(22)? as usize];
+        let mut rest = self.0.get(self.word(10)? as usize..)?;
+        let (mut x, mut y) = (0, 0);
+        while y < height {
+            let [first, second, tail @ ..] = rest else { return None };
+            rest = tail;
+            match (first, usize::from(*second)) {
+                (0, 0) if x < width => return Some(true),
+                (0, 0) => (x, y) = (0, y + 1),
+                (0, 1) => return Some(x < width || y + 1 < height),
+                (0, 2) => return Some(true),
+                (0, count) => {
+                    let bytes = if compression == RLE4 { count.div_ceil(2) } else { count };
+                    rest = rest.get(bytes.next_multiple_of(2)..)?;
+                    x += count;
+                }
+                (&count, _) => x += usize::from(count),
+            }
+        }
+        Some(false)
+    }
 }
 
 /// Reads a WebP: RGB, or RGBA where it has an alpha channel. Animations are refused.
@@ -58,14 +127,34 @@ pub(super) fn read_tga(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadErr
     // A format without a signature: what its header says is the only sign that this is one.
     const IMAGE_TYPE_OFFSET: usize = 2;
     const IMAGE_TYPES: [u8; 6] = [1, 2, 3, 9, 10, 11];
-    match bytes.get(IMAGE_TYPE_OFFSET) {
-        Some(image_type) if IMAGE_TYPES.contains(image_type) => {}
-        Some(image_type) => {
-            return Err(malformed("TGA", format_args!("there is no image type {image_type}")));
-        }
-        None => return Err(malformed("TGA", "the file ends too early")),
+    const HEADER_BYTES: usize = 18;
+    let header: &[u8; HEADER_BYTES] =
+        bytes.first_chunk().ok_or_else(|| malformed("TGA", "the file ends too early"))?;
+    let image_type = header[IMAGE_TYPE_OFFSET];
+    if !IMAGE_TYPES.contains(&image_type) {
+        return Err(malformed("TGA", format_args!("there is no image type {image_type}")));
     }
+    check_tga_pixels(image_type, header[16], header[17])?;
     decode("TGA", TgaDecoder::new(Cursor::new(bytes)).map_err(|e| fault("TGA", e))?, limits)
+}
+
+/// Refuses what the decoder passes over, and what the format leaves open.
+fn check_tga_pixels(image_type: u8, bits: u8, descriptor: u8) -> Result<(), ReadError> {
+    const GREY: [u8; 2] = [3, 11];
+    const ATTRIBUTE_BITS: u8 = 0b1111;
+    const INTERLEAVING: u8 = 0b1100_0000;
+    if descriptor & INTERLEAVING != 0 {
+        return Err(unsupported("TGA", "interleaved rows", "save it without interleaving"));
+    }
+    if GREY.contains(&image_type) && bits == 16 && descriptor & ATTRIBUTE_BITS == 0 {
+        // Some programs mean grey and alpha, others grey of 16 bits.
+        return Err(unsupported(
+            "TGA",
+            "grey of 16 bits whose header does not say whether half of them are alpha",
+            "save it as PNG of 16 bits",
+        ));
+    }
+    Ok(())
 }
 
 fn decode(
@@ -119,5 +208,88 @@ fn fault(format: &'static str, error: ImageError) -> ReadError {
             None => malformed(format, error),
         },
         error => malformed(format, error),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A BMP with a header of 40 bytes: its bits, its compression, what lies before the pixels, and the pixels.
+    fn bmp(
+        (width, height): (u32, u32),
+        bits: u32,
+        compression: u32,
+        tables: &[u8],
+        pixels: &[u8],
+    ) -> Vec<u8> {
+        let offset = 54 + tables.len() as u32;
+        let mut file = b"BM".to_vec();
+        let words = [offset + pixels.len() as u32, 0, offset, 40, width, height, 1 | bits << 16, compression];
+        file.extend(words.iter().chain(&[0; 5]).flat_map(|word| word.to_le_bytes()));
+        [&file[..], tables, pixels].concat()
+    }
+
+    fn masks(red: u32, green: u32, blue: u32) -> Vec<u8> {
+        [red, green, blue].iter().flat_map(|mask| mask.to_le_bytes()).collect()
+    }
+
+    fn samples(decoded: Decoded) -> Vec<u8> {
+        match decoded.image.into_samples() {
+            Samples::U8(samples) => samples,
+            other => panic!("8 bits, not {:?}", other.sample_type()),
+        }
+    }
+
+    #[test]
+    fn bmp_masks_of_more_than_8_bits_are_refused() {
+        let pixel = 0x1234_5678_u32.to_le_bytes();
+        let wide = bmp((1, 1), 32, 3, &masks(0x3ff0_0000, 0xf_fc00, 0x3ff), &pixel);
+        let error = read_bmp(&wide, &Limits::default()).unwrap_err().to_string();
+        assert!(error.contains("a channel of 10 bits"), "{error}");
+        let eight = bmp((1, 1), 32, 3, &masks(0xff, 0xff00, 0xff_0000), &pixel);
+        assert_eq!(samples(read_bmp(&eight, &Limits::default()).unwrap()), [0x78, 0x56, 0x34]);
+    }
+
+    #[test]
+    fn bmp_runs_must_fill_the_picture() {
+        let palette: Vec<u8> = (0..=255).flat_map(|grey| [grey, grey, grey, 0]).collect();
+        let read = |pixels: &[u8]| read_bmp(&bmp((4, 2), 8, 1, &palette, pixels), &Limits::default());
+        // The lower row comes first: four times 7, then 1, 2, 3 as they are (and a byte of padding), and 9.
+        let whole = [4, 7, 0, 0, 0, 3, 1, 2, 3, 0, 1, 9, 0, 1];
+        let grey: Vec<u8> = samples(read(&whole).unwrap()).into_iter().step_by(3).collect();
+        assert_eq!(grey, [1, 2, 3, 9, 7, 7, 7, 7]);
+        let short_row = [3, 7, 0, 0, 4, 9, 0, 1];
+        let jump = [2, 7, 0, 2, 2, 0, 0, 0, 4, 9, 0, 1];
+        let early_end = [4, 7, 0, 0, 0, 1];
+        for pixels in [&short_row[..], &jump, &early_end] {
+            let error = read(pixels).unwrap_err().to_string();
+            assert!(error.contains("leaves out pixels"), "{pixels:?}: {error}");
+        }
+        // A file that is cut is the decoder's affair.
+        assert!((0..whole.len()).all(|length| read(&whole[..length]).is_err()));
+    }
+
+    fn tga(image_type: u8, bits: u8, descriptor: u8, pixels: &[u8]) -> Vec<u8> {
+        let header = [0, 0, image_type, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 0, bits, descriptor];
+        [&header[..], pixels].concat()
+    }
+
+    #[test]
+    fn a_tga_must_say_what_its_16_grey_bits_are() {
+        let read = |descriptor| read_tga(&tga(3, 16, descriptor, &[10, 20]), &Limits::default());
+        assert_eq!(samples(read(8).unwrap()), [10, 20]);
+        let error = read(0).unwrap_err().to_string();
+        assert!(error.contains("does not say whether"), "{error}");
+    }
+
+    #[test]
+    fn interleaved_rows_of_a_tga_are_refused() {
+        let read = |descriptor| read_tga(&tga(2, 24, descriptor, &[1, 2, 3]), &Limits::default());
+        assert_eq!(samples(read(0).unwrap()), [3, 2, 1]);
+        for descriptor in [0x40, 0x80, 0xc0] {
+            let error = read(descriptor).unwrap_err().to_string();
+            assert!(error.contains("interleaved rows"), "{error}");
+        }
     }
 }

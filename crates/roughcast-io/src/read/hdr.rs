@@ -19,18 +19,19 @@ type Rgbe = [u8; 4];
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
     let mut input = Input(bytes);
     let metadata = read_header(&mut input)?;
-    let (height, width, bottom_up) = parse_resolution(&input.line()?)?;
-    let (width, height) = check_size(FORMAT, width, height, limits)?;
+    let resolution = Resolution::parse(&input.line()?)?;
+    let (width, height) = check_size(FORMAT, resolution.width(), resolution.height(), limits)?;
+    let (lines, line_length) = if resolution.in_columns { (width, height) } else { (height, width) };
 
     let scale: Vec<f32> = (0..=u8::MAX).map(scale_of_exponent).collect();
-    let mut row = zeros::<Rgbe>(width)?;
+    let mut line = zeros::<Rgbe>(line_length)?;
     let mut samples = zeros::<f32>(width * height * 3)?;
-    for stored_y in 0..height {
-        read_row(&mut input, &mut row)?;
-        let y = if bottom_up { height - 1 - stored_y } else { stored_y };
-        let target = &mut samples[y * width * 3..(y + 1) * width * 3];
-        for (pixel, &[r, g, b, exponent]) in target.chunks_exact_mut(3).zip(&row) {
+    for line_index in 0..lines {
+        read_line(&mut input, &mut line)?;
+        for (index, &[r, g, b, exponent]) in line.iter().enumerate() {
+            let (x, y) = resolution.place(line_index, index, (width, height));
             let scale = scale[usize::from(exponent)];
+            let pixel = &mut samples[(y * width + x) * 3..][..3];
             pixel.copy_from_slice(&[r, g, b].map(|mantissa| f32::from(mantissa) * scale));
         }
     }
@@ -96,29 +97,58 @@ fn read_header(input: &mut Input<'_>) -> Result<BTreeMap<String, String>, ReadEr
     }
 }
 
-/// Height, width, and whether the first row stored is the bottom one, of a line like `-Y 512 +X 1024`.
-fn parse_resolution(line: &str) -> Result<(u64, u64, bool), ReadError> {
-    let words: Vec<&str> = line.split_ascii_whitespace().collect();
-    let [vertical, height, horizontal, width] = words[..] else {
-        return Err(malformed(FORMAT, format_args!("its resolution line reads '{line}'")));
-    };
-    let bottom_up = match (vertical, horizontal) {
-        ("-Y", "+X") => false,
-        ("+Y", "+X") => true,
-        ("+Y" | "-Y" | "+X" | "-X", "+Y" | "-Y" | "+X" | "-X") => {
-            let what = format!("the orientation {vertical} {horizontal}");
-            return Err(unsupported(FORMAT, what, "save it with rows from the left, top to bottom (-Y +X)"));
-        }
-        _ => return Err(malformed(FORMAT, format_args!("its resolution line reads '{line}'"))),
-    };
-    match (height.parse(), width.parse()) {
-        (Ok(height), Ok(width)) => Ok((height, width, bottom_up)),
-        _ => Err(malformed(FORMAT, format_args!("its resolution line reads '{line}'"))),
+/// How the pixels lie in the file, from a line like `-Y 512 +X 1024`: the axis from line to line and that along a line,
+/// each with its length, and whether the coordinate grows. Y points up.
+struct Resolution {
+    /// Lines are columns of the image.
+    in_columns: bool,
+    lines: u64,
+    line_length: u64,
+    /// Whether x runs from right to left.
+    from_right: bool,
+    /// Whether y runs from bottom to top.
+    from_bottom: bool,
+}
+
+impl Resolution {
+    fn parse(line: &str) -> Result<Self, ReadError> {
+        let fault = || malformed(FORMAT, format_args!("its resolution line reads '{line}'"));
+        let words: Vec<&str> = line.split_ascii_whitespace().collect();
+        let [first, lines, second, line_length] = words[..] else { return Err(fault()) };
+        let (in_columns, x, y) = match (first, second) {
+            ("-Y" | "+Y", "-X" | "+X") => (false, second, first),
+            ("-X" | "+X", "-Y" | "+Y") => (true, first, second),
+            _ => return Err(fault()),
+        };
+        let number = |word: &str| word.parse().map_err(|_| fault());
+        Ok(Self {
+            in_columns,
+            lines: number(lines)?,
+            line_length: number(line_length)?,
+            from_right: x == "-X",
+            from_bottom: y == "+Y",
+        })
+    }
+
+    fn width(&self) -> u64 {
+        if self.in_columns { self.lines } else { self.line_length }
+    }
+
+    fn height(&self) -> u64 {
+        if self.in_columns { self.line_length } else { self.lines }
+    }
+
+    /// Where the pixel of this line and index belongs.
+    fn place(&self, line: usize, index: usize, (width, height): (usize, usize)) -> (usize, usize) {
+        let (x, y) = if self.in_columns { (line, index) } else { (index, line) };
+        let x = if self.from_right { width - 1 - x } else { x };
+        let y = if self.from_bottom { height - 1 - y } else { y };
+        (x, y)
     }
 }
 
-/// One row, in whichever of the two ways it is stored.
-fn read_row(input: &mut Input<'_>, row: &mut [Rgbe]) -> Result<(), ReadError> {
+/// One line, in whichever of the two ways it is stored.
+fn read_line(input: &mut Input<'_>, row: &mut [Rgbe]) -> Result<(), ReadError> {
     // Rows of these widths may be stored channel by channel; they then begin with 2, 2 and the width.
     const PLANAR_WIDTHS: std::ops::Range<usize> = 8..0x8000;
     let first = input.rgbe()?;
@@ -217,9 +247,24 @@ mod tests {
     }
 
     #[test]
-    fn rows_from_the_bottom_are_turned() {
-        let decoded = read_file("+Y 2 +X 1", &[1, 0, 0, 136, 2, 0, 0, 136]).unwrap();
-        assert_eq!(floats(&decoded), [2.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+    fn every_orientation_is_turned() {
+        // The pixels 1 to 6 as they lie in the file, and the rows of the image from the top.
+        let pixels: Vec<u8> = (1..=6).flat_map(|red| [red, 0, 0, 136]).collect();
+        let cases = [
+            ("-Y 2 +X 3", 3, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
+            ("+Y 2 +X 3", 3, [4.0, 5.0, 6.0, 1.0, 2.0, 3.0]),
+            ("-Y 2 -X 3", 3, [3.0, 2.0, 1.0, 6.0, 5.0, 4.0]),
+            ("+Y 2 -X 3", 3, [6.0, 5.0, 4.0, 3.0, 2.0, 1.0]),
+            ("+X 2 -Y 3", 2, [1.0, 4.0, 2.0, 5.0, 3.0, 6.0]),
+            ("+X 2 +Y 3", 2, [3.0, 6.0, 2.0, 5.0, 1.0, 4.0]),
+            ("-X 2 -Y 3", 2, [4.0, 1.0, 5.0, 2.0, 6.0, 3.0]),
+            ("-X 2 +Y 3", 2, [6.0, 3.0, 5.0, 2.0, 4.0, 1.0]),
+        ];
+        for (resolution, width, rows) in cases {
+            let decoded = read_file(resolution, &pixels).unwrap();
+            let red: Vec<f32> = floats(&decoded).iter().step_by(3).copied().collect();
+            assert_eq!((decoded.image.width(), &red[..]), (width, &rows[..]), "{resolution}");
+        }
     }
 
     #[test]
@@ -249,7 +294,7 @@ mod tests {
                 "{resolution} {pixels:?}: {result:?}"
             );
         }
-        assert!(matches!(read_file("+X 2 -Y 2", &[]), Err(ReadError::Unsupported { .. })));
+        assert!(matches!(read_file("+X 2 -X 2", &[]), Err(ReadError::Malformed { .. })));
         assert!(matches!(read_file("-Y 99999999 +X 99999999", &[]), Err(ReadError::TooLarge { .. })));
     }
 }
