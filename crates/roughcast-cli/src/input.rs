@@ -308,8 +308,8 @@ mod tests {
 
     #[test]
     fn numbers_are_written_with_four_digits_and_no_exponent() {
-        let numbers = [0.015625, 30.0, 1.0 / (30.0 * 1201.0), 1.0 / 3600.0, 12345.6, 1.0];
-        let texts = ["0.01562", "30", "0.00002776", "0.0002778", "12346", "1"];
+        let numbers = [0.015625, 30.0, 1.0 / (30.0 * 1200.0), 1.0 / 3600.0, 12345.6, 1.0];
+        let texts = ["0.01562", "30", "0.00002778", "0.0002778", "12346", "1"];
         assert_eq!(numbers.map(four_digits), texts);
     }
 }

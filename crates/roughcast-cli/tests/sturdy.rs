@@ -101,8 +101,8 @@ fn bad_outputs_are_refused_with_the_mend() {
     let folder = scratch();
     let at = |name: &str| folder.path().join(name);
     let refusal = |code, output: &Path| bake(&map(), output, &[]).expect_refusal(code, output);
-    assert!(refusal(2, &at("out.jpg")).contains(".ktx2, .dds, .exr or .png"));
-    assert!(refusal(2, &at("out")).contains(".ktx2, .dds, .exr or .png"));
+    assert!(refusal(2, &at("out.jpg")).contains(".ktx2, .dds, .exr, .tx or .png"));
+    assert!(refusal(2, &at("out")).contains(".ktx2, .dds, .exr, .tx or .png"));
     assert!(refusal(2, folder.path()).contains("it is a folder"));
     assert!(refusal(1, &at("missing/out.ktx2")).contains("does not exist: create it"));
     // Of PNG the first file that would be written is named.

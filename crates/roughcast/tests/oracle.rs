@@ -6,8 +6,8 @@ use common::compare::{Rounding, compare_rounded, expect};
 use common::maps::{self, Random};
 use common::{baked, float_moments, level, pyramid_oracle, slope_oracle};
 use roughcast::{
-    BakeReport, Gradient, Green, HeightSense, Image, NormalChannels, NormalRange, PyramidFilter, SampleType,
-    Samples, SourceCounts, SourceOptions, Wrap,
+    BakeReport, Gradient, Green, HeightSense, Image, NormalChannels, NormalRange, PyramidFilter, Red,
+    SampleType, Samples, SourceCounts, SourceOptions, Wrap,
 };
 
 const TYPES: [SampleType; 4] = [SampleType::U8, SampleType::U16, SampleType::F16, SampleType::F32];
@@ -45,7 +45,9 @@ fn normal_options(sample_type: SampleType) -> Vec<(SourceOptions, usize)> {
         (NormalChannels::Xyz, 5),
         (NormalChannels::Xy, 2),
         (NormalChannels::Xy, 3),
+        (NormalChannels::Yx, 2),
         (NormalChannels::Ag, 4),
+        (NormalChannels::Ra, 4),
     ];
     let mut all = Vec::new();
     for (normal_channels, count) in channels {
@@ -54,6 +56,8 @@ fn normal_options(sample_type: SampleType) -> Vec<(SourceOptions, usize)> {
                 let options =
                     SourceOptions { normal_channels, range: *range, green: *green, ..Default::default() };
                 all.push((options, count));
+                let turned = SourceOptions { red: Red::Left, normal_scale: 0.75, ..options };
+                all.push((turned, count));
             }
         }
     }
@@ -208,9 +212,9 @@ fn heights_across_tiles_and_beside_other_channels() {
 fn holes_and_spikes_in_heights_are_mended_and_counted() {
     let (width, height) = (16, 12);
     for (bad, gradient, touched) in [
-        (f32::NAN, Gradient::Sobel, 8),
-        (f32::INFINITY, Gradient::Sobel, 8),
-        (f32::NAN, Gradient::Central, 4),
+        (f32::NAN, Gradient::Sobel, 9),
+        (f32::INFINITY, Gradient::Sobel, 9),
+        (f32::NAN, Gradient::Central, 5),
         (f32::NAN, Gradient::Forward, 3),
     ] {
         let mut values: Vec<f32> = maps::heights(width, height, 6).iter().map(|v| *v as f32).collect();

@@ -130,7 +130,7 @@ impl MapFormat {
         let stored = |channel: usize| format!("map_component(texel[{channel}])");
         let xy = format!("vec2f({}, {})", stored(x), stored(y));
         let slope = match z {
-            Some(z) => format!("slope_from_normal(vec3f({xy} * factors, {}), ", stored(z)),
+            Some(z) => format!("slope_from_normal(vec3f(rounded2({xy} * factors), {}), ", stored(z)),
             None => format!("slope_from_normal_xy({xy}, factors, "),
         };
         format!(

@@ -95,13 +95,9 @@ fn guess_two(vectors: &[[f32; 2]]) -> KindGuess {
 }
 
 fn guess_three(image: &Image, channels: [usize; 3], range: NormalRange) -> KindGuess {
-    let mut stored = texels(image, channels);
+    let stored = texels(image, channels);
     if stored.is_empty() {
         return KindGuess::doubtful(NOTHING_FINITE);
-    }
-    // Nothing is stored in a background, or beyond the pixels that a crop has: zeros say nothing about the rest.
-    if stored.iter().any(|texel| *texel != [0.0; 3]) {
-        stored.retain(|texel| *texel != [0.0; 3]);
     }
     let scale = full_scale(image, &stored);
     if [0, 1, 2].iter().all(|&c| spread(stored.iter().map(|texel| texel[c])) <= SAME * scale) {

@@ -33,5 +33,5 @@ fn slope_from_normal_xy(normal_xy: vec2f, factors: vec2f, max_slope: f32) -> Men
     if finite & (squares.x + squares.y > INVALID_XY_SQUARED) {
         return MendedSlope(vec2f(0.0), FAULT_INVALID);
     }
-    return slope_from_normal(vec3f(normal_xy * factors, z_from_xy(normal_xy)), max_slope);
+    return slope_from_normal(vec3f(rounded2(normal_xy * factors), z_from_xy(normal_xy)), max_slope);
 }

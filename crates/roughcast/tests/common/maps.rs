@@ -3,7 +3,7 @@
 use half::f16;
 use roughcast::texture::RoughnessStored;
 use roughcast::{
-    Green, HeightSense, Image, Kind, NormalChannels, NormalRange, SampleType, Samples, SourceOptions,
+    Green, HeightSense, Image, Kind, NormalChannels, NormalRange, Red, SampleType, Samples, SourceOptions,
 };
 
 /// Sizes that exercise every path: single lines, odd and even, one and several tiles and bands of the fused pass,
@@ -120,15 +120,22 @@ pub fn normal_map(
     for (texel, [x, y]) in values.chunks_exact_mut(channels).zip(slopes) {
         let length = (1.0 + x * x + y * y).sqrt();
         let y = if options.green == Green::Down { -y } else { *y };
+        let x = if options.red == Red::Left { -x } else { *x };
         let stored = |component: f64| match options.range {
             NormalRange::Signed => component / length,
             NormalRange::Unorm => 0.5 * component / length + 0.5,
         };
-        let x_at = if options.normal_channels == NormalChannels::Ag { 3 } else { 0 };
-        texel[x_at] = stored(*x);
-        texel[1] = stored(y);
-        if options.normal_channels == NormalChannels::Xyz {
-            texel[2] = stored(1.0);
+        let (x_at, y_at, z_at) = match options.normal_channels {
+            NormalChannels::Xyz => (0, 1, Some(2)),
+            NormalChannels::Xy => (0, 1, None),
+            NormalChannels::Yx => (1, 0, None),
+            NormalChannels::Ag => (3, 1, None),
+            NormalChannels::Ra => (0, 3, None),
+        };
+        texel[x_at] = stored(x);
+        texel[y_at] = stored(y);
+        if let Some(z_at) = z_at {
+            texel[z_at] = stored(1.0);
         }
     }
     image(size.0, size.1, channels, samples(&values, sample_type))

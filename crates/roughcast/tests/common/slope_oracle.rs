@@ -1,7 +1,7 @@
 //! Slopes from pixels, in f64, straight from the documented rules.
 
 use roughcast::{
-    Gradient, Green, HeightSense, Image, Kind, NormalChannels, NormalRange, Samples, SourceCounts,
+    Gradient, Green, HeightSense, Image, Kind, NormalChannels, NormalRange, Red, Samples, SourceCounts,
     SourceOptions, Wrap,
 };
 
@@ -51,8 +51,13 @@ fn slope_of_normal(
         let value = sample(image, x, y, channel);
         if is_unsigned || options.range == NormalRange::Unorm { 2.0 * value - 1.0 } else { value }
     };
-    let nx = component(if options.normal_channels == NormalChannels::Ag { 3 } else { 0 });
-    let ny = component(1) * if options.green == Green::Down { -1.0 } else { 1.0 };
+    let (x_channel, y_channel) = match options.normal_channels {
+        NormalChannels::Xyz | NormalChannels::Xy => (0, 1),
+        NormalChannels::Yx => (1, 0),
+        NormalChannels::Ag => (3, 1),
+        NormalChannels::Ra => (0, 3),
+    };
+    let (nx, ny) = (component(x_channel), component(y_channel));
     let nz = if options.normal_channels == NormalChannels::Xyz {
         component(2)
     } else {
@@ -67,7 +72,10 @@ fn slope_of_normal(
         }
         (1.0 - nx * nx - ny * ny).max(0.0).sqrt()
     };
-    mended(nx, ny, nz, options, counts)
+    let scale = f64::from(options.normal_scale);
+    let right = if options.red == Red::Left { -scale } else { scale };
+    let up = if options.green == Green::Down { -scale } else { scale };
+    mended(right * nx, up * ny, nz, options, counts)
 }
 
 fn mended(x: f64, y: f64, z: f64, options: &SourceOptions, counts: &mut SourceCounts) -> [f64; 2] {
@@ -134,5 +142,7 @@ fn slope_of_height(
             (right, up)
         }
     };
-    mended(-slope_right, -slope_up, 1.0, options, counts)
+    // A gradient may leave out its own texel, which has no height all the same.
+    let hole = if h(0, 0).is_finite() { 0.0 } else { f64::NAN };
+    mended(-slope_right + hole, -slope_up, 1.0, options, counts)
 }

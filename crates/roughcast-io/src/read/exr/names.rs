@@ -20,6 +20,10 @@ const PAIRS: [[&str; 2]; 1] = [["U", "V"]];
 const HEIGHTS: [&str; 9] =
     ["height", "displacement", "disp", "elevation", "bump", "heightmap", "depth", "Z", "Y"];
 
+/// Of these, names that also mean a luminance, a depth of the scene or a third component: a height only where no other channel
+/// beside them could be one.
+const WEAK_HEIGHTS: [&str; 3] = ["depth", "Z", "Y"];
+
 /// Names of coverage, which is beside the point of any map.
 const ALPHAS: [&str; 9] = ["A", "alpha", "opacity", "coverage", "RA", "GA", "BA", "AR", "AG"];
 
@@ -66,7 +70,11 @@ pub(super) fn choose(names: &[&str]) -> Choice {
     let keep = |places: &[usize]| Choice::Clear(places.iter().map(|&i| (i, names[i].to_owned())).collect());
     match (&pairs[..], &heights[..]) {
         ([pair], []) => return keep(pair),
-        ([], [height]) => return keep(&[*height]),
+        ([], [height]) => {
+            let weak = WEAK_HEIGHTS.iter().any(|name| name.eq_ignore_ascii_case(names[*height]));
+            let alone = (0..names.len()).all(|i| i == *height || is_aside(names[i]));
+            return if weak && !alone { Choice::Open } else { keep(&[*height]) };
+        }
         ([], []) => {}
         _ => return Choice::Open,
     }
@@ -149,9 +157,13 @@ mod tests {
 
     #[test]
     fn what_names_leave_open_is_left_open() {
-        for names in
-            [&["foo", "bar"][..], &["U", "V", "height"], &["height", "displacement"], &["X", "Y", "height"]]
-        {
+        for names in [
+            &["foo", "bar"][..],
+            &["U", "V", "height"],
+            &["height", "displacement"],
+            &["X", "Y", "height"],
+            &["R", "Z"],
+        ] {
             assert_eq!(choose(names), Choice::Open, "{names:?}");
         }
     }
