@@ -87,6 +87,16 @@ REFUSALS = [
     refusal("TIFF", "integers of 64 bits", INTEGERS, "integers of 64 bits", type=["64", "signed 64"]),
     refusal("TIFF", "CMYK", "a map has no inks", "CMYK colour", layout="CMYK"),
     refusal("TIFF", "L*a*b*", "its numbers are another colour space's", r"L\*a\*b\* colour", layout="L*a*b*"),
+    refusal("TIFF", "complex numbers", "not a picture", "complex numbers", odd=["complex", "complex integers"]),
+    refusal("TIFF", "YCbCr", "its numbers are another colour space's", "YCbCr colour", odd="YCbCr"),
+    refusal("TIFF", "colour filter arrays", "what a camera's sensor saw is not a picture yet", "filter array", odd="filter array"),
+    refusal(
+        "TIFF",
+        "more than four samples that the file does not name, unless options choose",
+        "a guess would be wrong for somebody",
+        "leave open which to read",
+        odd="six samples",
+    ),
     refusal("EXR", "unsigned integers", INTEGERS, "integer channel", types="uint"),
     refusal(
         "EXR",
