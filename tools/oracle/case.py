@@ -68,8 +68,6 @@ class Family:
     format: str
     axes: dict
     make: callable
-    # How many of the combinations a short run takes at most; None: as many as all pairs need.
-    short: int | None = None
     name: str = ""
     traits: dict = field(default_factory=dict)
 

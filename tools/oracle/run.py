@@ -61,7 +61,7 @@ def chosen(options, families):
 def of_family(family, options):
     if not options.full:
         rounds = (cases.pairs(family, options.seed + index) for index in range(ROUNDS))
-        return distinct(itertools.chain.from_iterable(itertools.islice(each, family.short) for each in rounds))
+        return distinct(itertools.chain.from_iterable(rounds))
     if family.size() <= FULL_LIMIT:
         return cases.every(family)
     return itertools.islice(distinct(cases.at_random([family], options.seed)), FULL_LIMIT)

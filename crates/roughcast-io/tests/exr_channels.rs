@@ -120,8 +120,11 @@ fn the_display_window_is_the_texture() {
     assert!(warning.contains("44x40 at (8, 4)") && warning.contains("64x48 at (0, 0)"), "{warning}");
 }
 
-/// A file of layers of one part or of several: names of channels with a value each.
-fn written(parts: &[(Option<&str>, &[(&str, f32)])], display: IntegerBounds, data: IntegerBounds) -> Vec<u8> {
+/// The name of a part, and the names of its channels with a value each.
+type Part<'a> = (Option<&'a str>, &'a [(&'a str, f32)]);
+
+/// A file of layers of one part or of several.
+fn written(parts: &[Part<'_>], display: IntegerBounds, data: IntegerBounds) -> Vec<u8> {
     let layers = parts.iter().map(|(name, channels)| {
         let len = data.size.area();
         let channel =
@@ -155,7 +158,7 @@ fn files_of_other_programs_are_read_by_name_or_asked_about() {
     let beauty: &[(&str, f32)] = &[("R", 1.0), ("G", 2.0), ("B", 3.0), ("A", 4.0)];
     let with_layers: &[(&str, f32)] =
         &[("R", 1.0), ("G", 2.0), ("B", 3.0), ("N.X", 4.0), ("N.Y", 5.0), ("N.Z", 6.0)];
-    let cases: &[(&[(Option<&str>, &[(&str, f32)])], Option<&[f32]>)] = &[
+    let cases: &[(&[Part<'_>], Option<&[f32]>)] = &[
         (&[(None, houdini)], Some(&[2.0])),
         (&[(None, beauty)], Some(&[1.0, 2.0, 3.0, 4.0])),
         (&[(None, with_layers)], Some(&[1.0, 2.0, 3.0])),

@@ -37,6 +37,14 @@ BLOCKS = {
 }  # fmt: skip
 # Number and, for each channel in the order in which it is read, its mask. (Vulkan names fields from the highest bit down.)
 PACKED = {
+    "B4G4R4A4": (3, 16, (0xF0, 0xF00, 0xF000, 0xF)),
+    "B5G5R5A1": (7, 16, (0x3E, 0x7C0, 0xF800, 1)),
+    "A8B8G8R8 signed": (52, 32, (0xFF, 0xFF00, 0xFF0000, 0xFF000000)),
+    "A8B8G8R8 sRGB": (57, 32, (0xFF, 0xFF00, 0xFF0000, 0xFF000000)),
+    "A2R10G10B10 signed": (59, 32, (0x3FF00000, 0xFFC00, 0x3FF, 0xC0000000)),
+    "A2B10G10R10 signed": (65, 32, (0x3FF, 0xFFC00, 0x3FF00000, 0xC0000000)),
+    "A4R4G4B4": (1000340000, 16, (0xF00, 0xF0, 0xF, 0xF000)),
+    "A4B4G4R4": (1000340001, 16, (0xF, 0xF0, 0xF00, 0xF000)),
     "R4G4": (1, 8, (0xF0, 0x0F)),
     "R4G4B4A4": (2, 16, (0xF000, 0xF00, 0xF0, 0xF)),
     "R5G6B5": (4, 16, (0xF800, 0x7E0, 0x1F)),
@@ -50,7 +58,7 @@ PACKED = {
 # What no reader of maps has a use for: number, bytes of a texel (or of a block).
 OTHERS = {
     "8-bit integers": (13, 1), "8-bit signed integers": (14, 1), "16-bit integers": (74, 2), "32-bit integers": (98, 4),
-    "doubles": (112, 8), "shared exponent": (123, 4), "11-bit floats": (122, 4), "depth": (124, 2), "BC6H": (143, 16),
+    "doubles": (112, 8), "shared exponent": (123, 4), "11-bit floats": (122, 4), "8-bit integers, packed": (55, 4), "10-bit integers": (62, 4), "scaled 10 bits": (60, 4), "depth": (124, 2), "BC6H": (143, 16),
     "ETC2": (147, 8), "EAC": (153, 8), "ASTC HDR": (1000066000, 16), "PVRTC": (1000054000, 8), "8-bit scaled": (11, 1),
 }  # fmt: skip
 SWIZZLES = ["none", "rgba", "rrrg", "gggr", "bgra", "rg01", "r001", "0r1g", "argb", "000r", "aaaa"]
@@ -100,7 +108,7 @@ def texels_of(rng, format, height, width):
         return plain(rng, height, width, encoding, channels, order[:channels])
     if format in PACKED:
         _, bits, masks = PACKED[format]
-        return packed(rng, height, width, bits, [(mask, False) for mask in masks])
+        return packed(rng, height, width, bits, [(mask, format.endswith("signed")) for mask in masks])
     return blocks(rng, height, width, format.removesuffix(" sRGB"))
 
 

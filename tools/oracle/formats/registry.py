@@ -2,7 +2,7 @@
 
 import importlib
 
-MODULES = ["png", "jpeg", "tga", "bmp", "webp", "tiff", "hdr", "exr", "ktx2", "ktx2_astc", "dds"]
+MODULES = ["png", "jpeg", "tga", "bmp", "webp", "tiff", "tiff_more", "hdr", "exr", "ktx2", "ktx2_astc", "dds"]
 
 
 def families(names=None):

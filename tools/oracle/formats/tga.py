@@ -135,5 +135,6 @@ def families():
         "interleaving": [0],
         "unused_palette": [False, True],
     }
-    interleaved = {**axes, "interleaving": [1, 2]}
-    return [Family("TGA", axes, make), Family("TGA", interleaved, make, 10, "interleaved")]
+    first = {name: values[:1] for name, values in axes.items()}
+    interleaved = {**first, "kind": list(KINDS), "size": [(3, 2)], "interleaving": [1, 2]}
+    return [Family("TGA", axes, make), Family("TGA", interleaved, make, name="interleaved")]

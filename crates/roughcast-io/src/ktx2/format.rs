@@ -4,7 +4,7 @@ use super::unsupported;
 use crate::ReadError;
 use crate::texels::Encoding::{Float16, Float32, Snorm8, Snorm16, Unorm8, Unorm16};
 use crate::texels::Order::{Bgra, Rgba};
-use crate::texels::{BlockCode, Encoding, Order, Plain, TexelFormat};
+use crate::texels::{BlockCode, Encoding, Order, Packed, Plain, TexelFormat, rgba_names};
 
 /// Number, name without `VK_FORMAT_`, channels, encoding, order.
 ///
@@ -65,6 +65,28 @@ const BLOCKS: [(u32, &str, BlockCode); 14] = [
     (146, "BC7_SRGB_BLOCK", BlockCode::Bc7),
 ];
 
+/// Channels in the bits of one integer, which Vulkan names from the highest bits down: `vkFormat`, name without `_PACK16` and the like, bytes, masks
+/// of red, green, blue and alpha as many as there are, whether they are signed.
+const PACKED: [(u32, &str, usize, &[u32], bool); 17] = [
+    (1, "R4G4_UNORM", 1, &[0xf0, 0xf], false),
+    (2, "R4G4B4A4_UNORM", 2, &[0xf000, 0xf00, 0xf0, 0xf], false),
+    (3, "B4G4R4A4_UNORM", 2, &[0xf0, 0xf00, 0xf000, 0xf], false),
+    (4, "R5G6B5_UNORM", 2, &[0xf800, 0x7e0, 0x1f], false),
+    (5, "B5G6R5_UNORM", 2, &[0x1f, 0x7e0, 0xf800], false),
+    (6, "R5G5B5A1_UNORM", 2, &[0xf800, 0x7c0, 0x3e, 1], false),
+    (7, "B5G5R5A1_UNORM", 2, &[0x3e, 0x7c0, 0xf800, 1], false),
+    (8, "A1R5G5B5_UNORM", 2, &[0x7c00, 0x3e0, 0x1f, 0x8000], false),
+    (51, "A8B8G8R8_UNORM", 4, &[0xff, 0xff00, 0xff_0000, 0xff00_0000], false),
+    (52, "A8B8G8R8_SNORM", 4, &[0xff, 0xff00, 0xff_0000, 0xff00_0000], true),
+    (57, "A8B8G8R8_SRGB", 4, &[0xff, 0xff00, 0xff_0000, 0xff00_0000], false),
+    (58, "A2R10G10B10_UNORM", 4, &[0x3ff0_0000, 0xf_fc00, 0x3ff, 0xc000_0000], false),
+    (59, "A2R10G10B10_SNORM", 4, &[0x3ff0_0000, 0xf_fc00, 0x3ff, 0xc000_0000], true),
+    (64, "A2B10G10R10_UNORM", 4, &[0x3ff, 0xf_fc00, 0x3ff0_0000, 0xc000_0000], false),
+    (65, "A2B10G10R10_SNORM", 4, &[0x3ff, 0xf_fc00, 0x3ff0_0000, 0xc000_0000], true),
+    (1_000_340_000, "A4R4G4B4_UNORM", 2, &[0xf00, 0xf0, 0xf, 0xf000], false),
+    (1_000_340_001, "A4B4G4R4_UNORM", 2, &[0xf, 0xf0, 0xf00, 0xf000], false),
+];
+
 /// The texel format of a `vkFormat` and its name, or why it is not read.
 pub(super) fn texel_format(vk_format: u32) -> Result<(TexelFormat, &'static str), ReadError> {
     let plain = PLAIN.iter().find(|row| row.0 == vk_format);
@@ -74,6 +96,11 @@ pub(super) fn texel_format(vk_format: u32) -> Result<(TexelFormat, &'static str)
     if let Some(&(_, name, code)) = BLOCKS.iter().find(|row| row.0 == vk_format) {
         return Ok((TexelFormat::Blocks(code), name));
     }
+    if let Some(&(_, name, bytes, masks, is_signed)) = PACKED.iter().find(|row| row.0 == vk_format) {
+        let packed =
+            Packed::new(bytes, masks, rgba_names(masks.len())).expect("masks of the table are sound");
+        return Ok((TexelFormat::Packed(if is_signed { packed.signed() } else { packed }), name));
+    }
     Err(not_read(vk_format))
 }
 
@@ -81,6 +108,7 @@ pub(super) fn texel_format(vk_format: u32) -> Result<(TexelFormat, &'static str)
 fn not_read(vk_format: u32) -> ReadError {
     const TO_PLAIN: &str = "convert it to R8G8, R16G16, BC5 or BC7 UNORM first";
     let (what, mend) = match vk_format {
+        53..=56 | 60..=63 | 66..=69 => ("a packed integer format", TO_PLAIN),
         11..=14 | 18..=21 | 25..=28 | 32..=35 | 39..=42 | 46..=49 => ("an 8-bit integer format", TO_PLAIN),
         72..=75 | 79..=82 | 86..=89 | 93..=96 => ("a 16-bit integer format", TO_PLAIN),
         98 | 99 | 101 | 102 | 104 | 105 | 107 | 108 | 110..=121 => {

@@ -46,8 +46,8 @@ const ALPHA: usize = 3;
 /// Which channels hold the components of a normal map, and by which it should thus be read.
 ///
 /// One or two channels hold x and y. So do the first two of three whose blue is not z with scale and bias, as
-/// that of x and y is: maps exist with a blue that is constant (0, 128 or 255), and with z itself over 0 ..=
-/// 1. Alpha and green hold them where red and blue are constant, and grey and alpha, in either order, where those two are the
+/// that of x and y is: maps exist with a blue that is constant (0, 128 or 255), and with z itself over 0 to 1.
+/// Alpha and green hold them where red and blue are constant, and grey and alpha, in either order, where those two are the
 /// slopes of a surface.
 ///
 /// `channels` and `range` as for [`crate::detect::guess_kind`].
