@@ -2,7 +2,7 @@
 //!
 //! Written: 1, 2 or 4 channels of 8-bit or 16-bit UNORM, half or single float, and BC4, BC5, BC7; plain or with
 //! Zstandard. Read as an image: these and their relatives, also with 3 channels, SNORM, blue first, or as BC1, BC2, BC3, and
-//! Basis Universal (ETC1S, UASTC) and ASTC, see [`basis`]. Cube maps, volumes, integers, depth, BC6H, ETC2 and PVRTC are refused
+//! Basis Universal (ETC1S, UASTC) and ASTC, see `basis.rs`. Cube maps, volumes, integers, depth, BC6H, ETC2 and PVRTC are refused
 //! with advice.
 //!
 //! The `ktx2` crate is only used as an independent reader in the tests: its parser panics on a data format descriptor
