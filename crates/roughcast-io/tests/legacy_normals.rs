@@ -128,6 +128,28 @@ fn bump_formats_are_read_by_masks_and_by_number() {
     }
 }
 
+#[test]
+fn reversed_masks_of_a2w10v10u10_are_read_as_the_pixels_say() {
+    const BUMP_DUDV: u32 = 0x8_0000;
+    let masks = [0x3ff0_0000, 0xf_fc00, 0x3ff, 0xc000_0000];
+    let normals = [[0.5, -0.25, 0.829], [-0.6, 0.0, 0.8], [0.0, 0.0, 1.0]];
+    // u in the lowest bits, as Direct3D defines the format, and in the highest, as these masks say.
+    for shifts in [[0, 10, 20], [20, 10, 0]] {
+        let texel = |normal: [f64; 3]| {
+            normal.into_iter().zip(shifts).fold(0, |word, (value, shift)| word | field(value, 10) << shift)
+        };
+        let file = dds(BUMP_DUDV, 0, 32, masks, &normals.map(texel));
+        let decoded = read_image(&file, None, &ReadOptions::default()).expect("a valid file");
+        for (x, normal) in normals.into_iter().enumerate() {
+            for (channel, value) in normal.into_iter().enumerate() {
+                let expected = ((value * 511.0).round() / 511.0) as f32;
+                let read = decoded.image.get(x, 0, channel);
+                assert!((read - expected).abs() < EXACT, "{shifts:?}: texel {x}, channel {channel}: {read}");
+            }
+        }
+    }
+}
+
 /// Colours in BC3 have four values of 5 or 6 bits a block: 0.021 on this small map. Another channel in the place costs 0.1.
 const BC3_MEAN: f32 = 0.03;
 

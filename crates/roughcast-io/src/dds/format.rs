@@ -110,6 +110,9 @@ const BUMP_FIELDS: [(u32, &str, u32, &[u32]); 3] = [
     (67, "A2W10V10U10", 32, &[0x3ff, 0xf_fc00, 0x3ff0_0000]),
 ];
 
+/// The masks that Direct3D's own library writes for A2W10V10U10: u and w have changed places against the format's definition.
+const REVERSED_UVW: [u32; 3] = [0x3ff0_0000, 0xf_fc00, 0x3ff];
+
 const CONVERT: &str = "convert it to R8G8B8A8, R16G16, BC5 or BC7 UNORM first";
 
 /// What the pixel format of a file says.
@@ -122,11 +125,20 @@ pub(super) struct Format {
     pub normals: NormalEncoding,
     /// Where each channel of the image comes from, where the file has moved them.
     pub moved: Option<Vec<Source>>,
+    /// Whether the first and the last channel may have changed places, which only the pixels tell.
+    pub may_be_reversed: bool,
 }
 
 impl Format {
     fn plain(texels: TexelFormat, name: impl Into<String>) -> Self {
-        Self { texels, name: name.into(), kind: None, normals: NormalEncoding::Unstated, moved: None }
+        Self {
+            texels,
+            name: name.into(),
+            kind: None,
+            normals: NormalEncoding::Unstated,
+            moved: None,
+            may_be_reversed: false,
+        }
     }
 
     fn of_normals(self, normals: NormalEncoding) -> Self {
@@ -339,6 +351,10 @@ fn of_bump_masks(masks: Masks) -> Result<Format, ReadError> {
     // With luminance, the third field is brightness; without, it is z.
     let fields: &[u32] =
         if flags & FLAG_BUMP_LUMINANCE != 0 || blue == 0 { &[red, green] } else { &[red, green, blue] };
+    if bits == 32 && *fields == REVERSED_UVW {
+        let format = bump_fields("A2W10V10U10", bits, fields)?;
+        return Ok(Format { may_be_reversed: true, ..format });
+    }
     let named = BUMP_FIELDS.iter().find(|(_, _, length, known)| *length == bits && *known == fields);
     bump_fields(named.map_or("signed masks", |row| row.1), bits, fields)
 }

@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use roughcast::Image;
 use roughcast::texture::{TextureArray, TextureInfo};
 
 use super::format::Format;
 use super::header::Header;
 use super::{CONTAINER, format, malformed, unsupported};
 use crate::payload::{Shape, textures_from};
-use crate::texels::{full_chain, rgba_names, swizzled};
+use crate::texels::{Source, full_chain, rgba_names, swizzled};
 use crate::{Decoded, FileInfo, Limits, ReadError};
 
 /// Reads level 0 of layer 0 as an image.
@@ -35,6 +36,9 @@ pub fn read_image(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
     if let Some(moved) = &format.moved {
         image = swizzled(&image, moved);
         channels = rgba_names(moved.len());
+    }
+    if format.may_be_reversed && is_larger_on_average(&image, 0, 2) {
+        image = swizzled(&image, &[2, 1, 0].map(Source::Channel));
     }
     let size = (shape.width, shape.height);
     let info = FileInfo {
@@ -89,6 +93,13 @@ fn shape_of(header: &Header) -> Result<(Shape, Format), ReadError> {
         format: format.texels.clone(),
     };
     Ok((shape, format))
+}
+
+/// Whether one channel's mean is above another's. The z of a normal map averages far above its x: normals point out of the surface.
+fn is_larger_on_average(image: &Image, one: usize, other: usize) -> bool {
+    let texels = (0..image.height()).flat_map(|y| (0..image.width()).map(move |x| (x, y)));
+    let difference = |(x, y)| f64::from(image.get(x, y, one)) - f64::from(image.get(x, y, other));
+    texels.map(difference).sum::<f64>() > 0.0
 }
 
 fn too_short(shape: &Shape) -> ReadError {
