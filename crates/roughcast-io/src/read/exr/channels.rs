@@ -152,8 +152,11 @@ fn choice_of(group: &Group<'_>) -> Choice {
     choose(&names)
 }
 
-/// The selection that a clear choice makes; `None` where it is not clear.
+/// The selection that a clear choice makes; `None` where it is not clear. No choice makes colours of luminance and chroma.
 fn clear(group: &Group<'_>, choice: Choice) -> Option<Result<Selection, ReadError>> {
+    if has_chroma(group) {
+        return Some(Err(unsupported(FORMAT, "luminance with chroma", "save it as RGB")));
+    }
     match choice {
         Choice::Clear(chosen) => Some(selection(group, chosen)),
         Choice::Nothing | Choice::Open => None,
@@ -213,11 +216,14 @@ fn named(groups: &[Group<'_>], options: &ReadOptions) -> Result<Selection, ReadE
     of_channels(part, channels.collect::<Result<_, _>>()?, Some(chosen[0].0.name.clone()))
 }
 
+fn has_chroma(group: &Group<'_>) -> bool {
+    group
+        .channels
+        .iter()
+        .any(|channel| ["RY", "BY"].iter().any(|name| name.eq_ignore_ascii_case(&channel.name)))
+}
+
 fn selection(group: &Group<'_>, chosen: Vec<(usize, String)>) -> Result<Selection, ReadError> {
-    let has = |name: &str| group.channels.iter().any(|channel| channel.name.eq_ignore_ascii_case(name));
-    if has("RY") || has("BY") {
-        return Err(unsupported(FORMAT, "luminance with chroma", "save it as RGB"));
-    }
     let channels = chosen.into_iter().map(|(place, name)| group.channels[place].selected(&name));
     of_channels(group.part, channels.collect::<Result<_, _>>()?, Some(group.name.clone()))
 }
