@@ -2,7 +2,7 @@
 # Times roughcast against OpenImageIO's maketx at the same work: a 4096x4096 16-bit height map in, a tiled, mip-mapped EXR
 # with the six half channels of bump slopes out, compressed with ZIP. Whole processes, taking turns.
 #
-#   benches/compare.sh [HEIGHTS]      HEIGHTS: a height map, tiled to 4096x4096; default: one of the shared test data
+#   benches/compare.sh [HEIGHTS]      HEIGHTS: a height map, tiled to 4096x4096; default: one of testdata/
 #
 # ROUGHCAST=path  the program to time (default: built here, in release)
 # RUNS=n          turns of each program (default 3)
@@ -12,7 +12,7 @@
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
-heights=$(realpath "${1:-$root/../shared/data/heights/surfgrad_Dump_u16.tif}")
+heights=$(realpath "${1:-$root/testdata/heights/jme_mountains512.png}")
 work=${CARGO_TARGET_DIR:-$root/target}/compare
 runs=${RUNS:-3}
 
