@@ -85,8 +85,8 @@ pub use image::{Image, ImageError, SampleType, Samples};
 pub use moments::{Covariance, Moments};
 pub use named::{Named, UnknownName};
 pub use options::{
-    BakeOptions, Bits, Blocks, Gradient, Green, HeightSense, Kind, Lobe, NormalChannels, NormalRange,
-    PyramidFilter, Red, RoughnessTexture, ScaleChoice, SourceOptions, Wrap,
+    AnisotropyOutput, BakeOptions, Bits, Blocks, Gradient, Green, HeightSense, Kind, Lobe, NormalChannels,
+    NormalRange, PyramidFilter, Red, RoughnessTexture, ScaleChoice, SourceOptions, Wrap,
 };
 pub use pyramid::{LevelStats, level_sizes, levels_of_four};
 pub use slope::{Normal, Slope, SourceCounts, mended_slope, normal_from_slope, slope_from_normal};

@@ -209,12 +209,43 @@ named_enum! {
 }
 
 named_enum! {
-    /// Which texture a material's roughness shares.
-    pub enum RoughnessTexture: "roughness texture" {
-        /// A texture of its own.
-        Alone = "alone",
-        /// glTF's packed texture: occlusion in red, roughness in green, metalness in blue.
-        Packed = "packed",
+    /// How `pbr` says in which direction a roughness is larger.
+    pub enum AnisotropyOutput: "form of anisotropy" {
+        /// Direction and strength, as KHR_materials_anisotropy has them; the roughness is the one across.
+        Khr = "khr",
+        /// The widths of the lobe along the x and the y axis of the tangent frame, each in a file of one channel.
+        Alpha = "alpha",
+    }
+}
+
+named_enum! {
+    /// In which channels `pbr` stores roughness. The names are those of the channels.
+    pub enum RoughnessTexture: "roughness layout" {
+        /// One channel: BC4, and renderers that read one number.
+        Alone = "r",
+        /// Green, where glTF and three.js read it, with an occlusion of 1 in red and a metalness of 0 in blue.
+        Green = "g",
+        /// glTF's packed texture: occlusion in red, roughness in green, metalness in blue; all three from a picture where there
+        /// is one.
+        Packed = "orm",
+    }
+}
+
+impl RoughnessTexture {
+    /// Channels of the texture.
+    pub const fn channels(self) -> usize {
+        match self {
+            RoughnessTexture::Alone => 1,
+            RoughnessTexture::Green | RoughnessTexture::Packed => 4,
+        }
+    }
+
+    /// The channel that contains the roughness.
+    pub const fn roughness_channel(self) -> usize {
+        match self {
+            RoughnessTexture::Alone => 0,
+            RoughnessTexture::Green | RoughnessTexture::Packed => 1,
+        }
     }
 }
 
@@ -280,16 +311,27 @@ pub struct BakeOptions {
     pub roughness_stored: RoughnessStored,
     /// One roughness or two, for `pbr`.
     pub lobe: Lobe,
-    /// What `pbr`'s roughness shares its texture with.
+    /// How `pbr` says two roughnesses.
+    pub anisotropy_output: AnisotropyOutput,
+    /// The channels of `pbr`'s roughness.
     pub roughness_texture: RoughnessTexture,
+    /// How `pbr` stores the components of unit vectors in floats; unsigned types always hold `v / 2 + 1/2`.
+    pub normal_range: NormalRange,
     /// Shaped for block compression or not.
     pub blocks: Blocks,
     /// The kernel of the pyramid.
     pub filter: PyramidFilter,
 }
 
+impl BakeOptions {
+    /// What `pbr` says of directions; `None` for one roughness.
+    pub fn anisotropy(&self) -> Option<AnisotropyOutput> {
+        (self.layout == Layout::Pbr && self.lobe == Lobe::Anisotropic).then_some(self.anisotropy_output)
+    }
+}
+
 impl Default for BakeOptions {
-    /// LEAN in 16 bits with the smallest safe scale, without base roughness, box filter.
+    /// LEAN in 16 bits with the smallest safe scale, without base roughness, box filter. `pbr` is as glTF reads it.
     fn default() -> Self {
         Self {
             layout: Layout::Lean,
@@ -299,7 +341,9 @@ impl Default for BakeOptions {
             brdf: Brdf::Ggx,
             roughness_stored: RoughnessStored::Perceptual,
             lobe: Lobe::Isotropic,
-            roughness_texture: RoughnessTexture::Alone,
+            anisotropy_output: AnisotropyOutput::Khr,
+            roughness_texture: RoughnessTexture::Green,
+            normal_range: NormalRange::Unorm,
             blocks: Blocks::None,
             filter: PyramidFilter::Box,
         }

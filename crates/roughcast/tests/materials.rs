@@ -6,9 +6,10 @@ use common::compare::{EPS, compare_planes, expect};
 use common::level::{Level, channel_of, combined, eigenvalues, layer, planes, stored};
 use common::maps::{self, gentle_map, material_map, variances};
 use common::{baked_with, options, oracle_of, pyramid_oracle};
-use roughcast::texture::{Base, Layout, Part, RoughnessStored, TextureArray};
+use roughcast::texture::{Base, Layout, Part, RoughnessStored, TextureArray, decode};
 use roughcast::{
-    BakeOptions, BaseRoughness, Bits, Lobe, PyramidFilter, RoughnessMap, RoughnessTexture, SampleType,
+    AnisotropyOutput, BakeOptions, BaseRoughness, Bits, Image, Lobe, NormalRange, PyramidFilter,
+    RoughnessMap, RoughnessTexture, SampleType,
 };
 
 /// Roundings of averaging.
@@ -16,6 +17,15 @@ const AVERAGING: f64 = 24.0;
 
 /// Sizes on and off the fused pass.
 const SIZES: [(usize, usize); 3] = [(64, 64), (53, 37), (96, 40)];
+
+/// Floats that hold all numbers as they are, with roughness in a texture of its own.
+fn floats() -> BakeOptions {
+    BakeOptions {
+        roughness_texture: RoughnessTexture::Alone,
+        normal_range: NormalRange::Signed,
+        ..options(Layout::Pbr, Bits::Float)
+    }
+}
 
 fn part(arrays: &[TextureArray], part: Part) -> &TextureArray {
     arrays.iter().find(|array| array.info.part == part).unwrap_or_else(|| panic!("no file is the {part}"))
@@ -39,8 +49,7 @@ fn a_materials_roughness_is_that_of_base_and_bumps() {
             let wanted =
                 planes(&oracle_of(&image, &source, &variance), |t| t.covariance()[0] + t.covariance()[1]);
             for form in RoughnessStored::ALL {
-                let bake_options =
-                    BakeOptions { roughness_stored: *form, ..options(Layout::Pbr, Bits::Float) };
+                let bake_options = BakeOptions { roughness_stored: *form, ..floats() };
                 let arrays = baked_with(&image, &source, base, &bake_options).arrays;
                 let file = part(&arrays, Part::Roughness);
                 let alpha_squared = combined([stored(&file.layers[0], "Y")], |[r]| match form {
@@ -83,11 +92,8 @@ fn an_anisotropic_material_gives_both_eigenvalues_and_the_direction_back() {
         let (image, source) = gentle_map(width, height);
         let base = f64::from(0.01_f32);
         let wanted = oracle_of(&image, &source, &vec![base; width * height]);
-        let bake_options = BakeOptions {
-            lobe: Lobe::Anisotropic,
-            roughness_stored: RoughnessStored::Alpha,
-            ..options(Layout::Pbr, Bits::Float)
-        };
+        let bake_options =
+            BakeOptions { lobe: Lobe::Anisotropic, roughness_stored: RoughnessStored::Alpha, ..floats() };
         let roughness = Some(BaseRoughness::Variance(base as f32));
         let arrays = baked_with(&image, &source, roughness, &bake_options).arrays;
         let across = stored(&part(&arrays, Part::Roughness).layers[0], "Y");
@@ -125,7 +131,7 @@ fn grooves_point_their_direction_across_themselves() {
             .map(|s| [s * cos, s * sin])
             .collect();
         let (image, source) = maps::slope_map(8, 8, &slopes);
-        let bake_options = BakeOptions { lobe: Lobe::Anisotropic, ..options(Layout::Pbr, Bits::Float) };
+        let bake_options = BakeOptions { lobe: Lobe::Anisotropic, ..floats() };
         let arrays = baked_with(&image, &source, Some(BaseRoughness::Variance(0.001)), &bake_options).arrays;
         let anisotropy = layer(part(&arrays, Part::Anisotropy), "anisotropy");
         let at_the_end = |name: &str| stored(anisotropy, name).last().expect("there are levels").values[0];
@@ -139,8 +145,7 @@ fn grooves_point_their_direction_across_themselves() {
 fn a_packed_texture_keeps_occlusion_and_metalness() {
     let (image, source) = gentle_map(53, 37);
     let material = material_map(53, 37);
-    let packed =
-        BakeOptions { roughness_texture: RoughnessTexture::Packed, ..options(Layout::Pbr, Bits::Float) };
+    let packed = BakeOptions { roughness_texture: RoughnessTexture::Packed, ..floats() };
     let map = |image, channel| {
         BaseRoughness::Map(RoughnessMap { image, channel, stored: RoughnessStored::Perceptual })
     };
@@ -149,8 +154,7 @@ fn a_packed_texture_keeps_occlusion_and_metalness() {
         let file = part(&arrays, Part::OcclusionRoughnessMetallic).clone();
         ["R", "G", "B", "A"].map(|name| stored(layer(&file, "orm"), name))
     };
-    let alone =
-        baked_with(&image, &source, Some(map(&material, 1)), &options(Layout::Pbr, Bits::Float)).arrays;
+    let alone = baked_with(&image, &source, Some(map(&material, 1)), &floats()).arrays;
     let [occlusion, roughness, metalness, one] = channels(Some(map(&material, 1)));
     assert_eq!(roughness, stored(&part(&alone, Part::Roughness).layers[0], "Y"));
     for (got, channel) in [(occlusion, 0), (metalness, 2)] {
@@ -164,5 +168,205 @@ fn a_packed_texture_keeps_occlusion_and_metalness() {
         let [occlusion, _, metalness, _] = channels(base);
         assert!(occlusion.iter().all(|plane| plane.values.iter().all(|v| *v == 1.0)), "{base:?}");
         assert!(metalness.iter().all(|plane| plane.values.iter().all(|v| *v == 0.0)), "{base:?}");
+    }
+}
+
+/// glTF and three.js read roughness from green; a file of one channel gives them 0, a mirror.
+#[test]
+fn roughness_is_where_its_layout_says() {
+    let (image, source) = gentle_map(16, 16);
+    for bits in [Bits::Eight, Bits::Sixteen, Bits::Half] {
+        let baked = |roughness_texture| {
+            let options = BakeOptions { roughness_texture, ..options(Layout::Pbr, bits) };
+            baked_with(&image, &source, Some(BaseRoughness::Variance(0.01)), &options).arrays
+        };
+        let alone = baked(RoughnessTexture::Alone);
+        let roughness = &part(&alone, Part::Roughness).layers[0].levels;
+        assert_eq!(BakeOptions::default().roughness_texture, RoughnessTexture::Green);
+        for (layout, name) in [
+            (RoughnessTexture::Green, Part::Roughness),
+            (RoughnessTexture::Packed, Part::OcclusionRoughnessMetallic),
+        ] {
+            let arrays = baked(layout);
+            let levels = &part(&arrays, name).layers[0].levels;
+            for (level, wanted) in levels.iter().zip(roughness) {
+                assert_eq!((level.channels(), wanted.channels()), (4, 1));
+                for (x, y) in (0..level.height()).flat_map(|y| (0..level.width()).map(move |x| (x, y))) {
+                    let texel = [0, 1, 2, 3].map(|channel| level.get(x, y, channel));
+                    assert_eq!(texel, [1.0, wanted.get(x, y, 0), 0.0, 1.0], "{layout} in {bits}");
+                }
+            }
+            assert_eq!(decode(&arrays), decode(&alone), "all layouts decode to the same");
+        }
+    }
+}
+
+/// Mitsuba, Blender and glTF's tools read `n / 2 + 1/2` also from floats.
+#[test]
+fn floats_hold_normals_in_the_range_that_their_info_says() {
+    let (image, source) = gentle_map(16, 16);
+    for bits in [Bits::Half, Bits::Float] {
+        let baked = |normal_range| {
+            let lobe = Lobe::Anisotropic;
+            baked_with(
+                &image,
+                &source,
+                None,
+                &BakeOptions { normal_range, lobe, ..options(Layout::Pbr, bits) },
+            )
+            .arrays
+        };
+        let (unorm, signed) = (baked(NormalRange::Unorm), baked(NormalRange::Signed));
+        assert_eq!(BakeOptions::default().normal_range, NormalRange::Unorm);
+        // Three roundings to the type's 11 or 24 bits: of both stored numbers, and of half of one.
+        let rounding = if bits == Bits::Half { 1.5 / 1024.0 } else { 3.0 * f32::EPSILON };
+        for name in [Part::Normal, Part::Anisotropy] {
+            let levels = |arrays| part(arrays, name).layers[0].levels.clone();
+            for (unorm, signed) in levels(&unorm).iter().zip(levels(&signed)) {
+                for (x, y) in (0..unorm.height()).flat_map(|y| (0..unorm.width()).map(move |x| (x, y))) {
+                    for channel in 0..2 {
+                        let wanted = 0.5 * signed.get(x, y, channel) + 0.5;
+                        assert!((unorm.get(x, y, channel) - wanted).abs() <= rounding, "{name} in {bits}");
+                    }
+                }
+            }
+        }
+        assert_eq!(part(&unorm, Part::Normal).info.normal_range, NormalRange::Unorm);
+        // The slope of a stored normal moves by 1 + b² of its component's error, b = 1 at most in this map.
+        let (from_unorm, from_signed) = (decode(&unorm).expect("parts"), decode(&signed).expect("parts"));
+        for (a, b) in from_unorm.iter().zip(&from_signed).flat_map(|(a, b)| a.moments.iter().zip(&b.moments))
+        {
+            let off = (a.mean.x - b.mean.x).abs().max((a.mean.y - b.mean.y).abs());
+            assert!(off <= 8.0 * rounding, "{bits}: {off}");
+        }
+    }
+}
+
+/// Renderers with a roughness for each axis of the tangent frame: α² = 2 Σ along each.
+#[test]
+fn widths_along_the_axes_are_those_of_the_variances() {
+    let (image, source) = gentle_map(32, 32);
+    let base = 0.01_f32;
+    let bake_options =
+        BakeOptions { lobe: Lobe::Anisotropic, anisotropy_output: AnisotropyOutput::Alpha, ..floats() };
+    let arrays = baked_with(&image, &source, Some(BaseRoughness::Variance(base)), &bake_options).arrays;
+    let wanted = oracle_of(&image, &source, &vec![f64::from(base); 32 * 32]);
+    for (axis, name) in [Part::AlphaX, Part::AlphaY].into_iter().enumerate() {
+        let squared = combined([stored(&part(&arrays, name).layers[0], "Y")], |[alpha]| alpha * alpha / 2.0);
+        let variance = planes(&wanted, |texel| texel.covariance()[axis]);
+        expect(compare_planes(&squared, &variance, |_| AVERAGING * EPS).map(|_| ()), &name);
+    }
+    let isotropic = baked_with(&image, &source, Some(BaseRoughness::Variance(base)), &floats()).arrays;
+    let roughness = |arrays| part(arrays, Part::Roughness).layers[0].levels.clone();
+    assert_eq!(roughness(&arrays), roughness(&isotropic), "the roughness of both axes is still there");
+    let decoded = decode(&arrays).expect("all parts");
+    let variances = decoded.iter().flat_map(|level| &level.moments).map(|m| m.covariance());
+    let of_oracle = wanted.iter().flat_map(|level| level.texels()).map(|texel| texel.covariance());
+    for (got, [xx, yy, _]) in variances.zip(of_oracle) {
+        assert!(
+            (f64::from(got.xx) - xx).abs() < AVERAGING * EPS
+                && (f64::from(got.yy) - yy).abs() < AVERAGING * EPS
+        );
+    }
+}
+
+/// A bilinear lookup at a point of the unit square, without wrapping: the tests stay clear of the edge.
+fn bilinear(image: &Image, u: f64, v: f64) -> [f64; 2] {
+    let (x, y) = (u * image.width() as f64 - 0.5, v * image.height() as f64 - 0.5);
+    let (x0, y0) = (x.floor(), y.floor());
+    let (s, t) = (x - x0, y - y0);
+    [0, 1].map(|channel| {
+        let at = |dx: usize, dy: usize| f64::from(image.get(x0 as usize + dx, y0 as usize + dy, channel));
+        let row = |dy: usize| at(0, dy) * (1.0 - s) + at(1, dy) * s;
+        2.0 * (row(0) * (1.0 - t) + row(1) * t) - 1.0
+    })
+}
+
+/// Circular brushing: its axis turns slowly all around, so that no reference axis serves everywhere. Between any texels, and
+/// between levels, a filter must find the axis there.
+#[test]
+fn directions_of_a_brushed_disc_survive_filtering() {
+    const SIDE: usize = 128;
+    /// Texels of the coarser level between the middle and a lookup: the axis turns by an eighth of a radian a texel there.
+    const CLEAR: f64 = 8.0;
+    /// A texel's turn, what unequal slopes under it add, and a code of eight bits.
+    const TOLERANCE_DEGREES: f64 = 9.0;
+    /// Unit vectors within an eighth of a radian of each other lose next to nothing of their length when averaged.
+    const LEAST_LENGTH: f64 = 0.95;
+    let radial = |u: f64, v: f64| (0.5 - v).atan2(u - 0.5);
+    // Slopes of both signs along the radius.
+    let slopes: Vec<[f64; 2]> = (0..SIDE * SIDE)
+        .map(|i| {
+            let (x, y) = (i % SIDE, i / SIDE);
+            let angle = radial((x as f64 + 0.5) / SIDE as f64, (y as f64 + 0.5) / SIDE as f64);
+            let sign = if (x + y) % 2 == 0 { 0.3 } else { -0.3 };
+            [sign * angle.cos(), sign * angle.sin()]
+        })
+        .collect();
+    let (image, source) = maps::slope_map(SIDE, SIDE, &slopes);
+    for bits in [Bits::Eight, Bits::Sixteen, Bits::Half] {
+        let bake_options = BakeOptions { lobe: Lobe::Anisotropic, ..options(Layout::Pbr, bits) };
+        let arrays = baked_with(&image, &source, Some(BaseRoughness::Variance(0.001)), &bake_options).arrays;
+        let levels = &part(&arrays, Part::Anisotropy).layers[0].levels;
+        let mut looked_up = 0;
+        for pair in levels.windows(2) {
+            let texel = 1.0 / pair[1].width() as f64;
+            // Points between the texels of the finer level, two of them a texel.
+            let steps = 2 * pair[0].width();
+            for (i, j) in (0..steps).flat_map(|j| (0..steps).map(move |i| (i, j))) {
+                let (u, v) = (i as f64 / steps as f64, j as f64 / steps as f64);
+                let radius = (u - 0.5).hypot(v - 0.5);
+                if radius < CLEAR * texel || [u, v].iter().any(|at| *at < texel || *at > 1.0 - texel) {
+                    continue;
+                }
+                let (fine, coarse) = (bilinear(&pair[0], u, v), bilinear(&pair[1], u, v));
+                for weight in [0.0, 0.5, 1.0] {
+                    let [x, y] = [0, 1].map(|k| fine[k] * (1.0 - weight) + coarse[k] * weight);
+                    let off = (y.atan2(x) - radial(u, v)).sin().abs().asin().to_degrees();
+                    assert!(
+                        off < TOLERANCE_DEGREES && x.hypot(y) > LEAST_LENGTH,
+                        "{bits}, {} at {u} {v}: {off} degrees off, length {}",
+                        pair[0].width(),
+                        x.hypot(y)
+                    );
+                    looked_up += 1;
+                }
+            }
+        }
+        assert!(looked_up > 100_000, "{looked_up}");
+    }
+}
+
+/// Toksvig's factor was baked for one exponent, which is in the file; where the exponent varies, compressed textures hold the
+/// length of the normal beside the factor.
+#[test]
+fn toksvigs_variance_comes_back_from_its_parts_whatever_the_base() {
+    use roughcast::Blocks;
+    let (image, source) = gentle_map(32, 32);
+    let material = material_map(32, 32);
+    let varies = BaseRoughness::Map(RoughnessMap {
+        image: &material,
+        channel: 1,
+        stored: RoughnessStored::Perceptual,
+    });
+    for base in [BaseRoughness::Variance(1.0 / 64.0), varies] {
+        let bits = Bits::Eight;
+        let whole = baked_with(&image, &source, Some(base), &options(Layout::Toksvig, bits));
+        let shaped = BakeOptions { blocks: Blocks::Bc, ..options(Layout::Toksvig, bits) };
+        let parts = baked_with(&image, &source, Some(base), &shaped);
+        assert_eq!(whole.arrays[0].info.base, Base::Baked, "the factor holds the base");
+        let power = matches!(base, BaseRoughness::Variance(_)).then_some(64.0);
+        assert_eq!(whole.arrays[0].info.specular_power(), power);
+        let bound = whole.report.bounds.variance + parts.report.bounds.variance;
+        assert!(bound.is_finite());
+        let (from_whole, from_parts) =
+            (decode(&whole.arrays).expect("one"), decode(&parts.arrays).expect("two"));
+        let mut largest = 0.0_f32;
+        for (a, b) in from_whole.iter().zip(&from_parts).flat_map(|(a, b)| a.moments.iter().zip(&b.moments)) {
+            let (a, b) = (a.covariance().xx, b.covariance().xx);
+            assert!((a - b).abs() <= bound, "{a} and {b}");
+            largest = largest.max(b);
+        }
+        assert!(largest > 0.04, "the map's bumps are there: {largest}");
     }
 }

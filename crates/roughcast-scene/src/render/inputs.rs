@@ -6,15 +6,12 @@ use roughcast::texture::{Packing, Part, Texture, TextureArray, TextureInfo};
 
 use super::RenderError;
 
-/// The green channel of a packed texture: glTF's roughness.
-const ROUGHNESS_CHANNEL: usize = 1;
-
 /// The textures that a model samples, found among the files of its layout.
 #[derive(Clone, Debug)]
 pub struct ModelInputs<'a> {
     /// In the order of [`Shading::inputs`].
     pub textures: Vec<&'a Texture>,
-    /// The channel of the second texture that takes the place of its first: of a packed roughness the green one.
+    /// The channel of the second texture that takes the place of its first: that of the roughness.
     pub roughness_channel: usize,
     /// Whether there is an anisotropy texture.
     pub lobe: Lobe,
@@ -24,8 +21,8 @@ pub struct ModelInputs<'a> {
     pub info: TextureInfo,
 }
 
-/// The model's textures out of the files of its [layout](Shading::layout). Roughness may be packed with occlusion and
-/// metalness.
+/// The model's textures out of the files of its [layout](Shading::layout). Roughness may be in the first channel of its texture,
+/// in the second, or packed with occlusion and metalness.
 ///
 /// # Errors
 /// [`RenderError::MissingTexture`] where one is not there.
@@ -43,15 +40,17 @@ pub fn model_inputs(shading: Shading, arrays: &[TextureArray]) -> Result<ModelIn
     let mut textures = Vec::with_capacity(inputs.len());
     for input in inputs {
         let layer = |texture: &&Texture| texture.name == input.layer;
-        let alone = array(input.part, arrays).and_then(|array| array.layers.iter().find(layer));
-        textures.push(match (alone, array(Part::OcclusionRoughnessMetallic, arrays)) {
-            (Some(texture), _) => texture,
-            (None, Some(packed)) if input.part == Part::Roughness => {
-                roughness_channel = ROUGHNESS_CHANNEL;
-                &packed.layers[0]
-            }
+        let found = array(input.part, arrays).filter(|array| array.layers.iter().any(|t| layer(&t)));
+        let packed = array(Part::OcclusionRoughnessMetallic, arrays);
+        let (found, texture) = match (found, packed) {
+            (Some(array), _) => (array, array.layers.iter().find(layer)),
+            (None, Some(packed)) if input.part == Part::Roughness => (packed, packed.layers.first()),
             _ => return Err(missing(*input)),
-        });
+        };
+        if input.part == Part::Roughness {
+            roughness_channel = found.info.roughness_texture.roughness_channel();
+        }
+        textures.push(texture.ok_or(missing(*input))?);
     }
     let packing = Packing::new(&first.info, first.layers[0].sample_type());
     Ok(ModelInputs { textures, roughness_channel, lobe, packing, info: first.info })

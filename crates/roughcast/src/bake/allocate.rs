@@ -1,7 +1,7 @@
 //! The textures that a bake writes into.
 
 use crate::Image;
-use crate::options::{BakeOptions, Blocks, RoughnessTexture};
+use crate::options::{AnisotropyOutput, BakeOptions, Blocks, RoughnessTexture};
 use crate::pyramid::{LevelOut, PartOut, SamplesMut, level_sizes};
 use crate::texture::{self, LayerSpec, Layout, Part, Texture, TextureArray, TextureInfo};
 
@@ -16,11 +16,13 @@ pub(super) fn allocate(
     match (options.layout, options.blocks) {
         (Layout::Pbr, _) => {
             parts.push(match options.roughness_texture {
-                RoughnessTexture::Alone => Part::Roughness,
+                RoughnessTexture::Alone | RoughnessTexture::Green => Part::Roughness,
                 RoughnessTexture::Packed => Part::OcclusionRoughnessMetallic,
             });
-            if options.lobe == crate::options::Lobe::Anisotropic {
-                parts.push(Part::Anisotropy);
+            match options.anisotropy() {
+                Some(AnisotropyOutput::Khr) => parts.push(Part::Anisotropy),
+                Some(AnisotropyOutput::Alpha) => parts.extend([Part::AlphaX, Part::AlphaY]),
+                None => {}
             }
         }
         (Layout::Toksvig, Blocks::Bc) => parts.push(Part::Gloss),

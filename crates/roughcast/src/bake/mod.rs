@@ -13,6 +13,8 @@ use crate::options::{BakeOptions, Blocks, ScaleChoice, SourceOptions};
 use crate::pyramid::{self, LevelStats, PyramidOptions, level_sizes};
 use crate::source::{BaseRoughness, BaseSource, MapSource, RoughnessMap, SourceError, UseOfBase};
 use crate::survey::survey;
+use crate::texture::codec::Units;
+use crate::texture::orient::orient;
 use crate::texture::{self, Base, Bounds, EncoderShape, Layout, Part, Peaks, RoughnessStored, TextureArray};
 use crate::{Image, SourceCounts};
 use allocate::{allocate, level_outs};
@@ -128,7 +130,7 @@ pub fn bake_reusing(
     set_scales(&mut info, looked_at.as_ref(), largest_variance, options);
     let mut arrays = allocate(textures, &info, options, (image.width(), image.height()));
     let shape = EncoderShape {
-        lobe: options.lobe,
+        anisotropy: options.anisotropy(),
         roughness_texture: options.roughness_texture,
         normal_channels: if options.blocks == Blocks::Bc { 2 } else { 4 },
     };
@@ -154,9 +156,12 @@ pub fn bake_reusing(
         levels: level_sizes(image.width(), image.height()).into_iter().zip(built.levels).collect(),
         roughness_resampled_from,
     };
+    if let Some(directions) = arrays.iter_mut().find(|array| array.info.part == Part::Anisotropy) {
+        let unit = Units::new(&directions.info, sample_type).unit();
+        orient(&mut directions.layers[0], source_options.wrap, unit);
+    }
     if arrays.len() > 1 {
-        let set = texture::set_id(&arrays);
-        arrays.iter_mut().for_each(|array| array.info.set = set);
+        texture::mark_set(&mut arrays);
     }
     Ok(Baked { arrays, report })
 }
@@ -180,7 +185,7 @@ fn source_of<'a>(
 /// `pbr`'s roughness and Toksvig's factor hold the base whatever was asked for: that is what they are.
 fn base_of(options: &BakeOptions, has_roughness: bool) -> Base {
     match options.layout {
-        Layout::Pbr if has_roughness => Base::Baked,
+        Layout::Pbr | Layout::Toksvig if has_roughness => Base::Baked,
         _ => options.base,
     }
 }

@@ -2,9 +2,9 @@
 
 use super::check::{check_options, limit_slopes};
 use super::{BakeError, base_of, base_variance, first_part};
-use crate::options::{BakeOptions, SourceOptions};
+use crate::options::{BakeOptions, NormalRange, RoughnessTexture, SourceOptions};
 use crate::source::{BaseRoughness, check_numbers};
-use crate::texture::TextureInfo;
+use crate::texture::{Layout, TextureInfo};
 
 /// Checked options and what follows from them, for those who bake by other means than [`crate::bake`], such as a GPU.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +33,22 @@ pub fn plan_bake(
         base_variance: base_variance(roughness),
         brdf: options.brdf,
         roughness_stored: options.roughness_stored,
+        wrap: source.wrap,
+        normal_range: normal_range(options),
+        roughness_texture: match options.layout {
+            Layout::Pbr => options.roughness_texture,
+            _ => RoughnessTexture::Alone,
+        },
         ..TextureInfo::new(options.layout, first_part(options))
     };
     Ok(BakePlan { source, info })
+}
+
+/// How unit vectors are stored. Only `pbr` has a choice, and only in floats.
+fn normal_range(options: &BakeOptions) -> NormalRange {
+    match options.layout {
+        _ if !options.bits.sample_type().is_float() => NormalRange::Unorm,
+        Layout::Pbr => options.normal_range,
+        _ => NormalRange::Signed,
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::TextureInfo;
 use crate::SampleType;
+use crate::options::NormalRange;
 use crate::row::{Extra, RowView};
 
 /// Turns a row of moments into the planes of stored values of all of a layout's channels.
@@ -51,11 +52,13 @@ pub(crate) struct Units {
     sample_type: SampleType,
     scale: f32,
     variance_scale: f32,
+    normal_range: NormalRange,
 }
 
 impl Units {
     pub fn new(info: &TextureInfo, sample_type: SampleType) -> Self {
-        Self { sample_type, scale: info.scale, variance_scale: info.variance_scale }
+        let TextureInfo { scale, variance_scale, normal_range, .. } = *info;
+        Self { sample_type, scale, variance_scale, normal_range }
     }
 
     fn unsigned(self, full: f32) -> Affine {
@@ -98,7 +101,10 @@ impl Units {
 
     /// A component of a unit vector.
     pub fn unit(self) -> Affine {
-        self.signed(1.0)
+        match self.normal_range {
+            NormalRange::Unorm => Affine { mul: 0.5, add: 0.5 },
+            NormalRange::Signed => self.signed(1.0),
+        }
     }
 
     /// Largest number that a texel can hold as it is.

@@ -4,8 +4,8 @@ use rayon::prelude::*;
 
 use super::codec::Units;
 use super::{
-    Layout, Part, TextureArray, bump_slopes, clean, lean, moments as moments_layout, pbr, schilling, toksvig,
-    variance,
+    Layout, Part, TextureArray, bump_slopes, clean, join_layers, lean, moments as moments_layout, pbr,
+    schilling, toksvig, variance,
 };
 use crate::moments::Moments;
 
@@ -31,6 +31,16 @@ pub enum DecodeError {
         /// The part that is not there.
         part: Part,
     },
+    /// A layout whose layers have files of their own was given without one of them.
+    #[error(
+        "the layout '{layout}' needs the file of its layer '{layer}' beside the others, and it is not there"
+    )]
+    MissingLayer {
+        /// The layout.
+        layout: Layout,
+        /// The name of the layer that is not there.
+        layer: &'static str,
+    },
     /// A file belongs to another bake than the first.
     #[error("the '{part}' file belongs to another bake than the '{first}' file: bake them together again")]
     OtherSet {
@@ -49,13 +59,17 @@ pub enum DecodeError {
     },
 }
 
-/// Decodes the files of one layout: a single one, or all parts of `pbr` or of block-compressed `toksvig`.
+/// Decodes the files of one layout: a single one, all parts of `pbr` or of block-compressed `toksvig`, or all layers of a
+/// layout whose layers have files of their own ([`join_layers`] spares the copy that is made of these).
 ///
 /// Base roughness stays in where the files hold it; their info says so.
 ///
 /// # Errors
 /// [`DecodeError`] where a part is missing or the textures do not belong together.
 pub fn decode(arrays: &[TextureArray]) -> Result<Vec<MomentLevel>, DecodeError> {
+    if arrays.iter().any(|array| array.info.layer.is_some()) {
+        return decode(&join_layers(arrays.to_vec())?);
+    }
     let first = arrays.first().expect("there is at least one file to decode");
     let parts = Parts::find(arrays, first.info.layout)?;
     let levels = (0..first.level_count()).map(|level| {
@@ -78,6 +92,8 @@ struct Parts<'a> {
     main: &'a TextureArray,
     roughness: Option<&'a TextureArray>,
     anisotropy: Option<&'a TextureArray>,
+    /// The widths along x and y.
+    alphas: Option<[&'a TextureArray; 2]>,
     gloss: Option<&'a TextureArray>,
 }
 
@@ -90,6 +106,12 @@ impl<'a> Parts<'a> {
             main,
             roughness: find(&[Part::Roughness, Part::OcclusionRoughnessMetallic]),
             anisotropy: find(&[Part::Anisotropy]),
+            alphas: match (find(&[Part::AlphaX]), find(&[Part::AlphaY])) {
+                (Some(x), Some(y)) => Some([x, y]),
+                (Some(_), None) => return Err(missing(Part::AlphaY)),
+                (None, Some(_)) => return Err(missing(Part::AlphaX)),
+                (None, None) => None,
+            },
             gloss: find(&[Part::Gloss]),
         };
         if layout == Layout::Pbr && parts.roughness.is_none() {
@@ -105,7 +127,8 @@ impl<'a> Parts<'a> {
     /// All sizes and channels fit, so that decoding a texel cannot fail.
     fn check(&self, layout: Layout) -> Result<(), DecodeError> {
         let fault = |fault: String| Err(DecodeError::Shape { layout, fault });
-        let all = [Some(self.main), self.roughness, self.anisotropy, self.gloss].into_iter().flatten();
+        let parts = [Some(self.main), self.roughness, self.anisotropy, self.gloss];
+        let all = parts.into_iter().flatten().chain(self.alphas.into_iter().flatten());
         for array in all {
             if array.info.set != self.main.info.set {
                 return Err(DecodeError::OtherSet { part: array.info.part, first: self.main.info.part });
@@ -155,10 +178,13 @@ impl<'a> Parts<'a> {
             (Layout::Toksvig, _) => toksvig::decode(units, texel),
             (Layout::Pbr, _) => {
                 let normal_channels = texel.len();
+                if let Some(alphas) = self.alphas {
+                    let widths = alphas.map(|array| array.layers[0].levels[level].get(x, y, 0));
+                    return pbr::decode_alphas(units, texel, widths);
+                }
                 let roughness = self.roughness.expect("checked to be there");
                 append(self.roughness, level, x, y, texel);
-                let packed = roughness.info.part == Part::OcclusionRoughnessMetallic;
-                let value = texel[normal_channels + usize::from(packed)];
+                let value = texel[normal_channels + roughness.info.roughness_texture.roughness_channel()];
                 let anisotropy_at = texel.len();
                 append(self.anisotropy, level, x, y, texel);
                 let anisotropy = self.anisotropy.map(|_| &texel[anisotropy_at..]);

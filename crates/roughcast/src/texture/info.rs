@@ -4,7 +4,9 @@
 
 use std::collections::BTreeMap;
 
+use super::layers_of;
 use crate::named::named_enum;
+use crate::options::{NormalRange, RoughnessTexture, Wrap};
 
 named_enum! {
     /// The layouts in which moments are stored, one file each in [`crate::texture`].
@@ -47,6 +49,10 @@ named_enum! {
         Anisotropy = "anisotropy",
         /// Toksvig's gloss factor alone.
         Gloss = "gloss",
+        /// The width of the lobe along the x axis.
+        AlphaX = "alpha-x",
+        /// The width of the lobe along the y axis.
+        AlphaY = "alpha-y",
     }
 }
 
@@ -54,9 +60,14 @@ impl Layout {
     /// The parts that files of this layout can be.
     pub const fn parts(self) -> &'static [Part] {
         match self {
-            Layout::Pbr => {
-                &[Part::Normal, Part::Roughness, Part::OcclusionRoughnessMetallic, Part::Anisotropy]
-            }
+            Layout::Pbr => &[
+                Part::Normal,
+                Part::Roughness,
+                Part::OcclusionRoughnessMetallic,
+                Part::Anisotropy,
+                Part::AlphaX,
+                Part::AlphaY,
+            ],
             Layout::Toksvig => &[Part::Whole, Part::Normal, Part::Gloss],
             Layout::Variance => &[Part::Whole, Part::Split],
             Layout::Lean
@@ -129,6 +140,15 @@ pub struct TextureInfo {
     /// The bake that the file belongs to, where a layout consists of several files: the same number in all of them, and
     /// another one in the files of another bake. 0 where the file stands alone.
     pub set: u64,
+    /// The one layer of the part that the file contains, as an index into [`layers_of`] the whole part, where each layer has a
+    /// file of its own. `None` where the file contains all.
+    pub layer: Option<u8>,
+    /// What lies beyond the edge of the map.
+    pub wrap: Wrap,
+    /// How floats hold the components of unit vectors; unsigned types always hold `v / 2 + 1/2`.
+    pub normal_range: NormalRange,
+    /// The channels of `pbr`'s roughness.
+    pub roughness_texture: RoughnessTexture,
 }
 
 /// Why the metadata of a file could not be read.
@@ -158,6 +178,11 @@ const BASE_VARIANCE: &str = "roughcast.base-variance";
 const BRDF: &str = "roughcast.brdf";
 const ROUGHNESS_STORED: &str = "roughcast.roughness-stored";
 const SET: &str = "roughcast.set";
+const LAYER: &str = "roughcast.layer";
+const WRAP: &str = "roughcast.wrap";
+const NORMAL_RANGE: &str = "roughcast.normal-range";
+const ROUGHNESS_LAYOUT: &str = "roughcast.roughness-layout";
+const SPECULAR_POWER: &str = "roughcast.specular-power";
 const CONVENTIONS: &str = "roughcast.conventions";
 
 /// For whoever opens a file without this documentation at hand; it is the same in every file and not read back.
@@ -166,7 +191,9 @@ const CONVENTIONS_OF_ALL_FILES: &str = "row 0 is the top; tangent frame x right,
 
 /// First of the eleven reserved words of a DDS header: "RGHC" in the file.
 pub const DDS_MAGIC: u32 = u32::from_le_bytes(*b"RGHC");
-const DDS_VERSION: u32 = 1;
+const DDS_VERSION: u32 = 2;
+/// The version before: without the tenth word, and floats always hold signed normals.
+const DDS_VERSION_WITHOUT_CHOICES: u32 = 1;
 
 impl TextureInfo {
     /// The plain meaning of a layout: unit scales, no base roughness, perceptual GGX roughness.
@@ -181,7 +208,27 @@ impl TextureInfo {
             brdf: Brdf::Ggx,
             roughness_stored: RoughnessStored::Perceptual,
             set: 0,
+            layer: None,
+            wrap: Wrap::Repeat,
+            normal_range: if matches!(layout, Layout::Pbr) {
+                NormalRange::Unorm
+            } else {
+                NormalRange::Signed
+            },
+            roughness_texture: RoughnessTexture::Alone,
         }
+    }
+
+    /// The Blinn-Phong exponent of the base roughness; `None` without one, and where it varies over the map. Toksvig's gloss
+    /// factor is for this exponent.
+    pub fn specular_power(&self) -> Option<f32> {
+        (self.base_variance > 0.0).then(|| 1.0 / self.base_variance)
+    }
+
+    /// The meaning of the whole part, of which this may be a single layer.
+    #[must_use]
+    pub fn of_whole_part(&self) -> Self {
+        Self { layer: None, ..*self }
     }
 
     /// The pairs that KTX2 and EXR files keep. Floats are written so that they read back bit for bit.
@@ -195,10 +242,23 @@ impl TextureInfo {
             (BASE_VARIANCE, self.base_variance.to_string()),
             (BRDF, self.brdf.name().to_owned()),
             (ROUGHNESS_STORED, self.roughness_stored.name().to_owned()),
+            (WRAP, self.wrap.name().to_owned()),
+            (NORMAL_RANGE, self.normal_range.name().to_owned()),
             (CONVENTIONS, CONVENTIONS_OF_ALL_FILES.to_owned()),
         ];
+        let layout = (self.layout == Layout::Pbr)
+            .then(|| (ROUGHNESS_LAYOUT, self.roughness_texture.name().to_owned()));
+        let power = self.specular_power().map(|power| (SPECULAR_POWER, power.to_string()));
         let set = (self.set != 0).then(|| (SET, format!("{:016x}", self.set)));
-        pairs.into_iter().chain(set).map(|(key, value)| (key.to_owned(), value)).collect()
+        let layer = self.layer.and(layers_of(self).first()).map(|layer| (LAYER, layer.name.to_owned()));
+        pairs
+            .into_iter()
+            .chain(layout)
+            .chain(power)
+            .chain(set)
+            .chain(layer)
+            .map(|(key, value)| (key.to_owned(), value))
+            .collect()
     }
 
     /// Reads [`TextureInfo::to_pairs`] back; keys of others are passed over.
@@ -213,14 +273,23 @@ impl TextureInfo {
             let text = pairs.get(key).ok_or(InfoError::Missing(key))?;
             text.parse().map_err(|_| InfoError::Invalid { key, value: text.clone() })
         }
+        /// The value of a key that files of earlier versions lack.
+        fn value_or<T: std::str::FromStr>(
+            pairs: &BTreeMap<String, String>,
+            key: &'static str,
+            otherwise: T,
+        ) -> Result<T, InfoError> {
+            if pairs.contains_key(key) { value(pairs, key) } else { Ok(otherwise) }
+        }
         let set = match pairs.get(SET) {
             Some(text) => u64::from_str_radix(text, 16)
                 .map_err(|_| InfoError::Invalid { key: SET, value: text.clone() })?,
             None => 0,
         };
-        Self {
-            layout: value(pairs, LAYOUT)?,
-            part: value(pairs, PART)?,
+        let (layout, part) = (value(pairs, LAYOUT)?, value(pairs, PART)?);
+        let read = Self {
+            layout,
+            part,
             scale: value(pairs, SCALE)?,
             variance_scale: value(pairs, VARIANCE_SCALE)?,
             base: value(pairs, BASE)?,
@@ -228,8 +297,21 @@ impl TextureInfo {
             brdf: value(pairs, BRDF)?,
             roughness_stored: value(pairs, ROUGHNESS_STORED)?,
             set,
-        }
-        .checked()
+            layer: None,
+            wrap: value_or(pairs, WRAP, Wrap::Repeat)?,
+            // Before there was a choice, floats were signed.
+            normal_range: value_or(pairs, NORMAL_RANGE, NormalRange::Signed)?,
+            roughness_texture: value_or(pairs, ROUGHNESS_LAYOUT, before_there_was_a_choice(part))?,
+        };
+        let layer = match pairs.get(LAYER) {
+            None => None,
+            Some(name) => {
+                let place = layers_of(&read).iter().position(|layer| layer.name == name);
+                let invalid = || InfoError::Invalid { key: LAYER, value: name.clone() };
+                Some(place.and_then(|place| u8::try_from(place).ok()).ok_or_else(invalid)?)
+            }
+        };
+        Self { layer, ..read }.checked()
     }
 
     /// The eleven words that a DDS header keeps for its writer.
@@ -245,6 +327,10 @@ impl TextureInfo {
             | index_of(RoughnessStored::ALL, self.roughness_stored) << 16;
         words[6] = self.base_variance.to_bits();
         (words[7], words[8]) = (self.set as u32, (self.set >> 32) as u32);
+        words[9] = index_of(Wrap::ALL, self.wrap)
+            | index_of(NormalRange::ALL, self.normal_range) << 8
+            | index_of(RoughnessTexture::ALL, self.roughness_texture) << 16
+            | self.layer.map_or(0, |layer| u32::from(layer) + 1) << 24;
         words
     }
 
@@ -256,12 +342,14 @@ impl TextureInfo {
         if words[0] != DDS_MAGIC {
             return Err(InfoError::Missing(LAYOUT));
         }
-        if words[1] != DDS_VERSION {
+        if !matches!(words[1], DDS_VERSION | DDS_VERSION_WITHOUT_CHOICES) {
             return Err(InfoError::Invalid { key: "version", value: words[1].to_string() });
         }
+        let part = variant_at(Part::ALL, words[2] >> 8 & 0xff, PART)?;
+        let choices = if words[1] == DDS_VERSION { words[9] } else { choices_before(part) };
         Self {
             layout: variant_at(Layout::ALL, words[2] & 0xff, LAYOUT)?,
-            part: variant_at(Part::ALL, words[2] >> 8 & 0xff, PART)?,
+            part,
             scale: f32::from_bits(words[3]),
             variance_scale: f32::from_bits(words[4]),
             base: variant_at(Base::ALL, words[5] & 0xff, BASE)?,
@@ -269,6 +357,10 @@ impl TextureInfo {
             roughness_stored: variant_at(RoughnessStored::ALL, words[5] >> 16 & 0xff, ROUGHNESS_STORED)?,
             base_variance: f32::from_bits(words[6]),
             set: u64::from(words[8]) << 32 | u64::from(words[7]),
+            layer: (choices >> 24).checked_sub(1).map(|layer| layer as u8),
+            wrap: variant_at(Wrap::ALL, choices & 0xff, WRAP)?,
+            normal_range: variant_at(NormalRange::ALL, choices >> 8 & 0xff, NORMAL_RANGE)?,
+            roughness_texture: variant_at(RoughnessTexture::ALL, choices >> 16 & 0xff, ROUGHNESS_LAYOUT)?,
         }
         .checked()
     }
@@ -278,6 +370,20 @@ impl TextureInfo {
     fn checked(self) -> Result<Self, InfoError> {
         if !self.layout.parts().contains(&self.part) {
             return Err(InfoError::Invalid { key: PART, value: self.part.to_string() });
+        }
+        let layers = layers_of(&self.of_whole_part()).len();
+        if let Some(layer) = self.layer.filter(|layer| usize::from(*layer) >= layers) {
+            return Err(InfoError::Invalid { key: LAYER, value: layer.to_string() });
+        }
+        // A part that says two things about its channels would be decoded as one and written as the other.
+        if (self.part == Part::OcclusionRoughnessMetallic)
+            != (self.roughness_texture == RoughnessTexture::Packed)
+            && matches!(self.part, Part::OcclusionRoughnessMetallic | Part::Roughness)
+        {
+            return Err(InfoError::Invalid {
+                key: ROUGHNESS_LAYOUT,
+                value: self.roughness_texture.to_string(),
+            });
         }
         for (key, value) in [(SCALE, self.scale), (VARIANCE_SCALE, self.variance_scale)] {
             if !(value.is_finite() && value > 0.0) {
@@ -290,6 +396,20 @@ impl TextureInfo {
         }
         Ok(self)
     }
+}
+
+/// The channels of a roughness part in files of earlier versions.
+fn before_there_was_a_choice(part: Part) -> RoughnessTexture {
+    match part {
+        Part::OcclusionRoughnessMetallic => RoughnessTexture::Packed,
+        _ => RoughnessTexture::Alone,
+    }
+}
+
+/// The tenth word of a DDS file of an earlier version, as it would be today.
+fn choices_before(part: Part) -> u32 {
+    index_of(NormalRange::ALL, NormalRange::Signed) << 8
+        | index_of(RoughnessTexture::ALL, before_there_was_a_choice(part)) << 16
 }
 
 fn index_of<T: PartialEq>(all: &[T], variant: T) -> u32 {
@@ -313,8 +433,44 @@ mod tests {
             brdf: Brdf::BlinnPhong,
             roughness_stored: RoughnessStored::SpecularPower,
             set: 0x0123_4567_89ab_cdef,
+            wrap: Wrap::Mirror,
+            normal_range: NormalRange::Unorm,
             ..TextureInfo::new(Layout::Toksvig, Part::Gloss)
         }
+    }
+
+    #[test]
+    fn layers_and_channels_read_back() {
+        let second = TextureInfo { layer: Some(1), ..TextureInfo::new(Layout::Lean, Part::Whole) };
+        let green = TextureInfo {
+            roughness_texture: RoughnessTexture::Green,
+            ..TextureInfo::new(Layout::Pbr, Part::Roughness)
+        };
+        for info in [second, green] {
+            assert_eq!(TextureInfo::from_pairs(&info.to_pairs()), Ok(info));
+            assert_eq!(TextureInfo::from_words(&info.to_words()), Ok(info));
+        }
+        assert_eq!(second.to_pairs()[LAYER], "lean2");
+        let third = TextureInfo { layer: Some(2), ..second };
+        assert!(TextureInfo::from_words(&third.to_words()).is_err());
+    }
+
+    #[test]
+    fn files_of_earlier_versions_mean_what_they_meant() {
+        let orm = TextureInfo::new(Layout::Pbr, Part::OcclusionRoughnessMetallic);
+        let earlier = TextureInfo {
+            normal_range: NormalRange::Signed,
+            roughness_texture: RoughnessTexture::Packed,
+            ..orm
+        };
+        let mut pairs = earlier.to_pairs();
+        for key in [WRAP, NORMAL_RANGE, ROUGHNESS_LAYOUT] {
+            pairs.remove(key);
+        }
+        assert_eq!(TextureInfo::from_pairs(&pairs), Ok(earlier));
+        let mut words = earlier.to_words();
+        (words[1], words[9]) = (1, 0);
+        assert_eq!(TextureInfo::from_words(&words), Ok(earlier));
     }
 
     #[test]

@@ -9,12 +9,14 @@ mod decode;
 mod info;
 mod lean;
 mod moments;
+pub(crate) mod orient;
 pub(crate) mod pack;
 pub(crate) mod packing;
 pub(crate) mod pbr;
 mod pbr_bounds;
 mod schilling;
 mod set_id;
+mod split;
 mod toksvig;
 mod variance;
 
@@ -24,9 +26,10 @@ pub use info::{Base, Brdf, InfoError, Layout, Part, RoughnessStored, TextureInfo
 pub use packing::Packing;
 pub use schilling::Factor;
 pub(crate) use set_id::set_id;
+pub use split::{join_layers, mark_set, split_infos, split_layers};
 
 use crate::moments::Moments;
-use crate::options::{Lobe, RoughnessTexture};
+use crate::options::{AnisotropyOutput, RoughnessTexture};
 use crate::row::Extra;
 use crate::{Image, SampleType};
 use codec::Units;
@@ -74,13 +77,29 @@ impl TextureArray {
 /// The textures of a file with this meaning, in the order of its layers. A block-compressed normal has only the first
 /// two of the channels named here.
 pub fn layers_of(info: &TextureInfo) -> &'static [LayerSpec] {
+    let all = layers_of_part(info);
+    match info.layer.map(usize::from) {
+        Some(layer) => all.get(layer..=layer).unwrap_or_default(),
+        None => all,
+    }
+}
+
+/// All layers of the part.
+fn layers_of_part(info: &TextureInfo) -> &'static [LayerSpec] {
     match (info.layout, info.part) {
         (Layout::Toksvig, Part::Normal) => toksvig::NORMAL_LAYERS,
         (Layout::Variance, Part::Split) => variance::SPLIT_LAYERS,
         (_, Part::Normal) => pbr::NORMAL_LAYERS,
+        (_, Part::Roughness) if info.roughness_texture == RoughnessTexture::Green => {
+            pbr::GREEN_ROUGHNESS_LAYERS
+        }
         (_, Part::Roughness) => pbr::ROUGHNESS_LAYERS,
         (_, Part::OcclusionRoughnessMetallic) => pbr::ORM_LAYERS,
         (_, Part::Anisotropy) => pbr::ANISOTROPY_LAYERS,
+        (_, Part::AlphaX) => pbr::ALPHA_X_LAYERS,
+        (_, Part::AlphaY) => pbr::ALPHA_Y_LAYERS,
+        // An exponent that varies does not tell what the length was.
+        (_, Part::Gloss) if info.base_variance.is_nan() => toksvig::GLOSS_AND_LENGTH_LAYERS,
         (_, Part::Gloss) => toksvig::GLOSS_LAYERS,
         (layout, Part::Whole | Part::Split) => match layout {
             Layout::Lean => lean::LAYERS,
@@ -103,7 +122,7 @@ pub(crate) fn extras_of(layout: Layout, packed: RoughnessTexture) -> Vec<Extra> 
         Layout::Toksvig => [&codec::NORMAL[..], &[Extra::BaseVariance]].concat(),
         Layout::BumpSlopes => vec![Extra::Height],
         Layout::Pbr => match packed {
-            RoughnessTexture::Alone => vec![],
+            RoughnessTexture::Alone | RoughnessTexture::Green => vec![],
             RoughnessTexture::Packed => vec![Extra::Occlusion, Extra::Metalness],
         },
         Layout::Clean | Layout::SchillingIsotropic | Layout::Variance | Layout::Moments => vec![],
@@ -113,7 +132,8 @@ pub(crate) fn extras_of(layout: Layout, packed: RoughnessTexture) -> Vec<Extra> 
 /// What a layout's encoder has to know beyond the units.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EncoderShape {
-    pub lobe: Lobe,
+    /// What `pbr` says of directions; `None` for one roughness.
+    pub anisotropy: Option<AnisotropyOutput>,
     pub roughness_texture: RoughnessTexture,
     /// The channels of `pbr`'s normal texture.
     pub normal_channels: usize,
@@ -132,14 +152,21 @@ pub(crate) fn encoder(
         Layout::Schilling => Box::new(schilling::Encoder(units)),
         Layout::SchillingIsotropic => Box::new(schilling::IsotropicEncoder(units)),
         Layout::Variance => Box::new(variance::Encoder(units)),
-        Layout::Toksvig => Box::new(toksvig::Encoder { units, part: info.part }),
+        Layout::Toksvig => Box::new(toksvig::Encoder {
+            units,
+            form: match info.part {
+                Part::Normal if info.base_variance.is_nan() => toksvig::Form::PartsWithLength,
+                Part::Normal => toksvig::Form::Parts,
+                _ => toksvig::Form::Whole,
+            },
+        }),
         Layout::BumpSlopes => Box::new(bump_slopes::Encoder),
         Layout::Moments => Box::new(moments::Encoder),
         Layout::Pbr => Box::new(pbr::Encoder {
             units,
             normal_channels: shape.normal_channels,
             stored: info.roughness_stored,
-            lobe: shape.lobe,
+            anisotropy: shape.anisotropy,
             texture: shape.roughness_texture,
         }),
     }
@@ -156,11 +183,8 @@ pub(crate) fn decode_lean_raw(info: &TextureInfo, sample_type: SampleType, texel
 /// For [`Layout::Pbr`] this is its plain form, one roughness and a normal with its z; what a bake with other options
 /// gives is in its report.
 pub fn bounds(info: &TextureInfo, sample_type: SampleType, peaks: &Peaks) -> Bounds {
-    let plain = EncoderShape {
-        lobe: Lobe::Isotropic,
-        roughness_texture: RoughnessTexture::Alone,
-        normal_channels: 4,
-    };
+    let plain =
+        EncoderShape { anisotropy: None, roughness_texture: RoughnessTexture::Alone, normal_channels: 4 };
     bounds_of_shape(info, sample_type, plain, peaks)
 }
 

@@ -4,21 +4,27 @@
 //! | part | R | G | B | A |
 //! |---|---|---|---|---|
 //! | `normal` | n.x | n.y | n.z | 1 |
-//! | `roughness` | roughness | | | |
+//! | `roughness`, layout `r` | roughness | | | |
+//! | `roughness`, layout `g` | 1 | roughness | 0 | 1 |
 //! | `orm` | occlusion | roughness | metalness | 1 |
 //! | `anisotropy` | direction x | direction y | strength | 1 |
+//! | `alpha-x`, `alpha-y` | α along x or y | | | |
 //!
 //! The roughness is that of base and bumps together: `α² = α0² + 2σ²`. For Beckmann that is exact; for GGX, which has
 //! no finite slope variance, it is a convention; for Blinn-Phong it says `1/s' = 1/s + σ²`. Without anisotropy
-//! `2σ² = tr Σ`. With it the roughness is that across the bumps' main direction, and KHR_materials_anisotropy's rule
-//! `α_t = mix(α_b, 1, strength²)` gives the larger one along it. Unsigned types hold signed components as `v / 2 + 1/2`.
-//! A block-compressed normal has two channels; z follows from them. In EXR files the channels are called R, G, B, A, or Y
-//! where there is one, so that any viewer shows them.
+//! `2σ² = tr Σ`. With `anisotropy` the roughness is that across the bumps' main direction, and KHR_materials_anisotropy's
+//! rule `α_t = mix(α_b, 1, strength²)` gives the larger one along it. `alpha-x` and `alpha-y` are the widths along the axes of
+//! the tangent frame, without the mixed term, beside the roughness of both.
+//!
+//! Signed components are stored as `v / 2 + 1/2`, in floats only where [`TextureInfo::normal_range`] says so. In layout `g`
+//! roughness is where glTF and three.js read it, between glTF's neutral occlusion and metalness. A block-compressed normal
+//! has two channels; z follows from them. In EXR files the channels are called R, G, B, A, or Y where there is one, so that
+//! any viewer shows them.
 
-use super::codec::{LayerSpec, OPAQUE, RowEncoder, Units};
+use super::codec::{LayerSpec, OPAQUE, RowEncoder, Units, map1};
 use super::{RoughnessStored, TextureInfo};
 use crate::moments::{Covariance, Moments};
-use crate::options::{Lobe, RoughnessTexture};
+use crate::options::{AnisotropyOutput, RoughnessTexture};
 use crate::row::RowView;
 use crate::slope::{Normal, Slope, normal_from_slope, slope_from_normal};
 use crate::source::{stored_from_variance, variance_from_stored};
@@ -28,10 +34,17 @@ pub(super) const NORMAL_LAYERS: &[LayerSpec] =
 
 pub(super) const ROUGHNESS_LAYERS: &[LayerSpec] = &[LayerSpec { name: "roughness", channels: &["Y"] }];
 
+pub(super) const GREEN_ROUGHNESS_LAYERS: &[LayerSpec] =
+    &[LayerSpec { name: "roughness", channels: &["R", "G", "B", OPAQUE] }];
+
 pub(super) const ORM_LAYERS: &[LayerSpec] = &[LayerSpec { name: "orm", channels: &["R", "G", "B", OPAQUE] }];
 
 pub(super) const ANISOTROPY_LAYERS: &[LayerSpec] =
     &[LayerSpec { name: "anisotropy", channels: &["R", "G", "B", OPAQUE] }];
+
+pub(super) const ALPHA_X_LAYERS: &[LayerSpec] = &[LayerSpec { name: "alpha-x", channels: &["Y"] }];
+
+pub(super) const ALPHA_Y_LAYERS: &[LayerSpec] = &[LayerSpec { name: "alpha-y", channels: &["Y"] }];
 
 /// Encodes the parts one after the other.
 pub(super) struct Encoder {
@@ -39,37 +52,43 @@ pub(super) struct Encoder {
     /// Channels of the normal texture: 4, or 2 where it will be block-compressed.
     pub normal_channels: usize,
     pub stored: RoughnessStored,
-    pub lobe: Lobe,
+    pub anisotropy: Option<AnisotropyOutput>,
     pub texture: RoughnessTexture,
 }
 
 impl RowEncoder for Encoder {
     fn encode(&self, row: RowView<'_>, planes: &mut [Vec<f32>]) {
         let (normal, rest) = planes.split_at_mut(self.normal_channels);
-        let (roughness, anisotropy) = rest.split_at_mut(match self.texture {
-            RoughnessTexture::Alone => 1,
-            RoughnessTexture::Packed => 4,
-        });
+        let (roughness, anisotropy) = rest.split_at_mut(self.texture.channels());
         self.encode_normal(row, normal);
-        let roughness_at = match self.texture {
-            RoughnessTexture::Alone => 0,
+        match self.texture {
+            RoughnessTexture::Alone => {}
+            RoughnessTexture::Green => {
+                roughness[0].fill(1.0);
+                roughness[2].fill(0.0);
+                roughness[3].fill(1.0);
+            }
             RoughnessTexture::Packed => {
                 roughness[0].copy_from_slice(row.extras[0]);
                 roughness[2].copy_from_slice(row.extras[1]);
                 roughness[3].fill(1.0);
-                1
             }
-        };
-        for (i, out) in roughness[roughness_at].iter_mut().enumerate() {
+        }
+        for (i, out) in roughness[self.texture.roughness_channel()].iter_mut().enumerate() {
             let covariance = Covariance { xx: row.xx[i], yy: row.yy[i], xy: row.xy[i] };
-            let variance = match self.lobe {
-                Lobe::Isotropic => 0.5 * covariance.trace(),
-                Lobe::Anisotropic => covariance.eigenvalues().1.max(0.0),
+            let variance = match self.anisotropy {
+                None | Some(AnisotropyOutput::Alpha) => 0.5 * covariance.trace(),
+                Some(AnisotropyOutput::Khr) => covariance.eigenvalues().1.max(0.0),
             };
             *out = stored_from_variance(variance, self.stored);
         }
-        if self.lobe == Lobe::Anisotropic {
-            self.encode_anisotropy(row, anisotropy);
+        match (self.anisotropy, anisotropy) {
+            (Some(AnisotropyOutput::Khr), planes) => self.encode_anisotropy(row, planes),
+            (Some(AnisotropyOutput::Alpha), [x, y]) => {
+                map1(x, row.xx, |variance| stored_from_variance(variance, RoughnessStored::Alpha));
+                map1(y, row.yy, |variance| stored_from_variance(variance, RoughnessStored::Alpha));
+            }
+            _ => {}
         }
     }
 }
@@ -126,6 +145,13 @@ pub(super) fn normal_from_stored(units: Units, texel: &[f32]) -> Normal {
 
 /// Steeper than any slope that an eight-bit normal can tell from horizontal.
 pub(crate) const FLATTEST: f32 = 1.0 / 512.0;
+
+/// Moments of base and bumps together, from a normal's texel and the widths along the axes.
+pub(super) fn decode_alphas(units: Units, normal: &[f32], alphas: [f32; 2]) -> Moments {
+    let mean = slope_from_normal(normal_from_stored(units, &normal[..normal.len().min(3)]));
+    let [xx, yy] = alphas.map(|alpha| variance_from_stored(alpha, RoughnessStored::Alpha));
+    Moments::from_mean_and_covariance(mean, Covariance { xx, yy, xy: 0.0 })
+}
 
 /// Moments of base and bumps together, from the parts' texels.
 pub(super) fn decode(

@@ -5,15 +5,19 @@
 use super::codec::{Affine, Bounds, Peaks, Units};
 use super::pbr::FLATTEST;
 use super::{Base, EncoderShape, RoughnessStored, TextureInfo};
-use crate::options::Lobe;
+use crate::options::AnisotropyOutput;
 
 /// Bounds of all parts together.
 pub(super) fn bounds(units: Units, info: &TextureInfo, shape: EncoderShape, peaks: &Peaks) -> Bounds {
     let slope = slope_error(units, shape.normal_channels, peaks);
     let variance = variance_error(units, info.roughness_stored, peaks);
-    match shape.lobe {
-        Lobe::Isotropic => Bounds { slope, variance, eigenvalue: variance },
-        Lobe::Anisotropic => {
+    match shape.anisotropy {
+        None => Bounds { slope, variance, eigenvalue: variance },
+        Some(AnisotropyOutput::Alpha) => {
+            let variance = variance_error(units, RoughnessStored::Alpha, peaks);
+            Bounds { slope, variance, eigenvalue: variance }
+        }
+        Some(AnisotropyOutput::Khr) => {
             // Σ = λ2 I + (λ1 - λ2) d dᵀ with λ1 - λ2 <= 1/2; turning d by an angle changes d dᵀ by its sine.
             let turned = 0.5 * std::f32::consts::SQRT_2 * units.error(units.unit(), 1.0);
             let along = along_error(units, info, peaks);

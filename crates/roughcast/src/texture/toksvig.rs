@@ -8,9 +8,11 @@
 //! | whole | N.x | N.y | N.z | gloss factor |
 //! | `normal` (block-compressed) | n.x | n.y | | |
 //! | `gloss` (block-compressed) | gloss factor | | | |
+//! | `gloss` (block-compressed), s varies | gloss factor | length of N | | |
 //!
 //! Unsigned types hold `N / 2 + 1/2`. The length does not survive two-channel block compression, so there the normal
-//! is stored at unit length and the factor in a texture of its own. An s that varies over the map is averaged as 1/s.
+//! is stored at unit length and the factor in a texture of its own. An s that varies over the map is averaged as 1/s; the
+//! factor alone then says nothing of the length, which stands beside it.
 
 use super::codec::{Affine, Bounds, LayerSpec, Peaks, RowEncoder, Units, map1};
 use super::pbr::normal_from_stored;
@@ -26,6 +28,9 @@ pub(super) const NORMAL_LAYERS: &[LayerSpec] = &[LayerSpec { name: "normal", cha
 
 pub(super) const GLOSS_LAYERS: &[LayerSpec] = &[LayerSpec { name: "gloss", channels: &["Y"] }];
 
+pub(super) const GLOSS_AND_LENGTH_LAYERS: &[LayerSpec] =
+    &[LayerSpec { name: "gloss", channels: &["R", "G"] }];
+
 /// The gloss factor for a length of the averaged normal and the variance `1 / s` of the base.
 #[inline(always)]
 fn gloss_factor(length: f32, base_variance: f32) -> f32 {
@@ -34,10 +39,21 @@ fn gloss_factor(length: f32, base_variance: f32) -> f32 {
     if spread > 0.0 { length * base_variance / (length * base_variance + spread) } else { 1.0 }
 }
 
-/// Encodes the whole layout, or its block-compressed parts one after the other: `n.x, n.y, gloss`.
+/// What is stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Form {
+    /// `N.x, N.y, N.z, gloss` in one texture.
+    Whole,
+    /// `n.x, n.y` and `gloss` in two.
+    Parts,
+    /// `n.x, n.y` and `gloss, length` in two, for an exponent that varies.
+    PartsWithLength,
+}
+
+/// Encodes the whole layout, or its block-compressed parts one after the other.
 pub(super) struct Encoder {
     pub units: Units,
-    pub part: Part,
+    pub form: Form,
 }
 
 impl RowEncoder for Encoder {
@@ -45,8 +61,8 @@ impl RowEncoder for Encoder {
         let unit = self.units.unit();
         let [nx, ny, nz, base] = row.extras;
         let length = |i: usize| (nx[i] * nx[i] + ny[i] * ny[i] + nz[i] * nz[i]).sqrt();
-        match planes {
-            [x, y, z, gloss] => {
+        match (self.form, planes) {
+            (Form::Whole, [x, y, z, gloss]) => {
                 map1(x, nx, |n| unit.store(n));
                 map1(y, ny, |n| unit.store(n));
                 map1(z, nz, |n| unit.store(n));
@@ -54,16 +70,18 @@ impl RowEncoder for Encoder {
                     gloss[i] = gloss_factor(length(i), base[i]);
                 }
             }
-            [x, y, gloss] => {
-                debug_assert_eq!(self.part, Part::Normal);
+            (Form::Parts | Form::PartsWithLength, [x, y, gloss, rest @ ..]) => {
                 for i in 0..row.width() {
                     let inverse = 1.0 / length(i);
                     x[i] = unit.store(nx[i] * inverse);
                     y[i] = unit.store(ny[i] * inverse);
                     gloss[i] = gloss_factor(length(i), base[i]);
                 }
+                if let [lengths] = rest {
+                    lengths.iter_mut().enumerate().for_each(|(i, out)| *out = length(i));
+                }
             }
-            _ => unreachable!("Toksvig has four channels, or three in two parts"),
+            _ => unreachable!("Toksvig has four channels in one or two files, or three in two"),
         }
     }
 }
@@ -76,28 +94,41 @@ pub(super) fn decode(units: Units, texel: &[f32]) -> Moments {
         y: unit.load(texel[1]),
         z: unit.load(texel[2]).max(f32::MIN_POSITIVE),
     };
-    let length = (normal.x * normal.x + normal.y * normal.y + normal.z * normal.z).sqrt().min(1.0);
-    let variance = (1.0 - length) / length;
-    Moments::from_mean_and_covariance(slope_from_normal(normal), Covariance::isotropic(variance))
+    let length = (normal.x * normal.x + normal.y * normal.y + normal.z * normal.z).sqrt();
+    let variance = Covariance::isotropic(variance_from_length(length));
+    Moments::from_mean_and_covariance(slope_from_normal(normal), variance)
 }
 
-/// The same from the block-compressed parts, where the gloss factor says what the length was.
+/// Toksvig's variance; that of a length of nothing is finite, since no texel is endlessly rough.
+fn variance_from_length(length: f32) -> f32 {
+    let length = length.clamp(f32::MIN_POSITIVE, 1.0);
+    (1.0 - length) / length
+}
+
+/// The same from the block-compressed parts, where the gloss factor says what the length was, or the length stands beside
+/// it.
 pub(super) fn decode_parts(units: Units, info: &TextureInfo, texel: &[f32]) -> Moments {
     let mean = slope_from_normal(normal_from_stored(units, &texel[..2]));
     let gloss = texel[2].clamp(0.0, 1.0);
-    let variance = if gloss > 0.0 { info.base_variance * (1.0 - gloss) / gloss } else { 1.0 };
+    let variance = match texel.get(3) {
+        Some(length) => variance_from_length(*length),
+        None if gloss > 0.0 => info.base_variance * (1.0 - gloss) / gloss,
+        None => 1.0,
+    };
     Moments::from_mean_and_covariance(mean, Covariance::isotropic(variance))
 }
 
 pub(super) fn bounds(units: Units, info: &TextureInfo, peaks: &Peaks) -> Bounds {
     // No texel is steeper than the peak, so neither N.z nor the length is below this.
     let shortest = 1.0 / (1.0 + peaks.slope * peaks.slope).sqrt();
-    let (normal_channels, variance) = if info.part == Part::Normal {
-        (2, gloss_error(units, info, 1.0 / shortest - 1.0))
-    } else {
-        let length_error = (3.0_f32).sqrt() * units.error(units.unit(), 1.0);
-        let rest = (shortest - length_error).max(f32::MIN_POSITIVE);
-        (4, length_error / (rest * rest))
+    let of_length = |error: f32| {
+        let rest = (shortest - error).max(f32::MIN_POSITIVE);
+        error / (rest * rest)
+    };
+    let (normal_channels, variance) = match info.part {
+        Part::Normal if info.base_variance.is_nan() => (2, of_length(units.error(Affine::IDENTITY, 1.0))),
+        Part::Normal => (2, gloss_error(units, info, 1.0 / shortest - 1.0)),
+        _ => (4, of_length((3.0_f32).sqrt() * units.error(units.unit(), 1.0))),
     };
     Bounds { slope: slope_error(units, normal_channels, peaks), variance, eigenvalue: variance }
 }
@@ -106,7 +137,7 @@ pub(super) fn bounds(units: Units, info: &TextureInfo, peaks: &Peaks) -> Bounds 
 fn gloss_error(units: Units, info: &TextureInfo, largest: f32) -> f32 {
     let inverse = 1.0 + largest / info.base_variance;
     let relative = units.error(Affine::IDENTITY, 1.0) * inverse;
-    // A factor that may be rounded to nothing, or that goes with no single s, says nothing of the variance.
+    // A factor that may be rounded to nothing says nothing of the variance.
     if relative < 1.0 { info.base_variance * inverse * relative / (1.0 - relative) } else { f32::INFINITY }
 }
 

@@ -1,0 +1,411 @@
+//! Directions that agree with their neighbours.
+//!
+//! KHR_materials_anisotropy stores a direction as a vector although it means an axis: v and -v are the same highlight. Where
+//! neighbouring texels hold v and -v, a texture filter finds nothing between them. So each texel, of all levels together,
+//! gets the sign by which it agrees with its neighbours, on its own level and on the coarser one.
+//!
+//! The signs spread along a maximum spanning tree, as those of normals do in Hoppe et al., "Surface reconstruction from
+//! unorganized points", 1992: pairs of strongly anisotropic texels whose axes are nearly parallel are joined first. Where no
+//! signs agree everywhere (half a turn around a point, as in a fingerprint), the seam thus lies where it is seen least.
+
+use super::Texture;
+use super::codec::Affine;
+use crate::options::Wrap;
+use crate::{Image, Samples};
+
+/// Gives the directions in the first two channels of all levels signs that agree. The third channel is their strength.
+///
+/// Texels without strength take the direction of the texel of the coarser level, so that between them and their neighbours
+/// nothing turns.
+pub(crate) fn orient(texture: &mut Texture, wrap: Wrap, unit: Affine) {
+    for level in (1..texture.levels.len()).rev() {
+        let (finer, coarser) = texture.levels.split_at_mut(level);
+        fill_from_coarser(&mut finer[level - 1], &coarser[0]);
+    }
+    let graph = Graph::of(&texture.levels, wrap, unit);
+    let mut signs = graph.signs();
+    if graph.points_left(&mut signs) {
+        signs.turned = !signs.turned;
+    }
+    let mut node = 0;
+    for image in &mut texture.levels {
+        node = turn(image, unit, node, &mut signs);
+    }
+}
+
+/// The texel of the coarser level that covers this one.
+fn covering((x, y): (usize, usize), coarser: (usize, usize)) -> (usize, usize) {
+    ((x / 2).min(coarser.0 - 1), (y / 2).min(coarser.1 - 1))
+}
+
+/// Copies the stored direction of the coarser level where this one has none.
+fn fill_from_coarser(finer: &mut Image, coarser: &Image) {
+    fn fill<T: Copy>(
+        finer: &mut [T],
+        size: (usize, usize),
+        coarser: (&[T], (usize, usize)),
+        channels: usize,
+        has_strength: impl Fn(T) -> bool,
+    ) {
+        for y in 0..size.1 {
+            for x in 0..size.0 {
+                let at = (y * size.0 + x) * channels;
+                if !has_strength(finer[at + 2]) {
+                    let (above_x, above_y) = covering((x, y), coarser.1);
+                    let above = (above_y * coarser.1.0 + above_x) * channels;
+                    finer[at..at + 2].copy_from_slice(&coarser.0[above..above + 2]);
+                }
+            }
+        }
+    }
+    let (size, channels) = ((finer.width(), finer.height()), finer.channels());
+    let above = (coarser.width(), coarser.height());
+    match (finer.samples_mut(), coarser.samples()) {
+        (Samples::U8(f), Samples::U8(c)) => fill(f, size, (c, above), channels, |s| s > 0),
+        (Samples::U16(f), Samples::U16(c)) => fill(f, size, (c, above), channels, |s| s > 0),
+        (Samples::F16(f), Samples::F16(c)) => fill(f, size, (c, above), channels, |s| s.to_f32() > 0.0),
+        (Samples::F32(f), Samples::F32(c)) => fill(f, size, (c, above), channels, |s| s > 0.0),
+        _ => unreachable!("all levels have one sample type"),
+    }
+}
+
+/// Turns the directions of a level round where their sign says so. Returns the node behind its last one.
+fn turn(image: &mut Image, unit: Affine, first_node: usize, signs: &mut Signs) -> usize {
+    fn each<T: Copy>(
+        samples: &mut [T],
+        channels: usize,
+        first_node: usize,
+        signs: &mut Signs,
+        round: impl Fn(T) -> T,
+    ) {
+        for (index, texel) in samples.chunks_exact_mut(channels).enumerate() {
+            if signs.is_turned(first_node + index) {
+                (texel[0], texel[1]) = (round(texel[0]), round(texel[1]));
+            }
+        }
+    }
+    let (texels, channels) = (image.width() * image.height(), image.channels());
+    // The stored value of zero lies between those of v and -v.
+    let twice_zero = 2.0 * unit.add;
+    match image.samples_mut() {
+        Samples::U8(v) => each(v, channels, first_node, signs, |code| u8::MAX - code),
+        Samples::U16(v) => each(v, channels, first_node, signs, |code| u16::MAX - code),
+        Samples::F16(v) => {
+            each(v, channels, first_node, signs, |value| half::f16::from_f32(twice_zero - value.to_f32()));
+        }
+        Samples::F32(v) => each(v, channels, first_node, signs, |value| twice_zero - value),
+    }
+    first_node + texels
+}
+
+/// A quarter of a turn, in the units of [`Graph::angles`].
+const QUARTER: u16 = 1 << 14;
+
+/// Weights of edges go up to [`QUARTER`] times 255, 22 bits; those below these lowest bits do not count.
+const LEAST_WEIGHT_BITS: u32 = 10;
+
+/// Classes of edges, by how much it matters that their ends agree: two for each of the bits that are left.
+const CLASSES: u8 = 24;
+
+/// Texels of all levels, with their neighbours.
+struct Graph {
+    sizes: Vec<(usize, usize)>,
+    wrap: Wrap,
+    /// Direction of each texel; 2^16 is a full turn, so that differences wrap as angles do.
+    angles: Vec<u16>,
+    /// Strength of each texel, 255 for 1.
+    strengths: Vec<u8>,
+}
+
+/// Where an edge of a texel leads to.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Edge {
+    Right,
+    Below,
+    Coarser,
+}
+
+const EDGES: [Edge; 3] = [Edge::Right, Edge::Below, Edge::Coarser];
+
+impl Graph {
+    fn of(levels: &[Image], wrap: Wrap, unit: Affine) -> Self {
+        let nodes = levels.iter().map(|image| image.width() * image.height()).sum();
+        let mut graph = Self {
+            sizes: levels.iter().map(|image| (image.width(), image.height())).collect(),
+            wrap,
+            angles: Vec::with_capacity(nodes),
+            strengths: Vec::with_capacity(nodes),
+        };
+        for image in levels {
+            let samples = image.samples();
+            for first in (0..samples.len()).step_by(image.channels()) {
+                let [x, y] = [0, 1].map(|channel| unit.load(samples.get(first + channel)));
+                let turns = y.atan2(x) / std::f32::consts::TAU;
+                // Negative angles wrap round; -1/2 and 1/2 are the same.
+                graph.angles.push((turns * 65536.0).round() as i32 as u16);
+                graph.strengths.push((samples.get(first + 2) * 255.0).round() as u8);
+            }
+        }
+        graph
+    }
+
+    /// Whether two directions are less than a quarter turn apart, and by how much.
+    fn agreement(&self, a: usize, b: usize) -> (bool, u16) {
+        let apart = (self.angles[a].wrapping_sub(self.angles[b]) as i16).unsigned_abs();
+        if apart <= QUARTER { (true, QUARTER - apart) } else { (false, apart - QUARTER) }
+    }
+
+    /// The class of an edge: the weaker strength times the agreement of the axes, in half octaves. An edge across the border
+    /// of the map counts a quarter, so that a seam that must be lies there and not inside.
+    fn class(&self, a: usize, b: usize, crosses_border: bool) -> u8 {
+        let strength = self.strengths[a].min(self.strengths[b]);
+        let weight = u32::from(self.agreement(a, b).1) * u32::from(strength);
+        let weight = if crosses_border { weight / 4 } else { weight } >> LEAST_WEIGHT_BITS;
+        match weight.checked_ilog2() {
+            None => 0,
+            Some(0) => 1,
+            Some(octave) => 2 * octave as u8 + (weight >> (octave - 1) & 1) as u8,
+        }
+    }
+
+    /// Calls `f` with the place of every edge that is wanted and its two ends, in a fixed order. The last argument says
+    /// whether it crosses the border of the map.
+    fn for_each_edge(&self, wanted: impl Fn(usize) -> bool, mut f: impl FnMut(usize, usize, usize, bool)) {
+        let mut first = 0;
+        for (level, &(width, height)) in self.sizes.iter().enumerate() {
+            let next = first + width * height;
+            for y in 0..height {
+                for x in 0..width {
+                    let node = first + y * width + x;
+                    for (place, edge) in EDGES.into_iter().enumerate() {
+                        if wanted(3 * node + place)
+                            && let Some(end) = self.end_of(edge, level, (x, y), (first, next))
+                        {
+                            f(3 * node + place, node, end, end < node);
+                        }
+                    }
+                }
+            }
+            first = next;
+        }
+    }
+
+    /// Where an edge ends; `firsts` are the first nodes of the level and of the one behind it.
+    fn end_of(
+        &self,
+        edge: Edge,
+        level: usize,
+        (x, y): (usize, usize),
+        firsts: (usize, usize),
+    ) -> Option<usize> {
+        let (width, height) = self.sizes[level];
+        let beyond = |place: usize, length: usize| match self.wrap {
+            _ if place + 1 < length => Some(place + 1),
+            Wrap::Repeat if length > 1 => Some(0),
+            _ => None,
+        };
+        match edge {
+            Edge::Right => beyond(x, width).map(|x| firsts.0 + y * width + x),
+            Edge::Below => beyond(y, height).map(|y| firsts.0 + y * width + x),
+            Edge::Coarser => self.sizes.get(level + 1).map(|&coarser| {
+                let (x, y) = covering((x, y), coarser);
+                firsts.1 + y * coarser.0 + x
+            }),
+        }
+    }
+
+    /// The signs along a maximum spanning tree (Kruskal's algorithm, with edges sorted into classes).
+    fn signs(&self) -> Signs {
+        /// The class of edges that lead nowhere.
+        const NO_EDGE: u8 = u8::MAX;
+        let mut classes = vec![NO_EDGE; 3 * self.angles.len()];
+        self.for_each_edge(|_| true, |place, a, b, border| classes[place] = self.class(a, b, border));
+        let mut signs = Signs::new(self.angles.len());
+        for class in (0..CLASSES).rev() {
+            let wanted = |place: usize| classes[place] == class;
+            self.for_each_edge(wanted, |_, a, b, _| signs.join(a, b, self.agreement(a, b).0));
+        }
+        signs
+    }
+
+    /// Whether the directions point left on the whole: the reference is the x axis.
+    fn points_left(&self, signs: &mut Signs) -> bool {
+        let mut sum = 0.0;
+        for (node, (angle, strength)) in self.angles.iter().zip(&self.strengths).enumerate() {
+            let cosine = (f64::from(*angle) * (std::f64::consts::TAU / 65536.0)).cos();
+            let sign = if signs.is_turned(node) { -1.0 } else { 1.0 };
+            sum += sign * f64::from(*strength) * cosine;
+        }
+        sum < 0.0
+    }
+}
+
+/// Which texels are turned round: a union-find structure whose links say whether their ends have the same sign.
+struct Signs {
+    /// The node that each hangs on, itself for a root; the highest bit says that it has the opposite sign.
+    links: Vec<u32>,
+    /// All are turned round once more.
+    turned: bool,
+}
+
+const OPPOSITE: u32 = 1 << 31;
+
+impl Signs {
+    fn new(nodes: usize) -> Self {
+        let nodes = u32::try_from(nodes).ok().filter(|nodes| *nodes < OPPOSITE);
+        Self { links: (0..nodes.expect("images have fewer than 2^31 texels")).collect(), turned: false }
+    }
+
+    /// The root that a node hangs on, with the bit that says whether it has the root's sign. Shortens the way there.
+    fn find(&mut self, node: u32) -> u32 {
+        let (mut root, mut sign) = (node, 0);
+        while self.links[root as usize] & !OPPOSITE != root {
+            let link = self.links[root as usize];
+            sign ^= link & OPPOSITE;
+            root = link & !OPPOSITE;
+        }
+        let (mut at, mut left) = (node, sign);
+        while at != root {
+            let link = self.links[at as usize];
+            self.links[at as usize] = root | left;
+            left ^= link & OPPOSITE;
+            at = link & !OPPOSITE;
+        }
+        root | sign
+    }
+
+    /// Makes two nodes agree, unless what was joined before has settled it.
+    fn join(&mut self, a: usize, b: usize, agree: bool) {
+        let (a, b) = (self.find(a as u32), self.find(b as u32));
+        let (root_a, root_b) = (a & !OPPOSITE, b & !OPPOSITE);
+        if root_a != root_b {
+            let sign = (a ^ b) & OPPOSITE ^ if agree { 0 } else { OPPOSITE };
+            self.links[root_b as usize] = root_a | sign;
+        }
+    }
+
+    fn is_turned(&mut self, node: usize) -> bool {
+        (self.find(node as u32) & OPPOSITE != 0) != self.turned
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pyramid::level_sizes;
+
+    const SIDE: usize = 64;
+    const SIGNED: Affine = Affine::IDENTITY;
+
+    /// Levels of axes in floats, each with a sign of its own, as different as they can be.
+    fn field(axis: impl Fn(f64, f64) -> Option<f64>) -> Texture {
+        let mut random = 1_u32;
+        let levels = level_sizes(SIDE, SIDE).into_iter().map(|(width, height)| {
+            let mut values = Vec::new();
+            for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+                random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                let sign = if random >> 31 == 0 { 1.0 } else { -1.0 };
+                let angle = axis((x as f64 + 0.5) / width as f64, (y as f64 + 0.5) / height as f64);
+                let (sine, cosine) = angle.unwrap_or(0.0).sin_cos();
+                let strength = if angle.is_some() { 1.0 } else { 0.0 };
+                values.extend([sign * cosine as f32, sign * sine as f32, strength, 1.0]);
+            }
+            Image::new(width, height, 4, Samples::F32(values)).expect("whole pixels")
+        });
+        Texture { name: "anisotropy", channels: vec!["R", "G", "B", "A"], levels: levels.collect() }
+    }
+
+    fn direction(image: &Image, x: usize, y: usize) -> [f64; 2] {
+        [0, 1].map(|channel| f64::from(image.get(x % image.width(), y % image.height(), channel)))
+    }
+
+    /// The shortest sum of two neighbouring unit directions, over the pairs that `counts` picks.
+    fn shortest(texture: &Texture, counts: impl Fn(f64, f64, f64) -> bool) -> f64 {
+        let mut shortest = f64::INFINITY;
+        for image in &texture.levels {
+            let (width, height) = (image.width(), image.height());
+            for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+                for (dx, dy) in [(1, 0), (0, 1)] {
+                    let place =
+                        |at: usize, step: usize, of: usize| (at as f64 + 0.5 * (1 + step) as f64) / of as f64;
+                    if counts(place(x, dx, width), place(y, dy, height), 1.0 / width as f64) {
+                        let (a, b) = (direction(image, x, y), direction(image, x + dx, y + dy));
+                        shortest = shortest.min((a[0] + b[0]).hypot(a[1] + b[1]) / 2.0);
+                    }
+                }
+            }
+        }
+        shortest
+    }
+
+    /// Half the sum of two unit vectors a sixth of a turn apart, the most that neighbours of these tests are.
+    const LEAST: f64 = 0.866;
+
+    #[test]
+    fn circles_agree_all_around_although_no_reference_axis_would_do() {
+        let mut texture = field(|u, v| Some((v - 0.5).atan2(u - 0.5)));
+        // Neighbours at less than two texels from the middle turn by more than the sixth of a turn; beyond the edge of the
+        // tile the circles end.
+        let counts = |u: f64, v: f64, texel: f64| (u - 0.5).hypot(v - 0.5) > 2.0 * texel && u.max(v) < 1.0;
+        assert!(shortest(&texture, counts) < 0.1, "random signs cancel somewhere");
+        orient(&mut texture, Wrap::Repeat, SIGNED);
+        assert!(shortest(&texture, counts) > LEAST, "{}", shortest(&texture, counts));
+    }
+
+    #[test]
+    fn waves_agree_across_the_edge_of_the_tile() {
+        let mut texture = field(|u, _| Some(2.0 * (std::f64::consts::TAU * u).sin()));
+        // The wave's axes turn by 4 pi a tile at most: a sixth of a turn a texel from 16 texels on.
+        let counts = |_: f64, _: f64, texel: f64| texel <= 1.0 / 16.0;
+        assert!(shortest(&texture, counts) < 0.1);
+        orient(&mut texture, Wrap::Repeat, SIGNED);
+        assert!(shortest(&texture, counts) > LEAST, "{}", shortest(&texture, counts));
+    }
+
+    #[test]
+    fn levels_agree_with_the_next_coarser_one() {
+        let mut texture = field(|u, v| Some((v - 0.5).atan2(u - 0.5)));
+        orient(&mut texture, Wrap::Clamp, SIGNED);
+        for pair in texture.levels.windows(2) {
+            let size = (pair[1].width(), pair[1].height());
+            for (x, y) in (0..pair[0].height()).flat_map(|y| (0..pair[0].width()).map(move |x| (x, y))) {
+                let (above_x, above_y) = covering((x, y), size);
+                let off_middle = |at: usize, of: usize| (at as f64 + 0.5) / of as f64 - 0.5;
+                let radius = off_middle(above_x, size.0).hypot(off_middle(above_y, size.1));
+                if radius * size.0 as f64 > 1.5 {
+                    let (a, b) = (direction(&pair[0], x, y), direction(&pair[1], above_x, above_y));
+                    assert!(a[0] * b[0] + a[1] * b[1] > 0.5, "{x} {y} of {}", pair[0].width());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn texels_without_strength_follow_the_coarser_level() {
+        // Only the left half has a direction, which is straight up.
+        let up = std::f64::consts::FRAC_PI_2;
+        let mut texture = field(|u, _| (u < 0.5).then_some(up));
+        // The last level averages both halves.
+        texture.levels[6] = field(|_, _| Some(up)).levels[6].clone();
+        orient(&mut texture, Wrap::Repeat, SIGNED);
+        let all = texture.levels.iter().flat_map(|image| {
+            (0..image.width() * image.height())
+                .map(|i| direction(image, i % image.width(), i / image.width()))
+        });
+        let all: Vec<_> = all.collect();
+        assert!(
+            all.iter().all(|d| d[0].abs() < 1e-6 && (d[1] - all[0][1]).abs() < 1e-6),
+            "all point one way"
+        );
+    }
+
+    #[test]
+    fn codes_turn_round_exactly() {
+        let levels = vec![
+            Image::new(2, 1, 4, Samples::U8(vec![255, 128, 200, 255, 0, 120, 200, 255])).expect("whole"),
+        ];
+        let mut texture = Texture { name: "anisotropy", channels: vec!["R", "G", "B", "A"], levels };
+        orient(&mut texture, Wrap::Clamp, Affine { mul: 0.5, add: 0.5 });
+        assert_eq!(*texture.levels[0].samples(), Samples::U8(vec![255, 128, 200, 255, 255, 135, 200, 255]));
+    }
+}

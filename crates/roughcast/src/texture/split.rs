@@ -1,0 +1,131 @@
+//! One file a layer instead of one file with array layers, for readers that know no array textures.
+
+use super::{DecodeError, Texture, TextureArray, TextureInfo, layers_of, set_id};
+
+/// Gives textures a common [`TextureInfo::set`], by which files of one bake are known, where they have none yet.
+pub fn mark_set(arrays: &mut [TextureArray]) {
+    if arrays.iter().all(|array| array.info.set == 0) {
+        let set = set_id(arrays);
+        arrays.iter_mut().for_each(|array| array.info.set = set);
+    }
+}
+
+/// The meaning of each layer of a file, once each has a file of its own. A part of one layer stays as it is.
+pub fn split_infos(info: &TextureInfo) -> Vec<TextureInfo> {
+    let layers = layers_of(info).len();
+    if layers == 1 {
+        return vec![*info];
+    }
+    (0..layers as u8).map(|layer| TextureInfo { layer: Some(layer), ..*info }).collect()
+}
+
+/// Puts layers that come from files of their own back together. Arrays that have all their layers stay as they are.
+///
+/// # Errors
+/// [`DecodeError::MissingLayer`] where a layer is missing, [`DecodeError::OtherSet`] and [`DecodeError::Shape`] where layers
+/// do not belong together.
+pub fn join_layers(arrays: Vec<TextureArray>) -> Result<Vec<TextureArray>, DecodeError> {
+    let (single, mut joined): (Vec<_>, Vec<_>) =
+        arrays.into_iter().partition(|array| array.info.layer.is_some());
+    let mut parts: Vec<Vec<TextureArray>> = Vec::new();
+    for array in single {
+        match parts.iter_mut().find(|layers| layers[0].info.part == array.info.part) {
+            Some(layers) => layers.push(array),
+            None => parts.push(vec![array]),
+        }
+    }
+    for layers in parts {
+        joined.push(join(layers)?);
+    }
+    Ok(joined)
+}
+
+/// Joins the layers of one part; there is at least one.
+fn join(mut layers: Vec<TextureArray>) -> Result<TextureArray, DecodeError> {
+    layers.sort_by_key(|array| array.info.layer);
+    let info = layers[0].info.of_whole_part();
+    let layout = info.layout;
+    let shape = |fault: &str| DecodeError::Shape { layout, fault: fault.to_owned() };
+    for (place, spec) in layers_of(&info).iter().enumerate() {
+        match layers.get(place).and_then(|array| array.info.layer).map(usize::from) {
+            Some(layer) if layer == place => {}
+            Some(layer) if layer < place => return Err(shape("a layer is there twice")),
+            _ => return Err(DecodeError::MissingLayer { layout, layer: spec.name }),
+        }
+    }
+    let first_size = layers[0].size();
+    for array in &layers {
+        if array.info.set != info.set {
+            return Err(DecodeError::OtherSet { part: array.info.part, first: info.part });
+        }
+        if array.info.of_whole_part() != info && !info.base_variance.is_nan() {
+            return Err(shape("the files of its layers say different things of their texels"));
+        }
+        if array.size() != first_size || array.level_count() != layers[0].level_count() {
+            return Err(shape("the files of its layers differ in size or in number of levels"));
+        }
+    }
+    let textures: Vec<Texture> = layers.into_iter().flat_map(|array| array.layers).collect();
+    if textures.len() != layers_of(&info).len() {
+        return Err(shape("a file of one layer contains several"));
+    }
+    Ok(TextureArray { info, layers: textures })
+}
+
+/// A file for each layer: the inverse of [`join_layers`].
+pub fn split_layers(arrays: Vec<TextureArray>) -> Vec<TextureArray> {
+    let split = |array: TextureArray| {
+        let infos = split_infos(&array.info);
+        if infos.len() != array.layers.len() || infos.len() == 1 {
+            return vec![array];
+        }
+        let layers = infos.into_iter().zip(array.layers);
+        layers.map(|(info, layer)| TextureArray { info, layers: vec![layer] }).collect()
+    };
+    arrays.into_iter().flat_map(split).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::texture::{Layout, decode};
+    use crate::{BakeOptions, Image, SampleType, Samples, SourceOptions, bake};
+
+    fn baked() -> Vec<TextureArray> {
+        let codes = (0..8 * 8 * 3).map(|i| if i % 3 == 2 { 250 } else { (i * 37 % 256) as u8 }).collect();
+        let map = Image::new(8, 8, 3, Samples::U8(codes)).expect("whole pixels");
+        assert_eq!(map.samples().sample_type(), SampleType::U8);
+        let mut arrays =
+            bake(&map, &SourceOptions::default(), None, &BakeOptions::default()).expect("a map").arrays;
+        mark_set(&mut arrays);
+        arrays
+    }
+
+    #[test]
+    fn layers_in_files_of_their_own_are_put_together_in_any_order() {
+        let whole = baked();
+        let mut split = split_layers(whole.clone());
+        assert_eq!(split.len(), 2);
+        assert!(split.iter().all(|array| array.layers.len() == 1 && array.info.set != 0));
+        split.reverse();
+        assert_eq!(join_layers(split.clone()), Ok(whole.clone()));
+        assert_eq!(decode(&split), decode(&whole), "decoding joins by itself");
+    }
+
+    #[test]
+    fn a_missing_or_foreign_layer_is_named() {
+        let split = split_layers(baked());
+        for (left, gone) in [(1, "lean1"), (0, "lean2")] {
+            let wanted = DecodeError::MissingLayer { layout: Layout::Lean, layer: gone };
+            assert_eq!(join_layers(vec![split[left].clone()]), Err(wanted));
+        }
+        let mut foreign = split.clone();
+        foreign[1].info.set = 1;
+        assert!(matches!(join_layers(foreign), Err(DecodeError::OtherSet { .. })));
+        let twice = vec![split[0].clone(), split[0].clone()];
+        assert!(matches!(join_layers(twice), Err(DecodeError::Shape { .. })));
+        let mut smaller = split;
+        smaller[1].layers[0].levels.remove(0);
+        assert!(matches!(join_layers(smaller), Err(DecodeError::Shape { .. })));
+    }
+}
