@@ -7,15 +7,107 @@ use roughcast::{
 };
 use roughcast_io::{Limits, ReadOptions};
 
+/// Words that users of other tools type, and what they are called here.
+const OTHER_WORDS: &[(&str, &str)] = &[
+    ("float16", "half"),
+    ("half-float", "half"),
+    ("f16", "half"),
+    ("fp16", "half"),
+    ("16f", "half"),
+    ("float32", "float"),
+    ("f32", "float"),
+    ("fp32", "float"),
+    ("32f", "float"),
+    ("32", "float"),
+    ("uint8", "8"),
+    ("unorm8", "8"),
+    ("uint16", "16"),
+    ("unorm16", "16"),
+    ("opengl", "up"),
+    ("directx", "down"),
+    ("dx", "down"),
+    ("gl", "up"),
+    ("bc5", "bc"),
+    ("bc7", "bc"),
+    ("smoothness", "gloss"),
+    ("glossiness", "gloss"),
+    ("webgl", "web"),
+    ("webgpu", "web"),
+    ("native", "desktop"),
+    ("periodic", "repeat"),
+    ("arm", "orm"),
+];
+
 /// A parser that takes the names of an enum's variants.
 pub fn one_of<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T> {
-    PossibleValuesParser::new(T::all().iter().map(|variant| variant.name())).map(|name| {
-        T::all()
+    WordParser { words: T::all().iter().map(|variant| variant.name()).collect(), others: OTHER_WORDS }.map(
+        |name| {
+            T::all()
+                .iter()
+                .copied()
+                .find(|variant| variant.name() == name)
+                .expect("the parser lets only names through")
+        },
+    )
+}
+
+/// Takes some words, and says what other words are called here.
+#[derive(Clone)]
+pub struct WordParser {
+    /// The words.
+    pub words: Vec<&'static str>,
+    /// Other words, each with the one that is meant, or with a sentence that says why there is none.
+    pub others: &'static [(&'static str, &'static str)],
+}
+
+impl TypedValueParser for WordParser {
+    type Value = String;
+
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        argument: Option<&clap::Arg>,
+        value: &std::ffi::OsStr,
+    ) -> Result<String, clap::Error> {
+        let parser = PossibleValuesParser::new(self.words.iter().copied());
+        let told = value.to_str().and_then(|text| self.hint(text));
+        parser.parse_ref(command, argument, value).map_err(|error| match (told, argument) {
+            (Some(hint), Some(argument)) => clap::Error::raw(
+                clap::error::ErrorKind::InvalidValue,
+                format!("invalid value '{}' for '{argument}': {hint}\n\n", value.to_string_lossy()),
+            ),
+            _ => error,
+        })
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = clap::builder::PossibleValue> + '_>> {
+        Some(Box::new(self.words.iter().map(clap::builder::PossibleValue::new)))
+    }
+}
+
+impl WordParser {
+    /// What a word that is none of ours is called here.
+    fn hint(&self, text: &str) -> Option<String> {
+        let lower = text.to_ascii_lowercase();
+        let (_, meant) = self
+            .others
             .iter()
-            .copied()
-            .find(|variant| variant.name() == name)
-            .expect("the parser lets only names through")
-    })
+            .find(|(other, meant)| *other == lower && (meant.contains(' ') || self.words.contains(meant)))?;
+        Some(if meant.contains(' ') { (*meant).to_owned() } else { format!("say '{meant}'") })
+    }
+}
+
+/// The Blinn-Phong exponents that materials may have: below 1 nothing is shiny, and above this single floats carry no bump.
+pub const SPECULAR_POWERS: std::ops::RangeInclusive<f32> = 1.0..=1_000_000.0;
+
+/// A Blinn-Phong exponent.
+pub fn specular_power(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(power) if SPECULAR_POWERS.contains(&power) => Ok(power),
+        _ => {
+            Err(format!("it must be a number from {} to {}", SPECULAR_POWERS.start(), SPECULAR_POWERS.end()))
+        }
+    }
 }
 
 /// A number above zero.

@@ -1,15 +1,16 @@
 //! `roughcast bake`: a map in, filtered textures out.
 
-use std::ffi::OsString;
+mod choices;
+
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, anyhow};
 use clap::ValueHint;
-use roughcast::texture::{Brdf, Layout, Part, RoughnessStored, TextureArray};
+use roughcast::texture::{Base, Layout, TextureArray, mark_set};
 use roughcast::{
-    BakeError, BakeOptions, Baked, Bits, Blocks, Lobe, Named, PyramidFilter, RoughnessTexture, ScaleChoice,
-    bake, refuse_filter,
+    AnisotropyOutput, BakeError, BakeOptions, Baked, Bits, Blocks, NormalRange, PyramidFilter,
+    RoughnessTexture, ScaleChoice, bake, refuse_filter,
 };
 use roughcast_io::material_names::{MaterialRole, role_of};
 use roughcast_io::{BlockFormat, FileInfo, Supercompression, compress, decompress};
@@ -22,6 +23,8 @@ use crate::output::{self, Container, OutputOptions, Stored};
 use crate::progress::Stages;
 use crate::report::{CompressionError, FileReport};
 use crate::roughness::{Roughness, RoughnessArgs};
+use crate::sidecar::sidecar;
+use crate::target::Target;
 use crate::textures::leftover_parts;
 use crate::{UsageError, usage};
 
@@ -59,9 +62,40 @@ pub struct Args {
     #[arg(long, default_value = "box", value_parser = filter)]
     pub filter: PyramidFilter,
 
-    /// For pbr: also write the direction and strength of the roughness, as KHR_materials_anisotropy has them
+    /// For pbr: also write in which direction the roughness is larger. khr, or nothing behind it: direction and strength, as
+    /// KHR_materials_anisotropy has them; alpha: the widths along x and y, in two files
+    #[arg(
+        long,
+        value_name = "FORM",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "khr",
+        value_parser = one_of::<AnisotropyOutput>()
+    )]
+    pub anisotropy: Option<AnisotropyOutput>,
+
+    /// For pbr: the channels of roughness. r: one channel; g: green, as glTF reads it, with an occlusion of 1 and a metalness
+    /// of 0; orm: the same with occlusion and metalness of the picture [default: orm where the picture has them, else g; in
+    /// .exr r]
+    #[arg(long, value_name = "CHANNELS", value_parser = one_of::<RoughnessTexture>())]
+    pub roughness_layout: Option<RoughnessTexture>,
+
+    /// For pbr in floats: how normals and directions are stored, unorm (n/2 + 1/2) or signed (n) [default: unorm]
+    #[arg(long, value_name = "RANGE", value_parser = one_of::<NormalRange>())]
+    pub normal_range: Option<NormalRange>,
+
+    /// Where the textures are used: desktop; web, for WebGPU and WebGL, which take no 16-bit integers, and loaders without
+    /// array textures; or any, which excludes block compression as well. Chooses --bits and --split
+    #[arg(long, default_value = "desktop", value_parser = one_of::<Target>())]
+    pub target: Target,
+
+    /// Write each layer of a layout to a file of its own, NAME.LAYER.ext, for loaders that take no array textures
     #[arg(long)]
-    pub anisotropy: bool,
+    pub split: bool,
+
+    /// Also write NAME.json with all that a shader needs to know, for loaders that drop the file's own metadata
+    #[arg(long)]
+    pub sidecar: bool,
 
     /// Block compression for pbr, variance and toksvig: BC5, BC4 and BC7. The report says what it costs
     #[arg(long, default_value = "none", value_parser = one_of::<Blocks>())]
@@ -131,6 +165,8 @@ Examples:
   A height map for a film renderer:
     roughcast bake terrain.tif -o terrain.exr --as bump-slopes \\
         --height-scale 0.1
+  For three.js: half floats, one file a layer, the scales in rocks.json:
+    roughcast bake rocks_normal.png -o rocks.ktx2 --target web --sidecar
   All maps of a folder:
     roughcast bake maps -o baked --format dds";
 
@@ -202,7 +238,7 @@ pub fn bake_file(input: &Path, output: &Path, args: &Args, stages: &mut Stages) 
     let named = || input.display().to_string();
     let container = Container::of(output)?;
     args.check(container)?;
-    output::check_destination(output, container, args.first_part())?;
+    output::check_destination(output, container, &args.first_file(container))?;
     stages.begin("reading");
     let mut map = read_map(input, &args.source)?;
     let roughness = roughness_of(args, &mut map.warnings)?;
@@ -220,15 +256,26 @@ pub fn bake_file(input: &Path, output: &Path, args: &Args, stages: &mut Stages) 
     let Map { image, info, options: source, green_correlation, mut warnings, .. } = map;
     drop(image);
     stages.begin("compressing");
-    let Baked { arrays, report } = baked;
+    let Baked { mut arrays, report } = baked;
+    if args.splits(container) && arrays.iter().any(|array| array.layers.len() > 1) {
+        mark_set(&mut arrays);
+    }
     let (stored, compression) = stored_of(arrays, args.compress).with_context(named)?;
+    let stored: Vec<Stored> =
+        if args.splits(container) { stored.into_iter().flat_map(Stored::split).collect() } else { stored };
     stages.begin("writing");
     let supercompression = match args.supercompress {
         Supercompress::None => Supercompression::None,
         Supercompress::Zstd => Supercompression::Zstd,
     };
     let inputs: Vec<&Path> = [Some(input), args.roughness.file()].into_iter().flatten().collect();
-    let output_options = OutputOptions { supercompression, wrap: source.wrap, inputs: &inputs };
+    let sidecar = |files: &[PathBuf]| sidecar(&stored, files);
+    let output_options = OutputOptions {
+        supercompression,
+        wrap: source.wrap,
+        inputs: &inputs,
+        sidecar: args.sidecar.then_some(&sidecar),
+    };
     let files = output::write(output, &stored, output_options)?;
     for leftover in leftover_parts(output, options.layout, &files) {
         warnings.push(format!(
@@ -237,6 +284,8 @@ pub fn bake_file(input: &Path, output: &Path, args: &Args, stages: &mut Stages) 
         ));
     }
     warnings.extend(block_size_warning(container, &options, &info));
+    warnings.extend(unused_roughness_warning(args));
+    warnings.extend(args.target.warnings(container, &options));
     Ok(FileReport {
         input: input.to_owned(),
         files,
@@ -275,6 +324,23 @@ fn roughness_of(args: &Args, warnings: &mut Vec<String>) -> Result<Option<Roughn
     }
 }
 
+/// A warning where a roughness was given that nothing of what is stored depends on.
+fn unused_roughness_warning(args: &Args) -> Option<String> {
+    let option = match (&args.roughness.roughness, args.roughness.specular_power) {
+        (Some(_), _) => "--roughness",
+        (None, Some(_)) => "--specular-power",
+        (None, None) => return None,
+    };
+    let uses = matches!(args.layout, Layout::Pbr | Layout::Toksvig) || args.roughness.base == Base::Baked;
+    (!uses).then(|| {
+        format!(
+            "{option} is only noted in the file, since the layout '{}' leaves the material's roughness to the shader: say \
+             --base baked to fold it in, or leave {option} out",
+            args.layout
+        )
+    })
+}
+
 /// Options that contradict each other are a fault of the command line, not of the map.
 pub fn usage_where_options(error: BakeError) -> anyhow::Error {
     match error {
@@ -288,10 +354,8 @@ fn stored_of(arrays: Vec<TextureArray>, blocks: Blocks) -> Result<(Vec<Stored>, 
     if blocks == Blocks::None {
         return Ok((arrays.into_iter().map(Stored::Texels).collect(), None));
     }
-    let compressed = arrays
-        .iter()
-        .map(|array| compress(array, block_format(array.info.part)))
-        .collect::<Result<Vec<_>, _>>()?;
+    let compressed =
+        arrays.iter().map(|array| compress(array, block_format(array))).collect::<Result<Vec<_>, _>>()?;
     let seen: Vec<TextureArray> = compressed.iter().map(decompress).collect();
     let error = CompressionError::between(&arrays, &seen)?;
     Ok((compressed.into_iter().map(Stored::Blocks).collect(), Some(error)))
@@ -311,78 +375,11 @@ fn block_size_warning(container: Container, options: &BakeOptions, info: &FileIn
     })
 }
 
-fn block_format(part: Part) -> BlockFormat {
-    match part {
-        Part::Normal | Part::Split => BlockFormat::Bc5,
-        Part::Roughness | Part::Gloss => BlockFormat::Bc4,
-        Part::OcclusionRoughnessMetallic | Part::Anisotropy | Part::Whole => BlockFormat::Bc7,
-    }
-}
-
-impl Args {
-    /// Names that a folder's outputs get: all parts and levels start with it.
-    pub fn output_in_folder(&self, mut name: OsString) -> PathBuf {
-        name.push(".");
-        name.push(self.container_in_folder().name());
-        self.output.join(name)
-    }
-
-    /// The format of a folder's outputs.
-    pub fn container_in_folder(&self) -> Container {
-        self.format.unwrap_or(Container::Ktx2)
-    }
-
-    /// The library's options; where nothing was said, those that suit the container.
-    fn options(&self, container: Container, roughness: Option<&Roughness>) -> BakeOptions {
-        let bits = self.bits.unwrap_or(match (container, self.layout, self.compress) {
-            (_, _, Blocks::Bc) => Bits::Eight,
-            (Container::Exr, Layout::Moments, _) => Bits::Float,
-            (Container::Exr, ..) | (_, Layout::BumpSlopes | Layout::Moments, _) => Bits::Half,
-            (_, Layout::Pbr | Layout::Toksvig, _) => Bits::Eight,
-            _ => Bits::Sixteen,
-        });
-        // Blinn-Phong renderers want exponents, which only floats hold.
-        let stored = match (self.roughness.roughness_stored, self.roughness.brdf) {
-            (Some(stored), _) => stored,
-            (None, Brdf::BlinnPhong) if bits.sample_type().is_float() => RoughnessStored::SpecularPower,
-            (None, _) => RoughnessStored::Perceptual,
-        };
-        BakeOptions {
-            layout: self.layout,
-            bits,
-            scale: self.scale,
-            base: self.roughness.base,
-            brdf: self.roughness.brdf,
-            roughness_stored: stored,
-            lobe: if self.anisotropy { Lobe::Anisotropic } else { Lobe::Isotropic },
-            roughness_texture: roughness.map_or(RoughnessTexture::Alone, Roughness::texture),
-            blocks: self.compress,
-            filter: self.filter,
-        }
-    }
-
-    /// Refuses options that do not go together, before any work is done.
-    pub fn check(&self, container: Container) -> Result<(), UsageError> {
-        container.check(&self.options(container, None))?;
-        if self.supercompress == Supercompress::Zstd && container != Container::Ktx2 {
-            return Err(UsageError(format!(
-                "--supercompress is for .ktx2, not for .{container}: leave it out"
-            )));
-        }
-        if self.anisotropy && self.layout != Layout::Pbr {
-            return Err(UsageError(format!(
-                "--anisotropy is for --as pbr; the layout '{}' has no texture for it: leave it out",
-                self.layout
-            )));
-        }
-        Ok(())
-    }
-
-    /// The part of the first file that is written.
-    fn first_part(&self) -> Part {
-        match (self.layout, self.compress) {
-            (Layout::Pbr, _) | (Layout::Toksvig, Blocks::Bc) => Part::Normal,
-            _ => Part::Whole,
-        }
+/// One channel in BC4, two in BC5, four in BC7.
+fn block_format(array: &TextureArray) -> BlockFormat {
+    match array.layers[0].levels[0].channels() {
+        1 => BlockFormat::Bc4,
+        2 => BlockFormat::Bc5,
+        _ => BlockFormat::Bc7,
     }
 }

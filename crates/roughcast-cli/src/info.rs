@@ -12,6 +12,7 @@ use serde_json::{Map as JsonMap, Value, json};
 
 use crate::args::{REPORT, SourceArgs};
 use crate::input::{image_of, layout_named_in, map_of, with_options};
+use crate::output::name_of_layer;
 use crate::{say, say_json, textures, warn};
 
 /// Show what a file holds: size, format, levels, layout, scale, value ranges, and the slopes of each level.
@@ -54,7 +55,15 @@ fn look_at(args: &Args) -> Result<Findings> {
     let picture = image_of(&args.file, &bytes, &args.source.read_options());
     let mut findings = Findings { lines: Vec::new(), json: JsonMap::new() };
     findings.put("file", json!(args.file.display().to_string()), args.file.display().to_string());
-    match textures::read_bytes(&bytes, &limits) {
+    // A PNG is decoded level by level, which is worth while only for our own.
+    let is_ours = |decoded: &Decoded| layout_named_in(&decoded.info).is_some();
+    let foreign = picture.as_ref().is_ok_and(|decoded| decoded.info.container == "PNG" && !is_ours(decoded));
+    let textures = if foreign {
+        Err(anyhow::anyhow!("it holds no roughcast metadata"))
+    } else {
+        textures::read_bytes(&args.file, &bytes, &limits)
+    };
+    match textures {
         Ok(array) => {
             drop(bytes);
             findings.describe(&picture.map_err(with_options)?.info);
@@ -66,7 +75,7 @@ fn look_at(args: &Args) -> Result<Findings> {
             if layout_named_in(&picture.info).is_some() {
                 warn(
                     &args.file,
-                    &format!("described as a picture, since its textures cannot be read: {fault}"),
+                    &format!("described as a picture, since its textures cannot be read: {fault:#}"),
                 );
             }
             findings.describe(&picture.info);
@@ -154,6 +163,9 @@ impl Findings {
     fn layout(&mut self, info: &TextureInfo) {
         self.put("layout", json!(info.layout.name()), info.layout.name().to_owned());
         self.put("part", json!(info.part.name()), info.part.name().to_owned());
+        if let Some(layer) = name_of_layer(info) {
+            self.put("layer", json!(layer), layer.to_owned());
+        }
         self.put("scale", json!(info.scale), info.scale.to_string());
         self.put("variance_scale", json!(info.variance_scale), info.variance_scale.to_string());
         self.put("base", json!(info.base.name()), info.base.name().to_owned());
@@ -161,9 +173,18 @@ impl Findings {
         let base_variance =
             if varies { "varies over the map".to_owned() } else { info.base_variance.to_string() };
         self.put("base_variance", json!(info.base_variance), base_variance);
+        if let Some(power) = info.specular_power() {
+            self.put("specular_power", json!(power), power.to_string());
+        }
         self.put("brdf", json!(info.brdf.name()), info.brdf.name().to_owned());
         let stored = info.roughness_stored.name();
         self.put("roughness_stored", json!(stored), stored.to_owned());
+        if info.layout == Layout::Pbr {
+            let layout = info.roughness_texture.name();
+            self.put("roughness_layout", json!(layout), layout.to_owned());
+        }
+        self.put("wrap", json!(info.wrap.name()), info.wrap.name().to_owned());
+        self.put("normal_range", json!(info.normal_range.name()), info.normal_range.name().to_owned());
     }
 
     fn slopes(&mut self, levels: &[MomentLevel]) {

@@ -24,6 +24,8 @@ mod report;
 mod roughness;
 mod scene_args;
 mod shader;
+mod sidecar;
+mod target;
 mod textures;
 mod unpack;
 

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use roughcast::texture::{Layout, Part, TextureArray};
-use roughcast::{BakeOptions, Blocks, Named, Wrap};
+use roughcast::texture::{Layout, Part, TextureArray, TextureInfo, layers_of, split_layers};
+use roughcast::{BakeOptions, Blocks, Named, SampleType, Wrap};
 use roughcast_io::exr::{ExrCompression, ExrOptions};
 use roughcast_io::{
     AtomicFile, AtomicSet, BlockArray, Payload, Supercompression, WriteError, dds, exr, ktx2, png_levels,
@@ -100,8 +101,58 @@ impl Stored {
         }
     }
 
-    pub fn part(&self) -> Part {
-        self.payload().info().part
+    pub fn info(&self) -> &TextureInfo {
+        match self {
+            Stored::Texels(array) => &array.info,
+            Stored::Blocks(blocks) => &blocks.info,
+        }
+    }
+
+    /// Width and height of level 0.
+    pub fn size(&self) -> (usize, usize) {
+        match self {
+            Stored::Texels(array) => array.size(),
+            Stored::Blocks(blocks) => (blocks.width, blocks.height),
+        }
+    }
+
+    /// The type of the texels; blocks are read as 8 bits are.
+    pub fn sample_type(&self) -> SampleType {
+        match self {
+            Stored::Texels(array) => array.layers[0].sample_type(),
+            Stored::Blocks(_) => SampleType::U8,
+        }
+    }
+
+    /// Channels of a texel.
+    pub fn channels(&self) -> usize {
+        match self {
+            Stored::Texels(array) => array.layers[0].levels[0].channels(),
+            Stored::Blocks(blocks) => blocks.format.channels(),
+        }
+    }
+
+    /// The format of the texels: `RGBA 16-bit float`, `BC5`.
+    pub fn format_in_words(&self) -> String {
+        if let Stored::Blocks(blocks) = self {
+            return blocks.format.name().to_owned();
+        }
+        let channels = ["R", "RG", "RGB", "RGBA"].get(self.channels() - 1).copied().unwrap_or("moments");
+        let bits = match self.sample_type() {
+            SampleType::U8 => "8-bit unorm",
+            SampleType::U16 => "16-bit unorm",
+            SampleType::F16 => "16-bit float",
+            SampleType::F32 => "32-bit float",
+        };
+        format!("{channels} {bits}")
+    }
+
+    /// A file for each layer.
+    pub fn split(self) -> Vec<Stored> {
+        match self {
+            Stored::Texels(array) => split_layers(vec![array]).into_iter().map(Stored::Texels).collect(),
+            Stored::Blocks(blocks) => blocks.split_layers().into_iter().map(Stored::Blocks).collect(),
+        }
     }
 }
 
@@ -112,13 +163,15 @@ pub struct OutputOptions<'a> {
     pub wrap: Wrap,
     /// Files that were read, over which nothing is written.
     pub inputs: &'a [&'a Path],
+    /// What `NAME.json` gets; none is written without it.
+    pub sidecar: Option<&'a dyn Fn(&[PathBuf]) -> serde_json::Value>,
 }
 
 /// Refuses a destination that cannot be written to, before any work is done for it.
-pub fn check_destination(path: &Path, container: Container, first: Part) -> Result<()> {
+pub fn check_destination(path: &Path, container: Container, first: &TextureInfo) -> Result<()> {
     let target = match container {
         Container::Png => path.with_extension("L0.png"),
-        _ => part_path(path, first),
+        _ => file_path(path, first),
     };
     // Creating the temporary file finds whatever is wrong; it vanishes when dropped.
     AtomicFile::create(&target).map(drop).with_context(|| target.display().to_string())
@@ -129,12 +182,12 @@ pub fn is_same_file(a: &Path, b: &Path) -> bool {
     matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
-/// Writes every part to `path`, or to `NAME.PART.ext` where there are several. All files appear, or none.
+/// Writes every part to `path`, or to `NAME.PART.ext` and `NAME.LAYER.ext` where there are several. All files appear, or none.
 pub fn write(path: &Path, stored: &[Stored], options: OutputOptions<'_>) -> Result<Vec<PathBuf>> {
     let container = Container::of(path)?;
     let mut files = Files { set: AtomicSet::new(), written: Vec::new(), inputs: options.inputs };
     for part in stored {
-        let target = part_path(path, part.part());
+        let target = file_path(path, part.info());
         match (container, part) {
             (Container::Png, Stored::Texels(array)) => write_png(&mut files, &target, array)?,
             (Container::Exr, Stored::Texels(array)) => {
@@ -151,6 +204,11 @@ pub fn write(path: &Path, stored: &[Stored], options: OutputOptions<'_>) -> Resu
             }
             (Container::Dds, part) => files.add(&target, |out| dds::write(part.payload(), out))?,
         }
+    }
+    if let Some(sidecar) = options.sidecar {
+        let target = path.with_extension("json");
+        let text = serde_json::to_string_pretty(&sidecar(&files.written)).expect("a sidecar is plain data");
+        files.add(&target, |out| Ok(writeln!(out, "{text}")?))?;
     }
     files.set.commit()?;
     Ok(files.written)
@@ -181,32 +239,43 @@ impl Files<'_> {
     }
 }
 
-/// `NAME.L0.png` …, with the texture's name before the level where there are several textures.
+/// `NAME.L0.png` …, one for each level of the one layer.
 fn write_png(files: &mut Files<'_>, path: &Path, array: &TextureArray) -> Result<()> {
     let text = array.info.to_pairs();
-    for texture in &array.layers {
-        for (level, image) in texture.levels.iter().enumerate() {
-            let name = if array.layers.len() == 1 {
-                format!("L{level}.png")
-            } else {
-                format!("{}.L{level}.png", texture.name)
-            };
-            let target = path.with_extension(name);
-            files.add(&target, |out| png_levels::write_level(image, &text, out))?;
-        }
+    for (level, image) in array.layers.iter().flat_map(|texture| texture.levels.iter().enumerate()) {
+        files.add(&level_path(path, level), |out| png_levels::write_level(image, &text, out))?;
     }
     Ok(())
 }
 
-/// The path of a part: the path itself for a layout of one file, else `NAME.PART.ext`.
-pub fn part_path(path: &Path, part: Part) -> PathBuf {
-    if matches!(part, Part::Whole | Part::Split) {
+/// The path of a level of `NAME.png`: `NAME.L0.png`.
+pub fn level_path(path: &Path, level: usize) -> PathBuf {
+    path.with_extension(format!("L{level}.png"))
+}
+
+/// The path of a file: the path itself for a layout of one file, else `NAME.PART.ext` or `NAME.LAYER.ext`.
+pub fn file_path(path: &Path, info: &TextureInfo) -> PathBuf {
+    let names = name_of_part(info.part).into_iter().chain(name_of_layer(info));
+    let mut extension = OsString::new();
+    for name in names {
+        extension.push(name);
+        extension.push(".");
+    }
+    if extension.is_empty() {
         return path.to_owned();
     }
-    let mut extension = OsString::from(part.name());
-    extension.push(".");
     extension.push(path.extension().unwrap_or_default());
     path.with_extension(extension)
+}
+
+/// What the name of a file says of its part.
+pub fn name_of_part(part: Part) -> Option<&'static str> {
+    (!matches!(part, Part::Whole | Part::Split)).then_some(part.name())
+}
+
+/// What the name of a file says of its layer, where that has a file of its own.
+pub fn name_of_layer(info: &TextureInfo) -> Option<&'static str> {
+    info.layer.and(layers_of(info).first()).map(|layer| layer.name)
 }
 
 /// OpenImageIO's words for what lies beyond the edge.

@@ -9,7 +9,7 @@ use roughcast::Bits;
 use roughcast::precision::{Precision, measure, recommend, steepest_slope};
 use serde_json::{Value, json};
 
-use crate::args::{REPORT, SourceArgs, positive};
+use crate::args::{REPORT, SourceArgs, specular_power};
 use crate::bake::usage_where_options;
 use crate::input::read_map;
 use crate::{say, say_json, warn};
@@ -26,7 +26,7 @@ pub struct Args {
     input: PathBuf,
 
     /// The highest specular power (Blinn-Phong exponent) that the material will use
-    #[arg(long, value_name = "S", default_value_t = 256.0, value_parser = positive)]
+    #[arg(long, value_name = "S", default_value_t = 256.0, value_parser = specular_power)]
     specular_power: f32,
 
     /// Print the table as JSON

@@ -1,5 +1,6 @@
 //! `roughcast render`: a map on a shape, shaded by any of the models, on the processor or on the graphics card.
 
+use std::borrow::Cow;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -8,6 +9,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result};
 use clap::ValueHint;
 use roughcast::shading::Shading;
+use roughcast::texture::TextureArray;
 use roughcast_gpu::render::DrawOptions;
 use roughcast_io::picture::{Plane, write_exr, write_png};
 use roughcast_io::{AtomicFile, AtomicSet};
@@ -21,7 +23,7 @@ use crate::method::bake_for;
 use crate::output::is_same_file;
 use crate::painter::{GpuPainter, MethodPainter, Painter, TruthPainter};
 use crate::scene_args::{CameraArgs, SHADING, SceneArgs, ShadingArgs, Size, size};
-use crate::{UsageError, progress, say, scene_args, usage, warn};
+use crate::{UsageError, progress, say, scene_args, textures, usage, warn};
 
 /// Render a map on a shape: what it looks like with LEAN, with the old ways, or in truth.
 ///
@@ -38,7 +40,7 @@ Examples:
   On a model, by the graphics card:
     roughcast render bricks_normal.png -o pot.png --scene teapot.obj --gpu")]
 pub struct Args {
-    /// A normal or height map
+    /// A normal or height map, or a file that `bake` wrote
     #[arg(value_hint = ValueHint::FilePath)]
     map: PathBuf,
 
@@ -46,9 +48,9 @@ pub struct Args {
     #[arg(short, long, value_name = "PATH", value_hint = ValueHint::AnyPath)]
     output: PathBuf,
 
-    /// The shading model
-    #[arg(long, value_name = "MODEL", default_value = "lean", value_parser = one_of::<Shading>(), help_heading = SHADING)]
-    shading: Shading,
+    /// The shading model [default: lean; of a file that `bake` wrote the one that samples its layout]
+    #[arg(long, value_name = "MODEL", value_parser = one_of::<Shading>(), help_heading = SHADING)]
+    shading: Option<Shading>,
 
     /// Texture filter: nearest, trilinear, anisotropic (16 taps), ewa or summed-area; or truth:N, which shades N rays a
     /// pixel with the model's own lobe at the finest level
@@ -174,10 +176,10 @@ impl PictureFormat {
 /// Renders the picture, or the frames.
 pub fn run(args: &Args) -> Result<ExitCode> {
     args.check()?;
-    let map = read_map(&args.map, &args.source)?;
-    map.warnings.iter().for_each(|warning| warn(&args.map, warning));
-    let scene = args.camera.scene(&args.scene, &map.image, args.size, args.shading_options.material())?;
-    let mut painter = args.painter(&map, &scene)?;
+    let subject = args.subject()?;
+    let material = args.shading_options.material();
+    let scene = args.camera.scene(&args.scene, subject.texels(), args.size, material)?;
+    let mut painter = args.painter(&subject, &scene)?;
     match args.frames {
         None => {
             let format = PictureFormat::of(&args.output)?;
@@ -229,29 +231,99 @@ impl Args {
         self.white.map_or_else(|| exposure_of(first), |white| 1.0 / white)
     }
 
+    /// What lies on the shape.
+    fn subject(&self) -> Result<Subject> {
+        let limits = self.source.limits();
+        if textures::is_baked(&self.map, &limits) {
+            return Ok(Subject::Baked(textures::read_with_parts(&self.map, &limits)?));
+        }
+        let map = read_map(&self.map, &self.source)?;
+        map.warnings.iter().for_each(|warning| warn(&self.map, warning));
+        Ok(Subject::Map(Box::new(map)))
+    }
+
     /// What renders, with the textures that it needs.
-    fn painter(&self, map: &Map, scene: &Scene) -> Result<Painter> {
+    fn painter(&self, subject: &Subject, scene: &Scene) -> Result<Painter> {
         let named = || self.map.display().to_string();
-        let (shading, size) = (self.shading, (self.size.width, self.size.height));
-        let options = self.shading_options.lobe_options();
-        let filter = match self.filter {
-            FilterChoice::Truth(samples) => {
+        let size = (self.size.width, self.size.height);
+        let mut options = self.shading_options.lobe_options();
+        let shading = self.model(subject)?;
+        let filter = match (self.filter, subject) {
+            (FilterChoice::Truth(samples), Subject::Map(map)) => {
                 let slopes = SlopeMap::of(&map.image, &map.options).with_context(named)?;
                 let wrap = map.options.wrap;
                 return Ok(Painter::Truth(TruthPainter { slopes, shading, wrap, options, samples, size }));
             }
-            FilterChoice::Textures(filter) => filter,
+            (FilterChoice::Truth(_), Subject::Baked(_)) => {
+                let line = "--filter truth needs the map, of which a baked file holds averages: give the map that it was \
+                            made from";
+                return Err(usage(&self.map, line));
+            }
+            (FilterChoice::Textures(filter), _) => filter,
         };
-        let sampler = Sampler { filter, level: self.level, mip_bias: self.mip_bias, wrap: map.options.wrap };
-        let arrays = bake_for(shading, &map.image, &map.options, self.shading_options.texture_options())
-            .with_context(named)?;
+        let (arrays, wrap) = match subject {
+            Subject::Map(map) => {
+                let textures = self.shading_options.texture_options();
+                let arrays = bake_for(shading, &map.image, &map.options, textures).with_context(named)?;
+                (Cow::Owned(arrays), map.options.wrap)
+            }
+            Subject::Baked(arrays) => (Cow::Borrowed(arrays), arrays[0].info.wrap),
+        };
+        // Toksvig's factor goes with the exponent that it was made for and with no other.
+        if let (Shading::Toksvig, Some(power)) = (shading, arrays[0].info.specular_power()) {
+            options.specular_power = power;
+        }
+        let sampler = Sampler { filter, level: self.level, mip_bias: self.mip_bias, wrap };
         if self.gpu {
             let draw_options = DrawOptions { sampler, lobe: options };
             let painter = GpuPainter::new(shading, &arrays, &draw_options, scene, size)?;
             return Ok(Painter::Gpu(Box::new(painter)));
         }
-        let textures = ShadingTextures::new(shading, &arrays)?;
+        let textures = ShadingTextures::new(shading, &arrays).with_context(named)?;
         Ok(Painter::Method(MethodPainter { textures, sampler, options, size }))
+    }
+
+    /// The model: the one that was named, else LEAN's for a map, and for a baked file the one that samples its layout.
+    fn model(&self, subject: &Subject) -> Result<Shading> {
+        let Subject::Baked(arrays) = subject else { return Ok(self.shading.unwrap_or(Shading::Lean)) };
+        let layout = arrays[0].info.layout;
+        match self.shading {
+            Some(shading) if shading.layout() == layout => Ok(shading),
+            Some(shading) => Err(usage(
+                &self.map,
+                &format!(
+                    "it contains the layout '{layout}', and the model '{shading}' samples '{}': leave --shading out, or bake \
+                     with --as {0}",
+                    shading.layout()
+                ),
+            )),
+            // The last of several is the one of the layout's own name.
+            None => Shading::ALL.iter().rev().copied().find(|shading| shading.layout() == layout).ok_or_else(
+                || {
+                    usage(
+                        &self.map,
+                        &format!("no shading model samples the layout '{layout}': give the map instead"),
+                    )
+                },
+            ),
+        }
+    }
+}
+
+/// What lies on the shape.
+enum Subject {
+    Map(Box<Map>),
+    /// All textures of one bake.
+    Baked(Vec<TextureArray>),
+}
+
+impl Subject {
+    /// Width and height of level 0.
+    fn texels(&self) -> (usize, usize) {
+        match self {
+            Subject::Map(map) => (map.image.width(), map.image.height()),
+            Subject::Baked(arrays) => arrays[0].size(),
+        }
     }
 }
 

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use anyhow::Result;
-use roughcast::texture::{TextureArray, decode};
-use roughcast::{BakeOptions, BakeReport, Bits, Kind, Moments, SourceOptions};
+use roughcast::texture::{Bounds, TextureArray, decode};
+use roughcast::{BakeOptions, BakeReport, Bits, Covariance, Kind, Moments, SourceOptions};
 use roughcast_io::FileInfo;
 use serde_json::{Value, json};
 
@@ -31,25 +31,49 @@ pub struct FileReport {
 pub struct CompressionError {
     pub sigma_rms: f64,
     pub sigma_max: f64,
+    /// The largest error of the variance along an axis.
+    pub variance: f32,
+    /// The largest error of the variance along any direction.
+    pub any_direction: f32,
 }
 
 impl CompressionError {
     pub fn between(before: &[TextureArray], after: &[TextureArray]) -> Result<Self> {
         let sigma = |moments: &Moments| f64::from(0.5 * moments.covariance().trace()).sqrt();
         let (mut squares, mut largest, mut texels) = (0.0, 0.0_f64, 0_u64);
+        let (mut variance, mut any_direction) = (0.0_f32, 0.0_f32);
         for (before, after) in decode(before)?.iter().zip(&decode(after)?) {
             for (before, after) in before.moments.iter().zip(&after.moments) {
                 let error = (sigma(before) - sigma(after)).abs();
                 squares += error * error;
                 largest = largest.max(error);
                 texels += 1;
+                let (a, b) = (before.covariance(), after.covariance());
+                let off = Covariance { xx: a.xx - b.xx, yy: a.yy - b.yy, xy: a.xy - b.xy };
+                variance = variance.max(off.xx.abs()).max(off.yy.abs());
+                let (large, small) = off.eigenvalues();
+                any_direction = any_direction.max(large.abs()).max(small.abs());
             }
         }
-        Ok(Self { sigma_rms: (squares / texels.max(1) as f64).sqrt(), sigma_max: largest })
+        let sigma_rms = (squares / texels.max(1) as f64).sqrt();
+        Ok(Self { sigma_rms, sigma_max: largest, variance, any_direction })
     }
 }
 
 impl FileReport {
+    /// What the files give back, the blocks' error included.
+    fn bounds(&self) -> Bounds {
+        let stored = self.report.bounds;
+        match self.compression {
+            None => stored,
+            Some(blocks) => Bounds {
+                variance: stored.variance + blocks.variance,
+                eigenvalue: stored.eigenvalue + blocks.any_direction,
+                ..stored
+            },
+        }
+    }
+
     /// Prints the report to stdout and the warnings to stderr.
     pub fn print(&self, as_json: bool) -> Result<()> {
         self.warn();
@@ -94,8 +118,8 @@ impl FileReport {
                 report.rms_slope,
                 report.steepest,
                 report.scale,
-                report.bounds.usable_specular_power(),
-                report.bounds.usable_specular_power_any_direction(),
+                self.bounds().usable_specular_power(),
+                self.bounds().usable_specular_power_any_direction(),
             ),
         ];
         if let Some((width, height)) = report.roughness_resampled_from {
@@ -173,10 +197,10 @@ impl FileReport {
             "non_finite": report.counts.non_finite,
             "steepest_slope": report.steepest,
             "rms_slope": report.rms_slope,
-            "slope_error": report.bounds.slope,
-            "variance_error": report.bounds.variance,
-            "usable_specular_power": report.bounds.usable_specular_power(),
-            "usable_specular_power_any_direction": report.bounds.usable_specular_power_any_direction(),
+            "slope_error": self.bounds().slope,
+            "variance_error": self.bounds().variance,
+            "usable_specular_power": self.bounds().usable_specular_power(),
+            "usable_specular_power_any_direction": self.bounds().usable_specular_power_any_direction(),
             "advice": report.advice.map(|advice| json!({
                 "max_slope": advice.max_slope,
                 "specular_power_factor": advice.factor,
@@ -184,6 +208,7 @@ impl FileReport {
             "compression": self.compression.map(|error| json!({
                 "sigma_error_rms": error.sigma_rms,
                 "sigma_error_max": error.sigma_max,
+                "variance_error": error.variance,
             })),
             "roughness_resampled_from": report.roughness_resampled_from.map(|(width, height)| [width, height]),
             "levels": levels,

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, anyhow};
 use clap::Args;
 use roughcast::texture::{Base, Brdf, RoughnessStored};
-use roughcast::{BaseRoughness, Image, RoughnessMap, RoughnessTexture, variance_from_stored};
+use roughcast::{BaseRoughness, Image, RoughnessMap, variance_from_stored};
 use roughcast_io::{Decoded, FileInfo, Limits, ReadError, ReadOptions};
 
 use crate::UsageError;
-use crate::args::{one_of, positive};
+use crate::args::{SPECULAR_POWERS, one_of, specular_power};
 use crate::input::{read_image, refuse_baked};
 
 /// Base roughness.
@@ -17,7 +17,7 @@ use crate::input::{read_image, refuse_baked};
 #[command(next_help_heading = "Roughness of the material itself")]
 pub struct RoughnessArgs {
     /// The material's shininess, as a Blinn-Phong exponent
-    #[arg(long, value_name = "S", value_parser = positive, conflicts_with = "roughness")]
+    #[arg(long, value_name = "S", value_parser = specular_power, conflicts_with = "roughness")]
     pub specular_power: Option<f32>,
 
     /// The material's roughness: a number, or a picture, which is resampled where its size is not the map's. Of a colour picture it is green, as glTF packs
@@ -30,11 +30,14 @@ pub struct RoughnessArgs {
     #[arg(long, value_name = "CHANNEL", requires = "roughness")]
     pub roughness_channel: Option<String>,
 
-    /// How roughness is stored, in the picture and in what pbr writes: perceptual is what glTF and most tools paint, alpha
-    /// its square, the width of the highlight; gloss is 1 minus perceptual [default: perceptual; exponents are
-    /// written with --brdf blinn-phong in floats]
+    /// How the roughness that is given is stored: perceptual is what glTF and most tools paint, alpha its square, the width of
+    /// the highlight; gloss is 1 minus perceptual
+    #[arg(long, value_name = "HOW", default_value = "perceptual", value_parser = one_of::<RoughnessStored>())]
+    pub roughness_stored: RoughnessStored,
+
+    /// How pbr stores the roughness that it writes [default: perceptual; with --brdf blinn-phong in floats specular-power]
     #[arg(long, value_name = "HOW", value_parser = one_of::<RoughnessStored>())]
-    pub roughness_stored: Option<RoughnessStored>,
+    pub roughness_output: Option<RoughnessStored>,
 
     /// The highlight's shape for which the roughness is meant
     #[arg(long, default_value = "ggx", value_parser = one_of::<Brdf>())]
@@ -63,14 +66,9 @@ impl Roughness {
         }
     }
 
-    /// A colour picture whose roughness is in green is glTF's packed texture, of which the rest is worth keeping.
-    pub fn texture(&self) -> RoughnessTexture {
-        match self {
-            Roughness::Map { image, channel: 1, .. } if image.channels() >= 3 && !is_grey(image) => {
-                RoughnessTexture::Packed
-            }
-            _ => RoughnessTexture::Alone,
-        }
+    /// Whether it is a colour picture with roughness in green: glTF's packed texture, of which the rest is worth keeping.
+    pub fn is_packed(&self) -> bool {
+        matches!(self, Roughness::Map { image, channel: 1, .. } if image.channels() >= 3 && !is_grey(image))
     }
 }
 
@@ -94,11 +92,6 @@ fn channel_of(info: &FileInfo, name: &str) -> Option<usize> {
 }
 
 impl RoughnessArgs {
-    /// How roughness is stored where nothing was said.
-    pub fn stored(&self) -> RoughnessStored {
-        self.roughness_stored.unwrap_or(RoughnessStored::Perceptual)
-    }
-
     /// The picture that the arguments name.
     pub fn file(&self) -> Option<&Path> {
         self.roughness.as_deref().filter(|text| text.parse::<f32>().is_err()).map(Path::new)
@@ -117,13 +110,18 @@ impl RoughnessArgs {
     }
 
     fn value(&self, value: f32) -> Result<Roughness> {
-        let stored = self.stored();
+        let stored = self.roughness_stored;
         let in_range = match stored {
-            RoughnessStored::SpecularPower => value.is_finite() && value > 0.0,
+            RoughnessStored::SpecularPower => SPECULAR_POWERS.contains(&value),
             _ => (0.0..=1.0).contains(&value),
         };
         if !in_range {
-            let range = if stored == RoughnessStored::SpecularPower { "above 0" } else { "from 0 to 1" };
+            let range = match stored {
+                RoughnessStored::SpecularPower => {
+                    format!("from {} to {}", SPECULAR_POWERS.start(), SPECULAR_POWERS.end())
+                }
+                _ => "from 0 to 1".to_owned(),
+            };
             return Err(UsageError(format!(
                 "--roughness {value}: a roughness stored as '{stored}' is a number {range}"
             ))
@@ -156,6 +154,6 @@ impl RoughnessArgs {
             None if image.channels() >= 3 => 1,
             None => 0,
         };
-        Ok(Roughness::Map { image, channel, stored: self.stored() })
+        Ok(Roughness::Map { image, channel, stored: self.roughness_stored })
     }
 }

@@ -7,11 +7,13 @@ use anyhow::{Context, Result};
 use clap::Args;
 use glam::DVec3;
 use roughcast::shading::{BaseLobe, Form, LobeOptions, Material, Repair};
-use roughcast::{Bits, Image, Lobe};
+use roughcast::{Bits, Lobe};
 use roughcast_scene::render::{MAX_PIXELS, MAX_SAMPLES};
-use roughcast_scene::{Camera, Light, Plane, Scene, Shape, Sphere, Torus, View, default_light, load_mesh};
+use roughcast_scene::{
+    Camera, CameraError, Light, Plane, Scene, Shape, Sphere, Torus, View, default_light, load_mesh,
+};
 
-use crate::args::{one_of, positive};
+use crate::args::{one_of, positive, specular_power};
 use crate::method::TextureOptions;
 use crate::{UsageError, usage};
 
@@ -198,6 +200,10 @@ pub struct CameraArgs {
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub look_at: Option<DVec3>,
 
+    /// The direction that is up in the picture, with --camera X,Y,Z [default: 0,1,0; where the camera looks along it 0,0,-1]
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    pub up: Option<DVec3>,
+
     /// Vertical angle of view in degrees, with --camera X,Y,Z
     #[arg(long, value_name = "DEGREES", default_value_t = 40.0, value_parser = angle)]
     pub fov: f64,
@@ -208,23 +214,26 @@ pub struct CameraArgs {
 }
 
 impl CameraArgs {
-    /// The scene for a map and a picture of this size.
-    pub fn scene(&self, scene: &SceneArgs, map: &Image, size: Size, material: Material) -> Result<Scene> {
+    /// The scene for a map of so many texels and a picture of this size.
+    pub fn scene(
+        &self,
+        scene: &SceneArgs,
+        texels: (usize, usize),
+        size: Size,
+        material: Material,
+    ) -> Result<Scene> {
         let shape = Arc::new(scene.scene.shape()?);
-        let texels = (map.width(), map.height());
         let mut seen = match self.camera {
             CameraChoice::View(view) => {
-                if self.look_at.is_some() {
-                    let line =
-                        "--look-at goes with a camera at X,Y,Z; a named view looks at the scene by itself";
+                if self.look_at.is_some() || self.up.is_some() {
+                    let line = "--look-at and --up go with a camera at X,Y,Z; a named view looks at the scene by itself";
                     return Err(UsageError(line.to_owned()).into());
                 }
                 scene.view(view, shape, texels, size, material)
             }
             CameraChoice::Eye(eye) => {
                 let target = self.look_at.unwrap_or_else(|| shape.bounds().centre);
-                let camera = Camera::new(eye, target, DVec3::Y, self.fov.to_radians())
-                    .map_err(|error| UsageError(format!("--camera: {error}")))?;
+                let camera = self.camera_at(eye, target)?;
                 let mut seen = scene.view(View::Mid, shape, texels, size, material);
                 if scene.lights.is_empty() {
                     let light = default_light(&seen.shape, &camera, (size.width, size.height), View::Mid);
@@ -237,6 +246,21 @@ impl CameraArgs {
             seen.repeats = f64::from(repeats);
         }
         Ok(seen)
+    }
+}
+
+impl CameraArgs {
+    /// A camera that looks straight down or up has the far side of the scene, -z, at the top of its picture.
+    fn camera_at(&self, eye: DVec3, target: DVec3) -> Result<Camera, UsageError> {
+        let with = |up| Camera::new(eye, target, up, self.fov.to_radians());
+        let camera = match (with(self.up.unwrap_or(DVec3::Y)), self.up) {
+            (Err(CameraError::ParallelUp { .. }), None) => with(DVec3::NEG_Z),
+            (camera, _) => camera,
+        };
+        camera.map_err(|error| {
+            let option = if matches!(error, CameraError::ParallelUp { .. }) { "--up" } else { "--camera" };
+            UsageError(format!("{option}: {error}"))
+        })
     }
 }
 
@@ -260,7 +284,7 @@ fn scene_colour(text: &str) -> Result<[f32; 3], String> {
 #[command(next_help_heading = SHADING)]
 pub struct ShadingArgs {
     /// Blinn-Phong exponent of the surface itself, before any bumps
-    #[arg(long, value_name = "S", default_value_t = 256.0, value_parser = positive)]
+    #[arg(long, value_name = "S", default_value_t = 256.0, value_parser = specular_power)]
     pub specular_power: f32,
 
     /// The lobes' form: as the LEAN text has them, or normalised as microfacet distributions

@@ -5,8 +5,8 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use clap::ValueHint;
-use roughcast::texture::{Layout, Part, Texture, TextureArray, TextureInfo, decode, layers_of};
-use roughcast::{Image, Samples, Wrap};
+use roughcast::texture::{Base, Layout, Part, Texture, TextureArray, TextureInfo, decode, layers_of};
+use roughcast::{Image, Samples};
 use roughcast_io::{Limits, Supercompression};
 
 use crate::output::{self, Container, OutputOptions, Stored};
@@ -15,10 +15,10 @@ use crate::{textures, usage};
 /// Decode a file that `bake` wrote back to float moments, every level.
 ///
 /// The result is a tiled EXR with the channels B.x, B.y (mean slope) and M.xx, M.yy, M.xy (raw second moments). Where a
-/// layout consists of several files, name any of them: the others are found beside it.
+/// layout consists of several files (parts, layers, levels of PNG), name any of them: the others are found beside it.
 #[derive(clap::Args)]
 pub struct Args {
-    /// A KTX2, DDS or EXR file that `bake` wrote
+    /// A KTX2, DDS, EXR or PNG file that `bake` wrote
     #[arg(value_hint = ValueHint::FilePath)]
     file: PathBuf,
 
@@ -35,11 +35,16 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if Container::of(&args.output)? != Container::Exr {
         return Err(usage(&args.output, "moments are floats, five to a texel: name an .exr file"));
     }
-    output::check_destination(&args.output, Container::Exr, Part::Whole)?;
+    let info = TextureInfo::new(Layout::Moments, Part::Whole);
+    output::check_destination(&args.output, Container::Exr, &info)?;
     let arrays = textures::read_with_parts(&args.file, &Limits { max_pixels: args.max_pixels })?;
     let array = moments_of(&arrays).with_context(|| args.file.display().to_string())?;
-    let options =
-        OutputOptions { supercompression: Supercompression::None, wrap: Wrap::Repeat, inputs: &[&args.file] };
+    let options = OutputOptions {
+        supercompression: Supercompression::None,
+        wrap: array.info.wrap,
+        inputs: &[&args.file],
+        sidecar: None,
+    };
     output::write(&args.output, &[Stored::Texels(array)], options)?;
     Ok(ExitCode::SUCCESS)
 }
@@ -47,10 +52,13 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 /// The same moments in the layout of that name, with what is known of the base.
 fn moments_of(arrays: &[TextureArray]) -> Result<TextureArray> {
     let levels = decode(arrays)?;
+    let first = &arrays[0].info;
     let info = TextureInfo {
-        base: arrays[0].info.base,
-        base_variance: arrays[0].info.base_variance,
-        brdf: arrays[0].info.brdf,
+        // Toksvig's factor holds the base, but the variance that its normals decode to does not.
+        base: if first.layout == Layout::Toksvig { Base::None } else { first.base },
+        base_variance: first.base_variance,
+        brdf: first.brdf,
+        wrap: first.wrap,
         ..TextureInfo::new(Layout::Moments, Part::Whole)
     };
     let spec = &layers_of(&info)[0];

@@ -55,6 +55,12 @@ fn the_documented_options_exist() {
         "roughness",
         "roughness-channel",
         "roughness-stored",
+        "roughness-output",
+        "roughness-layout",
+        "normal-range",
+        "target",
+        "split",
+        "sidecar",
         "brdf",
         "filter",
         "compress",
@@ -84,6 +90,7 @@ fn the_documented_options_exist() {
         ("unpack", &["output", "max-pixels"]),
         ("precision", &["specular-power", "json", "max-slope"]),
         ("compare", &["views", "filters", "samples", "frames", "scene", "reconstruction", "json"]),
+        ("render", &["camera", "up", "look-at", "shading", "filter"]),
         ("shader", &["lang", "output", "json"]),
     ] {
         let text = help(subcommand, "-h");

@@ -37,10 +37,14 @@ fn block_compression_costs_what_the_report_says() {
         for (layout, parts) in [
             ("variance", vec![("map", "BC5_UNORM")]),
             ("toksvig", vec![("map.normal", "BC5_UNORM"), ("map.gloss", "BC4_UNORM")]),
-            ("pbr", vec![("map.normal", "BC5_UNORM"), ("map.roughness", "BC4_UNORM")]),
+            ("pbr", vec![("map.normal", "BC5_UNORM"), ("map.roughness", "BC7_UNORM")]),
+            ("pbr --roughness-layout r", vec![("map.normal", "BC5_UNORM"), ("map.roughness", "BC4_UNORM")]),
         ] {
             let (plain, blocks) = (scratch(), scratch());
+            let words: Vec<&str> = layout.split(' ').collect();
+            let (layout, further) = (words[0], &words[1..]);
             let options = ["--as", layout, "--bits", "8", "--specular-power", "64", "--json"];
+            let options = [&options[..], further].concat();
             let output = |folder: &Path| folder.join("map").with_extension(container);
             bake(&map(), &output(plain.path()), &options).expect_success();
             let report =

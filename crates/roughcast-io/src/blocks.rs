@@ -6,7 +6,7 @@
 use block_compression::encode::compress_rgba8;
 use block_compression::{BC7Settings, CompressionVariant};
 use rayon::prelude::*;
-use roughcast::texture::{Texture, TextureArray, TextureInfo};
+use roughcast::texture::{Texture, TextureArray, TextureInfo, split_infos};
 use roughcast::{Image, Samples};
 
 use crate::WriteError;
@@ -75,6 +75,19 @@ pub struct BlockArray {
     pub height: usize,
     /// The layers; at least one, all with the same number of levels.
     pub layers: Vec<BlockLayer>,
+}
+
+impl BlockArray {
+    /// A file for each layer, as [`roughcast::texture::split_layers`] makes them of texels.
+    pub fn split_layers(self) -> Vec<Self> {
+        let infos = split_infos(&self.info);
+        if infos.len() == 1 || infos.len() != self.layers.len() {
+            return vec![self];
+        }
+        let Self { format, width, height, layers, .. } = self;
+        let with_one = |(info, layer)| Self { info, format, width, height, layers: vec![layer] };
+        infos.into_iter().zip(layers).map(with_one).collect()
+    }
 }
 
 /// One texture of a [`BlockArray`].

@@ -215,7 +215,7 @@ impl TextureInfo {
             } else {
                 NormalRange::Signed
             },
-            roughness_texture: RoughnessTexture::Alone,
+            roughness_texture: before_there_was_a_choice(part),
         }
     }
 

@@ -1,0 +1,72 @@
+//! Where textures are going to be used, and what can be read there.
+
+use roughcast::{BakeOptions, Bits, Blocks, named_enum};
+
+use crate::UsageError;
+use crate::output::Container;
+
+named_enum! {
+    /// Where textures are going to be used.
+    pub enum Target: "target" {
+        /// Native programs on Vulkan, Metal, Direct3D or OpenGL.
+        Desktop = "desktop",
+        /// WebGPU and WebGL 2, as three.js and Babylon.js use them.
+        Web = "web",
+        /// Everywhere, phones included.
+        Any = "any",
+    }
+}
+
+impl Target {
+    /// Refuses what cannot be sampled there at all.
+    ///
+    /// Sources: WebGPU, "Texture Format Capabilities" (16-bit UNORM formats need the feature `texture-formats-tier1`, blocks the
+    /// feature `texture-compression-bc`); OpenGL ES 3.0, table 3.13 (no 16-bit normalised formats), EXT_texture_norm16.
+    pub fn check(self, container: Container, options: &BakeOptions) -> Result<(), UsageError> {
+        let refuse = |line: String| Err(UsageError(line));
+        match (self, container) {
+            (Target::Desktop, _) => Ok(()),
+            (_, Container::Png) if options.bits == Bits::Sixteen => refuse(format!(
+                "browsers decode a PNG to 8 bits, too few for the layout '{}': write .ktx2, or say --as variance --bits 8",
+                options.layout
+            )),
+            _ if options.bits == Bits::Sixteen => refuse(
+                "textures of 16-bit integers need WebGPU's feature texture-formats-tier1 or WebGL's EXT_texture_norm16, \
+                 which many devices lack: leave --bits out, or say --bits half"
+                    .to_owned(),
+            ),
+            (Target::Any, _) if options.blocks == Blocks::Bc => refuse(
+                "phones lack the blocks of --compress bc: leave it out, or say --target web or --target desktop".to_owned(),
+            ),
+            _ => Ok(()),
+        }
+    }
+
+    /// What works there only with a feature, or loses something.
+    pub fn warnings(self, container: Container, options: &BakeOptions) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if self == Target::Desktop {
+            return warnings;
+        }
+        if options.bits == Bits::Float {
+            warnings.push(
+                "single floats are filtered only with WebGPU's feature float32-filterable or WebGL's \
+                 OES_texture_float_linear, which phones often lack: half floats need neither"
+                    .to_owned(),
+            );
+        }
+        if options.blocks == Blocks::Bc {
+            warnings.push(
+                "blocks need WebGPU's feature texture-compression-bc or WebGL's EXT_texture_compression_rgtc and \
+                 EXT_texture_compression_bptc, which phones lack: --target any excludes them"
+                    .to_owned(),
+            );
+        }
+        if matches!(container, Container::Png | Container::Exr) {
+            warnings.push(format!(
+                "loaders of .{container} take one level and make the others anew, which loses the roughness: write .ktx2"
+            ));
+        }
+        warnings
+    }
+}
