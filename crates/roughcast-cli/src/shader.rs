@@ -11,12 +11,12 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use clap::ValueHint;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::TypedValueParser;
 use roughcast::shading::wgsl::{MODULES, Module, Role};
 use roughcast_io::AtomicFile;
 use serde_json::{Value, json};
 
-use crate::args::{REPORT, one_of};
+use crate::args::{REPORT, WordParser, one_of};
 use crate::{UsageError, say, say_json};
 pub use export::parse;
 use export::{Export, Language, export};
@@ -52,8 +52,24 @@ fn exports() -> impl Iterator<Item = &'static Module> {
     MODULES.iter().filter(|module| module.role != Role::Part)
 }
 
+/// What users of the layouts may ask for.
+const OTHER_NAMES: &[(&str, &str)] = &[
+    ("pbr", "the model for the layout 'pbr' is called 'ggx'"),
+    ("gltf", "the model for glTF's textures is called 'ggx'"),
+    ("schilling", "there is no shading model for the layout 'schilling' yet; the README's snippet decodes it for 'off-centre'"),
+    (
+        "schilling-isotropic",
+        "there is no shading model for the layout 'schilling-isotropic' yet; 'variance' shades a mean slope and a variance",
+    ),
+    ("moments", "the model for moments is called 'lean'"),
+    ("bump-slopes", "the model for moments is called 'lean'"),
+    ("ward", "Ward's lobe about the bump normal is called 'beckmann'"),
+    ("blinn", "blinn-phong"),
+];
+
 fn names_parser() -> impl TypedValueParser<Value = String> {
-    PossibleValuesParser::new(exports().map(|module| module.name).chain([ALL]))
+    // A model that exists takes its own name, whatever it was called before.
+    WordParser { words: exports().map(|module| module.name).chain([ALL]).collect(), others: OTHER_NAMES }
 }
 
 pub fn run(args: &Args) -> Result<ExitCode> {

@@ -428,3 +428,10 @@ fn powers_out_of_range_and_words_of_other_tools_are_refused_with_the_right_one()
     }
     assert!(names(folder.path()).is_empty());
 }
+
+#[test]
+fn shaders_of_layouts_are_named() {
+    for (name, words) in [("pbr", "'ggx'"), ("schilling", "no shading model"), ("blinn", "say 'blinn-phong'")] {
+        run(["shader", name]).expect_usage_error(words);
+    }
+}

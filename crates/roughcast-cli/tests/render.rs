@@ -169,3 +169,79 @@ fn the_map_itself_is_not_overwritten() {
     render_map(&copy, &copy, &[]).expect_refusal(2, &copy);
     assert!(std::fs::read(&copy).expect("a map") == before);
 }
+
+/// Renders a baked file with further arguments.
+fn render_baked(baked: &Path, output: &Path, further: &[&str]) -> Vec<f32> {
+    render_map(baked, output, further).expect_success();
+    radiance(output)
+}
+
+#[test]
+fn a_baked_file_makes_the_picture_of_its_map() {
+    let folder = scratch();
+    let output = folder.path().join("picture.exr");
+    // 256 is the exponent that `render` takes where none is named.
+    for (model, layout, options, file) in [
+        ("lean", "lean", vec![], "b.ktx2"),
+        ("lean", "lean", vec!["--split"], "b.lean2.ktx2"),
+        ("clean", "clean", vec![], "b.ktx2"),
+        ("variance", "variance", vec![], "b.ktx2"),
+        ("toksvig", "toksvig", vec!["--bits", "16", "--specular-power", "256"], "b.ktx2"),
+        ("ggx", "pbr", vec!["--bits", "16", "--specular-power", "256"], "b.roughness.ktx2"),
+        (
+            "ggx",
+            "pbr",
+            vec!["--bits", "16", "--specular-power", "256", "--roughness-layout", "r"],
+            "b.normal.ktx2",
+        ),
+    ] {
+        render(&output, &["--shading", model]).expect_success();
+        let wanted = radiance(&output);
+        let options = [&["--as", layout][..], &options].concat();
+        common::bake(&map(), &folder.path().join("b.ktx2"), &options).expect_success();
+        let got = render_baked(&folder.path().join(file), &output, &[]);
+        assert!(got == wanted, "{model} from {file}");
+        let got = render_baked(&folder.path().join(file), &output, &["--shading", model]);
+        assert!(got == wanted, "{model} from {file}, by name");
+    }
+    common::bake(&map(), &folder.path().join("p.png"), &[]).expect_success();
+    render(&output, &["--shading", "lean"]).expect_success();
+    let wanted = radiance(&output);
+    assert!(render_baked(&folder.path().join("p.lean1.L4.png"), &output, &[]) == wanted, "PNG levels");
+
+    let baked = folder.path().join("b.normal.ktx2");
+    for (options, words) in [
+        (vec!["--shading", "lean"], "leave --shading out"),
+        (vec!["--filter", "truth:16"], "give the map"),
+    ] {
+        let line = render_map(&baked, &output, &options).expect_refusal(2, &baked);
+        assert!(line.contains(words), "{line}");
+    }
+    common::bake(&map(), &folder.path().join("m.exr"), &["--as", "moments"]).expect_success();
+    let moments = folder.path().join("m.exr");
+    let line = render_map(&moments, &output, &[]).expect_refusal(2, &moments);
+    assert!(line.contains("no shading model samples the layout 'moments'"), "{line}");
+}
+
+#[test]
+fn the_camera_may_look_straight_down_and_up_turns_the_picture() {
+    let folder = scratch();
+    let output = folder.path().join("picture.exr");
+    let light = ["--light", "0.3,1,0.2"];
+    let from = |further: &[&str]| {
+        render(&output, &[&["--camera", "0,3,0"][..], &light, further].concat()).expect_success();
+        radiance(&output)
+    };
+    let (default, far_side_up) = (from(&[]), from(&["--up", "0,0,-1"]));
+    assert!(default.iter().any(|value| *value > 0.0) && default == far_side_up);
+    let turned = from(&["--up", "0,0,1"]);
+    // Half a turn about the middle of the picture.
+    let mut pixels: Vec<&[f32]> = turned.chunks_exact(turned.len() / (96 * 64)).collect();
+    pixels.reverse();
+    let (back, mean) = (pixels.concat(), default.iter().sum::<f32>() / default.len() as f32);
+    let off = back.iter().zip(&default).map(|(a, b)| (a - b).abs()).sum::<f32>() / default.len() as f32;
+    // The footprints are the same, but their rounding need not be.
+    assert!(off < 1e-3 * mean, "{off} of {mean}");
+    render(&output, &["--camera", "0,3,0", "--up", "0,1,0"]).expect_usage_error("--up: ");
+    render(&output, &["--up", "0,1,0"]).expect_usage_error("--look-at and --up");
+}
