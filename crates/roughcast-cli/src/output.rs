@@ -156,6 +156,9 @@ impl Stored {
     }
 }
 
+/// Describes the files at these paths.
+pub type Describe<'a> = dyn Fn(&[PathBuf]) -> serde_json::Value + 'a;
+
 /// How the containers are written.
 #[derive(Clone, Copy)]
 pub struct OutputOptions<'a> {
@@ -164,7 +167,7 @@ pub struct OutputOptions<'a> {
     /// Files that were read, over which nothing is written.
     pub inputs: &'a [&'a Path],
     /// What `NAME.json` gets; none is written without it.
-    pub sidecar: Option<&'a dyn Fn(&[PathBuf]) -> serde_json::Value>,
+    pub sidecar: Option<&'a Describe<'a>>,
 }
 
 /// Refuses a destination that cannot be written to, before any work is done for it.

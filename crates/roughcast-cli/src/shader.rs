@@ -56,7 +56,10 @@ fn exports() -> impl Iterator<Item = &'static Module> {
 const OTHER_NAMES: &[(&str, &str)] = &[
     ("pbr", "the model for the layout 'pbr' is called 'ggx'"),
     ("gltf", "the model for glTF's textures is called 'ggx'"),
-    ("schilling", "there is no shading model for the layout 'schilling' yet; the README's snippet decodes it for 'off-centre'"),
+    (
+        "schilling",
+        "there is no shading model for the layout 'schilling' yet; the README's snippet decodes it for 'off-centre'",
+    ),
     (
         "schilling-isotropic",
         "there is no shading model for the layout 'schilling-isotropic' yet; 'variance' shades a mean slope and a variance",

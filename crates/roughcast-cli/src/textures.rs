@@ -2,9 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, anyhow, ensure};
 use roughcast::level_sizes;
-use roughcast::texture::{Layout, Texture, TextureArray, TextureInfo, join_layers, layers_of, split_infos};
+use roughcast::texture::{
+    InfoError, Layout, Texture, TextureArray, TextureInfo, join_layers, layers_of, split_infos,
+};
 use roughcast_io::{Decoded, Limits, ReadError, dds, exr, ktx2};
 
 use crate::input::{image_of, layout_named_in};
@@ -30,7 +32,17 @@ pub fn read_bytes(path: &Path, bytes: &[u8], limits: &Limits) -> Result<TextureA
             mend: "give a file that `roughcast bake` wrote",
         }),
     };
-    read.with_context(|| path.display().to_string())
+    read.map_err(with_fix).with_context(|| path.display().to_string())
+}
+
+/// Says what to give instead of a file that is not ours.
+fn with_fix(error: ReadError) -> anyhow::Error {
+    match error {
+        ReadError::Info(InfoError::Missing(_)) => {
+            anyhow!("{error}; give a file that `roughcast bake` wrote")
+        }
+        error => error.into(),
+    }
 }
 
 /// Whether `bake` wrote a file, by its metadata.
@@ -44,7 +56,8 @@ fn read_png(path: &Path, bytes: &[u8], limits: &Limits) -> Result<TextureArray> 
     let named = |path: &Path| path.display().to_string();
     let decoded = |path: &Path, bytes: &[u8]| -> Result<(TextureInfo, Decoded)> {
         let decoded = image_of(path, bytes, &(*limits).into())?;
-        Ok((TextureInfo::from_pairs(&decoded.info.metadata)?, decoded))
+        let info = TextureInfo::from_pairs(&decoded.info.metadata);
+        Ok((info.map_err(|error| with_fix(error.into()))?, decoded))
     };
     let (info, given) = decoded(path, bytes).with_context(|| named(path))?;
     let whole = without_level(path);

@@ -181,6 +181,6 @@ fn command_lines_that_make_no_sense_are_refused() {
     refused(&["--size", "0x0"], "no pixels");
     refused(&["--size", "4096x4096"], "--frames");
     refused(&["--camera", "near"], "--camera");
-    refused(&["--specular-power", "0"], "above zero");
+    refused(&["--specular-power", "0"], "from 1 to 1000000");
     assert!(names(folder.path()).is_empty());
 }

@@ -2,6 +2,8 @@
 //!
 //! KTX2 and EXR keep it as pairs of strings, DDS as the eleven reserved words of its header.
 
+mod words;
+
 use std::collections::BTreeMap;
 
 use super::layers_of;
@@ -189,12 +191,6 @@ const CONVENTIONS: &str = "roughcast.conventions";
 const CONVENTIONS_OF_ALL_FILES: &str = "row 0 is the top; tangent frame x right, y up, z out; slope = N.xy / N.z; second moments raw, order xx yy xy; \
      unsigned texels: slopes over -scale..scale, moments over scale^2";
 
-/// First of the eleven reserved words of a DDS header: "RGHC" in the file.
-pub const DDS_MAGIC: u32 = u32::from_le_bytes(*b"RGHC");
-const DDS_VERSION: u32 = 2;
-/// The version before: without the tenth word, and floats always hold signed normals.
-const DDS_VERSION_WITHOUT_CHOICES: u32 = 1;
-
 impl TextureInfo {
     /// The plain meaning of a layout: unit scales, no base roughness, perceptual GGX roughness.
     pub fn new(layout: Layout, part: Part) -> Self {
@@ -314,57 +310,6 @@ impl TextureInfo {
         Self { layer, ..read }.checked()
     }
 
-    /// The eleven words that a DDS header keeps for its writer.
-    pub fn to_words(&self) -> [u32; 11] {
-        let mut words = [0; 11];
-        words[0] = DDS_MAGIC;
-        words[1] = DDS_VERSION;
-        words[2] = index_of(Layout::ALL, self.layout) | index_of(Part::ALL, self.part) << 8;
-        words[3] = self.scale.to_bits();
-        words[4] = self.variance_scale.to_bits();
-        words[5] = index_of(Base::ALL, self.base)
-            | index_of(Brdf::ALL, self.brdf) << 8
-            | index_of(RoughnessStored::ALL, self.roughness_stored) << 16;
-        words[6] = self.base_variance.to_bits();
-        (words[7], words[8]) = (self.set as u32, (self.set >> 32) as u32);
-        words[9] = index_of(Wrap::ALL, self.wrap)
-            | index_of(NormalRange::ALL, self.normal_range) << 8
-            | index_of(RoughnessTexture::ALL, self.roughness_texture) << 16
-            | self.layer.map_or(0, |layer| u32::from(layer) + 1) << 24;
-        words
-    }
-
-    /// Reads [`TextureInfo::to_words`] back.
-    ///
-    /// # Errors
-    /// [`InfoError`] where the words are not ours or make no sense.
-    pub fn from_words(words: &[u32; 11]) -> Result<Self, InfoError> {
-        if words[0] != DDS_MAGIC {
-            return Err(InfoError::Missing(LAYOUT));
-        }
-        if !matches!(words[1], DDS_VERSION | DDS_VERSION_WITHOUT_CHOICES) {
-            return Err(InfoError::Invalid { key: "version", value: words[1].to_string() });
-        }
-        let part = variant_at(Part::ALL, words[2] >> 8 & 0xff, PART)?;
-        let choices = if words[1] == DDS_VERSION { words[9] } else { choices_before(part) };
-        Self {
-            layout: variant_at(Layout::ALL, words[2] & 0xff, LAYOUT)?,
-            part,
-            scale: f32::from_bits(words[3]),
-            variance_scale: f32::from_bits(words[4]),
-            base: variant_at(Base::ALL, words[5] & 0xff, BASE)?,
-            brdf: variant_at(Brdf::ALL, words[5] >> 8 & 0xff, BRDF)?,
-            roughness_stored: variant_at(RoughnessStored::ALL, words[5] >> 16 & 0xff, ROUGHNESS_STORED)?,
-            base_variance: f32::from_bits(words[6]),
-            set: u64::from(words[8]) << 32 | u64::from(words[7]),
-            layer: (choices >> 24).checked_sub(1).map(|layer| layer as u8),
-            wrap: variant_at(Wrap::ALL, choices & 0xff, WRAP)?,
-            normal_range: variant_at(NormalRange::ALL, choices >> 8 & 0xff, NORMAL_RANGE)?,
-            roughness_texture: variant_at(RoughnessTexture::ALL, choices >> 16 & 0xff, ROUGHNESS_LAYOUT)?,
-        }
-        .checked()
-    }
-
     /// All this comes from files: a scale of zero or NaN would decode into nonsense without a word, and a part that the
     /// layout does not have would promise other channels than its decoder needs.
     fn checked(self) -> Result<Self, InfoError> {
@@ -406,104 +351,5 @@ fn before_there_was_a_choice(part: Part) -> RoughnessTexture {
     }
 }
 
-/// The tenth word of a DDS file of an earlier version, as it would be today.
-fn choices_before(part: Part) -> u32 {
-    index_of(NormalRange::ALL, NormalRange::Signed) << 8
-        | index_of(RoughnessTexture::ALL, before_there_was_a_choice(part)) << 16
-}
-
-fn index_of<T: PartialEq>(all: &[T], variant: T) -> u32 {
-    all.iter().position(|v| *v == variant).expect("ALL lists every variant") as u32
-}
-
-fn variant_at<T: Copy>(all: &[T], index: u32, key: &'static str) -> Result<T, InfoError> {
-    all.get(index as usize).copied().ok_or(InfoError::Invalid { key, value: index.to_string() })
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn odd() -> TextureInfo {
-        TextureInfo {
-            scale: 1.234_567_9,
-            variance_scale: 3.3e-5,
-            base: Base::Baked,
-            base_variance: 1.0 / 13777.0,
-            brdf: Brdf::BlinnPhong,
-            roughness_stored: RoughnessStored::SpecularPower,
-            set: 0x0123_4567_89ab_cdef,
-            wrap: Wrap::Mirror,
-            normal_range: NormalRange::Unorm,
-            ..TextureInfo::new(Layout::Toksvig, Part::Gloss)
-        }
-    }
-
-    #[test]
-    fn layers_and_channels_read_back() {
-        let second = TextureInfo { layer: Some(1), ..TextureInfo::new(Layout::Lean, Part::Whole) };
-        let green = TextureInfo {
-            roughness_texture: RoughnessTexture::Green,
-            ..TextureInfo::new(Layout::Pbr, Part::Roughness)
-        };
-        for info in [second, green] {
-            assert_eq!(TextureInfo::from_pairs(&info.to_pairs()), Ok(info));
-            assert_eq!(TextureInfo::from_words(&info.to_words()), Ok(info));
-        }
-        assert_eq!(second.to_pairs()[LAYER], "lean2");
-        let third = TextureInfo { layer: Some(2), ..second };
-        assert!(TextureInfo::from_words(&third.to_words()).is_err());
-    }
-
-    #[test]
-    fn files_of_earlier_versions_mean_what_they_meant() {
-        let orm = TextureInfo::new(Layout::Pbr, Part::OcclusionRoughnessMetallic);
-        let earlier = TextureInfo {
-            normal_range: NormalRange::Signed,
-            roughness_texture: RoughnessTexture::Packed,
-            ..orm
-        };
-        let mut pairs = earlier.to_pairs();
-        for key in [WRAP, NORMAL_RANGE, ROUGHNESS_LAYOUT] {
-            pairs.remove(key);
-        }
-        assert_eq!(TextureInfo::from_pairs(&pairs), Ok(earlier));
-        let mut words = earlier.to_words();
-        (words[1], words[9]) = (1, 0);
-        assert_eq!(TextureInfo::from_words(&words), Ok(earlier));
-    }
-
-    #[test]
-    fn pairs_and_words_read_back_bit_for_bit() {
-        assert_eq!(TextureInfo::from_pairs(&odd().to_pairs()), Ok(odd()));
-        assert_eq!(TextureInfo::from_words(&odd().to_words()), Ok(odd()));
-    }
-
-    #[test]
-    fn a_broken_scale_is_refused() {
-        for scale in [0.0, -1.0, f32::NAN, f32::INFINITY] {
-            let info = TextureInfo { scale, ..odd() };
-            assert!(TextureInfo::from_pairs(&info.to_pairs()).is_err(), "{scale}");
-            assert!(TextureInfo::from_words(&info.to_words()).is_err(), "{scale}");
-        }
-    }
-
-    #[test]
-    fn a_part_of_another_layout_is_refused() {
-        let info = TextureInfo::new(Layout::Lean, Part::Gloss);
-        assert!(matches!(
-            TextureInfo::from_pairs(&info.to_pairs()),
-            Err(InfoError::Invalid { key: PART, .. })
-        ));
-        assert!(matches!(
-            TextureInfo::from_words(&info.to_words()),
-            Err(InfoError::Invalid { key: PART, .. })
-        ));
-    }
-
-    #[test]
-    fn foreign_metadata_is_named_as_such() {
-        assert!(matches!(TextureInfo::from_pairs(&BTreeMap::new()), Err(InfoError::Missing(LAYOUT))));
-        assert!(matches!(TextureInfo::from_words(&[0; 11]), Err(InfoError::Missing(LAYOUT))));
-    }
-}
+mod tests;

@@ -5,7 +5,8 @@ use super::codec::{Affine, Units};
 use crate::SampleType;
 
 /// The way from stored texels, as a sampler returns them, to values: `value = stored * scale + offset`, each pair a
-/// `[scale, offset]`. For float texels, which hold values as they are, every pair is `[1, 0]`.
+/// `[scale, offset]`. For float texels, which hold values as they are, every pair is `[1, 0]`, but for unit vectors that
+/// [`TextureInfo::normal_range`] says otherwise of.
 ///
 /// Filtering and these maps may change places, since both are affine.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,0 +1,114 @@
+//! Tests of signs that agree.
+
+use super::*;
+use crate::pyramid::level_sizes;
+
+const SIDE: usize = 64;
+const SIGNED: Affine = Affine::IDENTITY;
+
+/// Levels of axes in floats, each with a sign of its own, as different as they can be.
+fn field(axis: impl Fn(f64, f64) -> Option<f64>) -> Texture {
+    let mut random = 1_u32;
+    let levels = level_sizes(SIDE, SIDE).into_iter().map(|(width, height)| {
+        let mut values = Vec::new();
+        for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+            random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let sign = if random >> 31 == 0 { 1.0 } else { -1.0 };
+            let angle = axis((x as f64 + 0.5) / width as f64, (y as f64 + 0.5) / height as f64);
+            let (sine, cosine) = angle.unwrap_or(0.0).sin_cos();
+            let strength = if angle.is_some() { 1.0 } else { 0.0 };
+            values.extend([sign * cosine as f32, sign * sine as f32, strength, 1.0]);
+        }
+        Image::new(width, height, 4, Samples::F32(values)).expect("whole pixels")
+    });
+    Texture { name: "anisotropy", channels: vec!["R", "G", "B", "A"], levels: levels.collect() }
+}
+
+fn direction(image: &Image, x: usize, y: usize) -> [f64; 2] {
+    [0, 1].map(|channel| f64::from(image.get(x % image.width(), y % image.height(), channel)))
+}
+
+/// The shortest sum of two neighbouring unit directions, over the pairs that `counts` picks.
+fn shortest(texture: &Texture, counts: impl Fn(f64, f64, f64) -> bool) -> f64 {
+    let mut shortest = f64::INFINITY;
+    for image in &texture.levels {
+        let (width, height) = (image.width(), image.height());
+        for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+            for (dx, dy) in [(1, 0), (0, 1)] {
+                let place =
+                    |at: usize, step: usize, of: usize| (at as f64 + 0.5 * (1 + step) as f64) / of as f64;
+                if counts(place(x, dx, width), place(y, dy, height), 1.0 / width as f64) {
+                    let (a, b) = (direction(image, x, y), direction(image, x + dx, y + dy));
+                    shortest = shortest.min((a[0] + b[0]).hypot(a[1] + b[1]) / 2.0);
+                }
+            }
+        }
+    }
+    shortest
+}
+
+/// Half the sum of two unit vectors a sixth of a turn apart, the most that neighbours of these tests are.
+const LEAST: f64 = 0.866;
+
+#[test]
+fn circles_agree_all_around_although_no_reference_axis_would_do() {
+    let mut texture = field(|u, v| Some((v - 0.5).atan2(u - 0.5)));
+    // Neighbours at less than two texels from the middle turn by more than the sixth of a turn; beyond the edge of the
+    // tile the circles end.
+    let counts = |u: f64, v: f64, texel: f64| (u - 0.5).hypot(v - 0.5) > 2.0 * texel && u.max(v) < 1.0;
+    assert!(shortest(&texture, counts) < 0.1, "random signs cancel somewhere");
+    orient(&mut texture, Wrap::Repeat, SIGNED);
+    assert!(shortest(&texture, counts) > LEAST, "{}", shortest(&texture, counts));
+}
+
+#[test]
+fn waves_agree_across_the_edge_of_the_tile() {
+    let mut texture = field(|u, _| Some(2.0 * (std::f64::consts::TAU * u).sin()));
+    // The wave's axes turn by 4 pi a tile at most: a sixth of a turn a texel from 16 texels on.
+    let counts = |_: f64, _: f64, texel: f64| texel <= 1.0 / 16.0;
+    assert!(shortest(&texture, counts) < 0.1);
+    orient(&mut texture, Wrap::Repeat, SIGNED);
+    assert!(shortest(&texture, counts) > LEAST, "{}", shortest(&texture, counts));
+}
+
+#[test]
+fn levels_agree_with_the_next_coarser_one() {
+    let mut texture = field(|u, v| Some((v - 0.5).atan2(u - 0.5)));
+    orient(&mut texture, Wrap::Clamp, SIGNED);
+    for pair in texture.levels.windows(2) {
+        let size = (pair[1].width(), pair[1].height());
+        for (x, y) in (0..pair[0].height()).flat_map(|y| (0..pair[0].width()).map(move |x| (x, y))) {
+            let (above_x, above_y) = covering((x, y), size);
+            let off_middle = |at: usize, of: usize| (at as f64 + 0.5) / of as f64 - 0.5;
+            let radius = off_middle(above_x, size.0).hypot(off_middle(above_y, size.1));
+            if radius * size.0 as f64 > 1.5 {
+                let (a, b) = (direction(&pair[0], x, y), direction(&pair[1], above_x, above_y));
+                assert!(a[0] * b[0] + a[1] * b[1] > 0.5, "{x} {y} of {}", pair[0].width());
+            }
+        }
+    }
+}
+
+#[test]
+fn texels_without_strength_follow_the_coarser_level() {
+    // Only the left half has a direction, which is straight up.
+    let up = std::f64::consts::FRAC_PI_2;
+    let mut texture = field(|u, _| (u < 0.5).then_some(up));
+    // The last level averages both halves.
+    texture.levels[6] = field(|_, _| Some(up)).levels[6].clone();
+    orient(&mut texture, Wrap::Repeat, SIGNED);
+    let all = texture.levels.iter().flat_map(|image| {
+        (0..image.width() * image.height()).map(|i| direction(image, i % image.width(), i / image.width()))
+    });
+    let all: Vec<_> = all.collect();
+    assert!(all.iter().all(|d| d[0].abs() < 1e-6 && (d[1] - all[0][1]).abs() < 1e-6), "all point one way");
+}
+
+#[test]
+fn codes_turn_round_exactly() {
+    let levels =
+        vec![Image::new(2, 1, 4, Samples::U8(vec![255, 128, 200, 255, 0, 120, 200, 255])).expect("whole")];
+    let mut texture = Texture { name: "anisotropy", channels: vec!["R", "G", "B", "A"], levels };
+    orient(&mut texture, Wrap::Clamp, Affine { mul: 0.5, add: 0.5 });
+    assert_eq!(*texture.levels[0].samples(), Samples::U8(vec![255, 128, 200, 255, 255, 135, 200, 255]));
+}
