@@ -66,7 +66,9 @@ fn look_at(args: &Args) -> Result<Findings> {
     match textures {
         Ok(array) => {
             drop(bytes);
-            findings.describe(&picture.map_err(with_options)?.info);
+            // A PNG is one level of a texture, whose other levels were found beside it.
+            let info = FileInfo { levels: array.level_count(), ..picture.map_err(with_options)?.info };
+            findings.describe(&info);
             findings.textures(args, array);
         }
         Err(fault) => {

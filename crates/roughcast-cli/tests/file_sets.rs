@@ -109,7 +109,10 @@ fn png_levels_are_read_as_one_texture_from_any_of_them() {
             let file = folder.path().join(first.replace("L0", level));
             assert_eq!(unpacked(&file, folder.path()), wanted, "{layout} {level}");
             let told = run(["info", text(&file), "--json"]).expect_success().json();
-            assert_eq!((&told["layout"], &told["base"]), (&json!(layout), &json!("baked")));
+            assert_eq!(
+                (&told["layout"], &told["base"], &told["levels"]),
+                (&json!(layout), &json!("baked"), &json!(7))
+            );
         }
         let gone = folder.path().join(first.replace("L0", "L2"));
         std::fs::remove_file(&gone).expect("it was written");

@@ -8,6 +8,8 @@
 //! unorganized points", 1992: pairs of strongly anisotropic texels whose axes are nearly parallel are joined first. Where no
 //! signs agree everywhere (half a turn around a point, as in a fingerprint), the seam thus lies where it is seen least.
 
+use rayon::prelude::*;
+
 use super::Texture;
 use super::codec::Affine;
 use crate::options::Wrap;
@@ -137,14 +139,19 @@ impl Graph {
             strengths: Vec::with_capacity(nodes),
         };
         for image in levels {
-            let samples = image.samples();
-            for first in (0..samples.len()).step_by(image.channels()) {
+            let (samples, channels) = (image.samples(), image.channels());
+            let read = |texel: usize| {
+                let first = texel * channels;
                 let [x, y] = [0, 1].map(|channel| unit.load(samples.get(first + channel)));
                 let turns = y.atan2(x) / std::f32::consts::TAU;
                 // Negative angles wrap round; -1/2 and 1/2 are the same.
-                graph.angles.push((turns * 65536.0).round() as i32 as u16);
-                graph.strengths.push((samples.get(first + 2) * 255.0).round() as u8);
-            }
+                let angle = (turns * 65536.0).round() as i32 as u16;
+                (angle, (samples.get(first + 2) * 255.0).round() as u8)
+            };
+            let texels = image.width() * image.height();
+            let (angles, strengths): (Vec<_>, Vec<_>) = (0..texels).into_par_iter().map(read).unzip();
+            graph.angles.extend(angles);
+            graph.strengths.extend(strengths);
         }
         graph
     }
@@ -168,22 +175,21 @@ impl Graph {
         }
     }
 
-    /// Calls `f` with the place of every edge that is wanted and its two ends, in a fixed order. The last argument says
-    /// whether it crosses the border of the map.
-    fn for_each_edge(&self, wanted: impl Fn(usize) -> bool, mut f: impl FnMut(usize, usize, usize, bool)) {
+    /// Calls `f` with the two ends of every edge whose place is wanted, in a fixed order, and with whether it crosses the border
+    /// of the map. `wanted` picks from the places of a level, three a texel.
+    fn for_each_edge<I: Iterator<Item = usize>>(
+        &self,
+        wanted: impl Fn(std::ops::Range<usize>) -> I,
+        mut f: impl FnMut(usize, usize, usize, bool),
+    ) {
         let mut first = 0;
         for (level, &(width, height)) in self.sizes.iter().enumerate() {
             let next = first + width * height;
-            for y in 0..height {
-                for x in 0..width {
-                    let node = first + y * width + x;
-                    for (place, edge) in EDGES.into_iter().enumerate() {
-                        if wanted(3 * node + place)
-                            && let Some(end) = self.end_of(edge, level, (x, y), (first, next))
-                        {
-                            f(3 * node + place, node, end, end < node);
-                        }
-                    }
+            for place in wanted(3 * first..3 * next) {
+                let (node, edge) = (place / 3, EDGES[place % 3]);
+                let at = ((node - first) % width, (node - first) / width);
+                if let Some(end) = self.end_of(edge, level, at, (first, next)) {
+                    f(place, node, end, end < node);
                 }
             }
             first = next;
@@ -219,10 +225,14 @@ impl Graph {
         /// The class of edges that lead nowhere.
         const NO_EDGE: u8 = u8::MAX;
         let mut classes = vec![NO_EDGE; 3 * self.angles.len()];
-        self.for_each_edge(|_| true, |place, a, b, border| classes[place] = self.class(a, b, border));
+        self.for_each_edge(|all| all, |place, a, b, border| classes[place] = self.class(a, b, border));
         let mut signs = Signs::new(self.angles.len());
         for class in (0..CLASSES).rev() {
-            let wanted = |place: usize| classes[place] == class;
+            let wanted = |places: std::ops::Range<usize>| {
+                let first = places.start;
+                let of_class = classes[places].iter().enumerate().filter(move |(_, found)| **found == class);
+                of_class.map(move |(index, _)| first + index)
+            };
             self.for_each_edge(wanted, |_, a, b, _| signs.join(a, b, self.agreement(a, b).0));
         }
         signs
