@@ -127,10 +127,10 @@ impl<T: Send + 'static, D: Device> Future for Wait<T, D> {
         }
         drop(state);
         let signal = self.signal.clone();
-        if let Some(device) = self.device.take() {
-            if let Err(reason) = watch(device, signal) {
-                return Poll::Ready(Err(reason));
-            }
+        if let Some(device) = self.device.take()
+            && let Err(reason) = watch(device, signal)
+        {
+            return Poll::Ready(Err(reason));
         }
         Poll::Pending
     }
