@@ -10,6 +10,7 @@ use std::task::{Context, Poll, Waker};
 #[cfg(not(target_arch = "wasm32"))]
 use std::time::Duration;
 
+#[cfg(not(target_arch = "wasm32"))]
 use crate::error::one_line;
 
 /// What calls back.
@@ -18,10 +19,12 @@ pub(crate) trait Device: Clone + Unpin + wgpu::WasmNotSend + 'static {
     ///
     /// # Errors
     /// The reason why this cannot be.
+    #[cfg(not(target_arch = "wasm32"))]
     fn finish_work(&self) -> Result<(), String>;
 }
 
 impl Device for wgpu::Device {
+    #[cfg(not(target_arch = "wasm32"))]
     fn finish_work(&self) -> Result<(), String> {
         self.poll(wgpu::PollType::wait_indefinitely()).map(|_| ()).map_err(|error| one_line(&error))
     }
