@@ -133,7 +133,7 @@ fn wrong_twins_are_caught() {
     // The kinds of mistake that one makes: a sign, a factor, a swapped axis, a forgotten normalisation, a wrong form, a
     // missing clamp, and a rounding that is too coarse.
     let mistakes = [
-        ("gaussian_lobe", "d.y - surface.covariance * inverse", "d.y + surface.covariance * inverse"),
+        ("gaussian_lobe", "d.y - surface.covariance * inverse_xx", "d.y + surface.covariance * inverse_xx"),
         ("lean_lobe", "rest * rest * (surface.variance.x", "rest * rest * (surface.variance.y"),
         ("squared_deviations", "1.0 / surface.variance.x", "1.0 / surface.variance.y"),
         ("lean_surface", "fma(-mean.xyx, mean.xyy, moments)", "moments"),

@@ -79,9 +79,9 @@ pub fn gaussian_lobe(surface: &SlopeGaussian, view: Vector, light: Vector, optio
 /// ellipse: where one axis is a thousand times the other, single floats leave none of it.
 pub fn squared_deviations(covariance: Covariance, determinant: f32, [x, y]: [f32; 2]) -> f32 {
     let Covariance { xx, xy, .. } = covariance;
-    let inverse = 1.0 / xx;
-    let rest = y - xy * inverse * x;
-    x * x * inverse + rest * rest * (xx / determinant)
+    let inverse_xx = 1.0 / xx;
+    let rest = y - xy * inverse_xx * x;
+    x * x * inverse_xx + rest * rest * (xx / determinant)
 }
 
 #[cfg(test)]

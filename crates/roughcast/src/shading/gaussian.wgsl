@@ -39,9 +39,9 @@ fn slope_gaussian(mean: vec2f, sigma: vec3f, options: LobeOptions) -> SlopeGauss
 // The square of a distance from the mean in standard deviations: of that along x, and of what the regression of y on x
 // leaves. A sum of squares loses no digits along a thin ellipse, whose quadratic form is a small difference of products.
 fn squared_deviations(surface: SlopeGaussian, d: vec2f) -> f32 {
-    let inverse = 1.0 / surface.variance.x;
-    let rest = d.y - surface.covariance * inverse * d.x;
-    return d.x * d.x * inverse + rest * rest * (surface.variance.x / surface.det);
+    let inverse_xx = 1.0 / surface.variance.x;
+    let rest = d.y - surface.covariance * inverse_xx * d.x;
+    return d.x * d.x * inverse_xx + rest * rest * (surface.variance.x / surface.det);
 }
 
 // The lobe for unit directions to the viewer and to the light.
