@@ -253,15 +253,15 @@ mod tests {
     #[test]
     fn smooth_pictures_lose_less_than_busy_ones() {
         let picture = |value: fn(usize) -> usize| {
-            let pixels = (0..64 * 64).flat_map(|i| [value(i) as u8; 3]).collect();
-            Srgb8Picture { width: 64, height: 64, pixels }
+            let pixels = (0..256 * 256).flat_map(|i| [value(i) as u8; 3]).collect();
+            Srgb8Picture { width: 256, height: 256, pixels }
         };
         let with = |picture: &Srgb8Picture, quality| {
             let mut bytes = Vec::new();
             write_jpeg(picture, quality, &mut bytes).expect("memory takes it");
             bytes
         };
-        let (smooth, busy) = (picture(|i| 2 * (i % 64)), picture(|i| i * i * 7919 % 251));
+        let (smooth, busy) = (picture(|i| i % 256 / 2), picture(|i| i * i * 7919 % 251));
         assert_eq!(jpeg(&smooth, STILL), with(&smooth, SMOOTH));
         assert_eq!(jpeg(&busy, STILL), with(&busy, STILL));
     }
