@@ -4,7 +4,7 @@ use std::fmt::{Display, Write};
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
-use roughcast_io::picture::{Srgb8Picture, write_animation, write_png};
+use roughcast_io::picture::{Srgb8Picture, write_compact_png, write_jpeg};
 
 /// A page that is being written.
 pub struct Page {
@@ -16,7 +16,9 @@ const STYLE: &str = "\
 h1,h2,h3{line-height:1.2}table{border-collapse:collapse;margin:.5em 0 1.5em}
 th,td{padding:.2em .8em;border-bottom:1px solid #8884;text-align:right}th:first-child,td:first-child,.text{text-align:left}
 .row{display:flex;flex-wrap:wrap;gap:12px;margin:.5em 0 1.5em}figure{margin:0}figcaption{font-size:13px;opacity:.8}
-img{display:block;image-rendering:pixelated;max-width:100%}.holds{color:#178a3a}.fails{color:#c62828;font-weight:bold}
+img{display:block;image-rendering:pixelated;max-width:100%}
+.film{display:grid}.film div{grid-area:1/1;opacity:0}.film div:first-child{opacity:1}
+@media(prefers-reduced-motion){.film div{animation:none!important}}.holds{color:#178a3a}.fails{color:#c62828;font-weight:bold}
 ";
 
 impl Page {
@@ -80,25 +82,37 @@ impl Page {
         self.html.push_str("</div>\n");
     }
 
-    /// A picture with a caption.
+    /// A picture with a caption, exactly as it is.
     pub fn picture(&mut self, picture: &Srgb8Picture, caption: &str) {
-        let mut bytes = Vec::new();
-        write_png(picture, &mut bytes).expect("memory takes a picture");
-        self.png((picture.width, picture.height), &bytes, caption);
+        self.figure(picture.width, caption, &image("png", picture, &png(picture), caption));
+    }
+
+    /// A picture with a caption, as a JPEG in which no loss is seen: a fraction of the bytes where much is in the picture.
+    pub fn photograph(&mut self, picture: &Srgb8Picture, caption: &str) {
+        self.figure(picture.width, caption, &image("jpeg", picture, &jpeg(picture, STILL), caption));
     }
 
     /// Pictures of equal size, one after the other, for ever.
-    pub fn animation(&mut self, frames: &[Srgb8Picture], frames_per_second: u16, caption: &str) {
-        let mut bytes = Vec::new();
-        write_animation(frames, frames_per_second, &mut bytes).expect("memory takes frames of equal size");
-        self.png((frames[0].width, frames[0].height), &bytes, caption);
+    pub fn film(&mut self, frames: &[Srgb8Picture], frames_per_second: u16, caption: &str) {
+        let count = frames.len();
+        let seconds = count as f64 / f64::from(frames_per_second);
+        let frame = |(i, frame): (usize, &Srgb8Picture)| {
+            let delay = i as f64 / f64::from(frames_per_second);
+            let style = format!("animation:film{count} {seconds}s {delay}s steps(1) infinite");
+            format!("<div style=\"{style}\">{}</div>", image("jpeg", frame, &jpeg(frame, MOVING), caption))
+        };
+        let shown = 100.0 / count as f64;
+        let frames_html: String = frames.iter().enumerate().map(frame).collect();
+        let film = format!(
+            "<style>@keyframes film{count}{{0%{{opacity:1}}{shown:.4}%{{opacity:0}}}}</style><div class=\"film\">{frames_html}</div>"
+        );
+        self.figure(frames.first().map_or(0, |frame| frame.width), caption, &film);
     }
 
-    fn png(&mut self, (width, height): (u32, u32), bytes: &[u8], caption: &str) {
-        let (caption, data) = (escaped(caption), BASE64.encode(bytes));
+    fn figure(&mut self, width: u32, caption: &str, content: &str) {
+        let caption = escaped(caption);
         self.push(format_args!(
-            "<figure style=\"width:max({width}px,10em)\"><img width=\"{width}\" height=\"{height}\" alt=\"{caption}\" src=\"data:image/png;base64,{data}\">\
-             <figcaption>{caption}</figcaption></figure>\n"
+            "<figure style=\"width:max({width}px,10em)\">{content}<figcaption>{caption}</figcaption></figure>\n"
         ));
     }
 
@@ -116,6 +130,39 @@ impl Page {
     fn push(&mut self, text: impl Display) {
         write!(self.html, "{text}").expect("a string takes everything");
     }
+}
+
+/// Least quality of a JPEG that is looked at for long, and of one that is seen for a moment.
+const STILL: u8 = 80;
+const MOVING: u8 = 70;
+/// The quality that shows no steps in smooth pictures.
+const SMOOTH: u8 = 95;
+/// Pictures have the best quality that takes no more bytes a pixel: smooth ones, in which losses are seen first, take few.
+const CHEAP: f64 = 0.15;
+
+fn png(picture: &Srgb8Picture) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    write_compact_png(picture, &mut bytes).expect("memory takes a picture");
+    bytes
+}
+
+fn jpeg(picture: &Srgb8Picture, least_quality: u8) -> Vec<u8> {
+    let encoded = |quality| {
+        let mut bytes = Vec::new();
+        write_jpeg(picture, quality, &mut bytes).expect("memory takes a picture that could be rendered");
+        bytes
+    };
+    let cheap = CHEAP * f64::from(picture.width) * f64::from(picture.height);
+    let better = (least_quality + 5..=SMOOTH).rev().step_by(5).map(encoded);
+    better.into_iter().find(|bytes| bytes.len() as f64 <= cheap).unwrap_or_else(|| encoded(least_quality))
+}
+
+fn image(kind: &str, picture: &Srgb8Picture, bytes: &[u8], alt: &str) -> String {
+    let Srgb8Picture { width, height, .. } = picture;
+    let (alt, data) = (escaped(alt), BASE64.encode(bytes));
+    format!(
+        "<img width=\"{width}\" height=\"{height}\" alt=\"{alt}\" src=\"data:image/{kind};base64,{data}\">"
+    )
 }
 
 /// Whether a claim holds.
@@ -204,12 +251,30 @@ mod tests {
     }
 
     #[test]
+    fn smooth_pictures_lose_less_than_busy_ones() {
+        let picture = |value: fn(usize) -> usize| {
+            let pixels = (0..256 * 256).flat_map(|i| [value(i) as u8; 3]).collect();
+            Srgb8Picture { width: 256, height: 256, pixels }
+        };
+        let with = |picture: &Srgb8Picture, quality| {
+            let mut bytes = Vec::new();
+            write_jpeg(picture, quality, &mut bytes).expect("memory takes it");
+            bytes
+        };
+        let (smooth, busy) = (picture(|i| i % 256 / 2), picture(|i| i * i * 7919 % 251));
+        assert_eq!(jpeg(&smooth, STILL), with(&smooth, SMOOTH));
+        assert_eq!(jpeg(&busy, STILL), with(&busy, STILL));
+    }
+
+    #[test]
     fn a_page_needs_no_other_file() {
         let mut page = Page::new("pictures");
         page.picture(&Srgb8Picture::black(3, 2), "black");
-        page.animation(&[Srgb8Picture::black(3, 2), Srgb8Picture::black(3, 2)], 10, "twice");
+        page.photograph(&Srgb8Picture::black(3, 2), "black, too");
+        page.film(&[Srgb8Picture::black(3, 2), Srgb8Picture::black(3, 2)], 10, "twice");
         let html = page.finish();
-        assert_eq!(html.matches("src=\"data:image/png;base64,").count(), 2);
-        assert_eq!(html.matches("src=").count(), 2);
+        assert_eq!(html.matches("src=\"data:image/png;base64,").count(), 1);
+        assert_eq!(html.matches("src=\"data:image/jpeg;base64,").count(), 3);
+        assert_eq!(html.matches("src=").count(), 4);
     }
 }

@@ -11,6 +11,8 @@ use serde_json::Value;
 const QUICK: [&str; 4] = ["--size", "64x48", "--samples", "16"];
 const METHODS: [&str; 9] =
     ["phong", "blinn-phong", "beckmann", "off-centre", "lean", "clean", "toksvig", "variance", "ggx"];
+/// Off-centre is that of LEAN, CLEAN and variance, too; Blinn-Phong that of Toksvig.
+const BASE_LOBES: usize = 5;
 /// The keys of a row, in their order.
 const KEYS: [&str; 9] = ["map", "scene", "view", "method", "filter", "rmse", "flip", "energy", "flicker"];
 /// Grooves and wool, each in two views.
@@ -117,14 +119,33 @@ fn the_page_needs_no_other_file_and_has_every_picture() {
     for foreign in ["http:", "https:", "src=\"/", "href", "<link", "<script", "url(", "@import"] {
         assert!(!page.contains(foreign), "the page has {foreign}");
     }
-    let pictures = page.matches("src=\"data:image/png;base64,").count();
-    // The scale; two distributions of each map; then for each view the moving picture, and truth, picture and errors of every
-    // method.
-    assert_eq!(pictures, 1 + 2 * 3 + (1 + LIMIT_VIEWS) * (1 + 3 * METHODS.len()));
-    assert_eq!(page.matches("src=").count(), pictures);
+    let [png, jpeg] =
+        ["png", "jpeg"].map(|kind| page.matches(&format!("src=\"data:image/{kind};base64,")).count());
+    // The scale; two distributions of each map; then for each view the errors of every method.
+    assert_eq!(png, 1 + 2 * 3 + (1 + LIMIT_VIEWS) * METHODS.len());
+    // For each view the truths and a picture of every method; of the given map two moving ones, too.
+    assert_eq!(jpeg, (1 + LIMIT_VIEWS) * (BASE_LOBES + METHODS.len()) + 2);
+    assert_eq!(page.matches("src=").count(), png + jpeg);
     for setting in ["16 bits", "256", "paper", "64x48", "16 samples a pixel", "towards "] {
         assert!(page.contains(setting), "the page does not say {setting}");
     }
+}
+
+/// Bytes of the page a pixel of all its pictures. PNG of RGB takes 1.4; a default report has 17 million pixels and 6 MB.
+const BYTES_A_PIXEL: f64 = 0.5;
+
+#[test]
+fn a_page_is_small_for_its_pictures() {
+    let folder = scratch();
+    let options = ["--size", "128x96", "--samples", "4", "--views", "mid", "--frames", "4"];
+    run(["compare", text(&map()), "-o", text(folder.path())].iter().chain(&options)).expect_success();
+    let bytes = std::fs::metadata(folder.path().join("index.html")).expect("the page is there").len();
+    // Of the given map the truths, every method with both filters and its errors, and three pictures in four frames; of
+    // the others one filter and no frames.
+    let given = BASE_LOBES + 2 * 2 * METHODS.len() + 3 * 4;
+    let limits = LIMIT_VIEWS * (BASE_LOBES + 2 * METHODS.len());
+    let pixels = ((given + limits) * 128 * 96) as f64;
+    assert!(bytes as f64 <= BYTES_A_PIXEL * pixels, "{bytes} bytes for {pixels} pixels");
 }
 
 #[test]

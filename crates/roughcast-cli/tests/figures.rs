@@ -7,6 +7,9 @@ use serde_json::Value;
 
 const FIGURES: [&str; 5] = ["lean-2", "lean-4", "lean-5", "lean-13", "lean-14"];
 
+/// A number as a page shows it: four digits, zeros before them, and an exponent or a sixth digit of a whole number.
+const MOST_DIGITS: usize = 8;
+
 #[test]
 fn every_figure_is_made_with_its_claim_and_holds() {
     let folder = scratch();
@@ -27,6 +30,14 @@ fn every_figure_is_made_with_its_claim_and_holds() {
         let numbers = figure["numbers"].as_object().expect("an object");
         assert!(!numbers.is_empty() && numbers.values().all(Value::is_number), "{name}: {figure}");
         assert!(page.contains(figure["claim"].as_str().expect("a text")), "{name}: the page lacks the claim");
+    }
+    let cells = page.split("<td>").skip(1).filter_map(|cell| cell.split("</td>").next());
+    for cell in cells {
+        let digits = cell.chars().filter(char::is_ascii_digit).count();
+        assert!(
+            cell.parse::<f64>().is_err() || digits <= MOST_DIGITS,
+            "the page has {digits} digits: {cell}"
+        );
     }
     assert!(!page.contains("src=\"http") && !page.contains("href="), "the page needs other files");
 }

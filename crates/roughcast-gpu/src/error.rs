@@ -91,7 +91,7 @@ pub enum GpuError {
         reason: String,
     },
     /// Results could not be read back.
-    #[error("the GPU's results could not be read back ({reason}): the device was lost; make a new one")]
+    #[error("the GPU's results could not be read back ({reason}): make a new device, or work on the CPU")]
     ReadBack {
         /// What wgpu says.
         reason: String,

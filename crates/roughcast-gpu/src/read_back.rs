@@ -1,11 +1,7 @@
-//! From the GPU's memory back: futures that never block, so that the same code serves a page in a browser.
-
-use std::future::Future;
-use std::pin::Pin;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::task::{Context, Poll, Waker};
+//! From the GPU's memory back: futures that do not block, so that the same code serves a page in a browser.
 
 use crate::error::one_line;
+use crate::wait::{Answer, called_back};
 use crate::{Gpu, GpuError};
 
 /// A copy in memory that the CPU can see, made by an encoder. Read it once the encoder's commands are submitted.
@@ -126,81 +122,21 @@ async fn staging_buffer(gpu: &Gpu, size: u64) -> Result<wgpu::Buffer, GpuError> 
 }
 
 /// Waits until all that was submitted so far is done.
-pub async fn submitted_work_done(gpu: &Gpu) {
-    let signal = Signal::default();
-    let sender = signal.clone();
-    gpu.queue.on_submitted_work_done(move || sender.send(()));
-    Wait { device: &gpu.device, signal }.await
+///
+/// # Errors
+/// [`GpuError::ReadBack`] where the device was lost.
+pub async fn submitted_work_done(gpu: &Gpu) -> Result<(), GpuError> {
+    let ask = |answer: Answer<()>| gpu.queue.on_submitted_work_done(move || answer.send(()));
+    called_back(&gpu.device, ask).await.map_err(|reason| GpuError::ReadBack { reason })
 }
 
 async fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<(), GpuError> {
-    let signal = Signal::default();
-    let sender = signal.clone();
-    buffer.map_async(wgpu::MapMode::Read, .., move |result| sender.send(result));
-    Wait { device: &gpu.device, signal }
-        .await
-        .map_err(|error| GpuError::ReadBack { reason: one_line(&error) })
-}
-
-/// What a callback of wgpu hands to the future that waits for it.
-struct Signal<T>(Arc<Mutex<SignalState<T>>>);
-
-struct SignalState<T> {
-    value: Option<T>,
-    waker: Option<Waker>,
-}
-
-impl<T> Default for Signal<T> {
-    fn default() -> Self {
-        Self(Arc::new(Mutex::new(SignalState { value: None, waker: None })))
-    }
-}
-
-impl<T> Clone for Signal<T> {
-    fn clone(&self) -> Self {
-        Self(Arc::clone(&self.0))
-    }
-}
-
-impl<T> Signal<T> {
-    fn send(&self, value: T) {
-        let waker = {
-            let mut state = self.state();
-            state.value = Some(value);
-            state.waker.take()
-        };
-        if let Some(waker) = waker {
-            waker.wake();
-        }
-    }
-
-    /// No code that holds the lock can panic, so what a poisoned one guards is sound.
-    fn state(&self) -> MutexGuard<'_, SignalState<T>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-struct Wait<'a, T> {
-    device: &'a wgpu::Device,
-    signal: Signal<T>,
-}
-
-impl<T> Future for Wait<'_, T> {
-    type Output = T;
-
-    fn poll(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<T> {
-        // Natively, callbacks come from polling. An error of it is a lost device, of which the callback tells as well.
-        let _ = self.device.poll(wgpu::PollType::Poll);
-        let mut state = self.signal.state();
-        if let Some(value) = state.value.take() {
-            return Poll::Ready(value);
-        }
-        state.waker = Some(context.waker().clone());
-        drop(state);
-        // Nobody else polls, so this asks to be polled again; in a browser the callback alone wakes.
-        if cfg!(not(target_arch = "wasm32")) {
-            context.waker().wake_by_ref();
-        }
-        Poll::Pending
-    }
+    let ask = |answer: Answer<_>| {
+        // Without the scope wgpu would panic on a device that is gone. The callback gets the error as well.
+        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        buffer.map_async(wgpu::MapMode::Read, .., move |result| answer.send(result));
+        drop(scope.pop());
+    };
+    let mapped = called_back(&gpu.device, ask).await.map_err(|reason| GpuError::ReadBack { reason })?;
+    mapped.map_err(|error| GpuError::ReadBack { reason: one_line(&error) })
 }

@@ -15,7 +15,7 @@ use roughcast_gpu::bake::{BakePath, GpuBaker};
 use roughcast_gpu::{Gpu, GpuError};
 use wgpu::util::DeviceExt;
 
-/// One step of the format, which the issue allows: where the CPU's value lies next to the middle between two codes, the
+/// One step of the format: where the CPU's value lies next to the middle between two codes, the
 /// last bit of a float decides, and a GPU may fuse or round that bit in another way.
 const ALLOWED_STEPS: u32 = 1;
 

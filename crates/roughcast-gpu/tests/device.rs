@@ -121,5 +121,5 @@ fn buffers_come_back_and_work_is_waited_for() {
         usage: wgpu::BufferUsages::COPY_SRC,
     });
     assert_eq!(block_on(read_back::read_buffer(&gpu, &buffer)), Ok(bytes));
-    block_on(read_back::submitted_work_done(&gpu));
+    assert_eq!(block_on(read_back::submitted_work_done(&gpu)), Ok(()));
 }

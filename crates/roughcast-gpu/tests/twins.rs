@@ -4,10 +4,12 @@ mod common;
 
 use common::gpu;
 use common::maps::Random;
+use glam::DVec3;
 use half::f16;
 use pollster::block_on;
 use roughcast::{Normal, Slope, SourceCounts};
 use roughcast_gpu::{Gpu, read_back};
+use roughcast_scene::Light;
 use wgpu::util::DeviceExt;
 
 const INPUTS: usize = 1 << 14;
@@ -24,13 +26,18 @@ const STORES: f32 = 4.0 * f32::EPSILON;
 
 /// Runs `body`, WGSL that makes `output: vec4f` of `input: vec4f`, over all inputs.
 fn run(gpu: &Gpu, body: &str, inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
+    run_with(gpu, &roughcast::wgsl::ALL.join("\n"), &format!("opaque_zero = zero;\n{body}"), inputs)
+}
+
+/// The same with other functions than the library's.
+fn run_with(gpu: &Gpu, functions: &str, body: &str, inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
+    // `zero` has to be used, or the binding would be left out.
     let source = format!(
-        "{}\n@group(0) @binding(0) var<storage, read> inputs: array<vec4f>;\n\
+        "{functions}\n@group(0) @binding(0) var<storage, read> inputs: array<vec4f>;\n\
          @group(0) @binding(1) var<storage, read_write> outputs: array<vec4f>;\n\
          @group(0) @binding(2) var<storage, read> zero: u32;\n\
          @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {{\n\
-         opaque_zero = zero;\nlet input = inputs[id.x];\nvar output = vec4f(0.0);\n{body}\noutputs[id.x] = output;\n}}\n",
-        roughcast::wgsl::ALL.join("\n")
+         let input = inputs[id.x + zero];\nvar output = vec4f(0.0);\n{body}\noutputs[id.x] = output;\n}}\n"
     );
     let device = &gpu.device;
     let buffer = |contents: &[u8]| {
@@ -238,4 +245,44 @@ fn a_wrong_twin_is_caught() {
             .zip(&wrong)
             .all(|(input, output)| floats_apart(output[0], input[0] / 3.0) > NEAREST_OR_NEXT)
     );
+}
+
+/// A root, a quotient and products of a GPU, of up to 2.5 units each.
+const LIGHT: f32 = 8.0 * f32::EPSILON;
+
+/// The part of the renderer's shader that begins so and ends with a brace of its own.
+fn item(begin: &str) -> &'static str {
+    let source = include_str!("../src/render/common.wgsl");
+    let (_, rest) = source.split_once(begin).unwrap_or_else(|| panic!("the shader has no '{begin}'"));
+    let (length, start) = (rest.find("\n}\n").expect("it ends"), source.len() - rest.len() - begin.len());
+    &source[start..start + begin.len() + length + 3]
+}
+
+#[test]
+fn lights_are_finite_at_every_distance_and_those_of_the_cpu() {
+    let source = include_str!("../src/render/common.wgsl");
+    let least = source.lines().find(|line| line.starts_with("const LEAST_SQUARED_DISTANCE"));
+    let functions = ["struct SceneLight {", "fn unit_or(", "struct LightAt {", "fn light_at("].map(item);
+    let functions = format!("{}\n{}", least.expect("the shader has it"), functions.join("\n"));
+    let body = "let point = SceneLight(vec4f(0.0, 0.0, 0.0, 1.0), vec3f(8.0, 4.0, 2.0));\n\
+                let at = light_at(point, input.xyz);\noutput = vec4f(at.towards, at.irradiance.y);";
+    // The light is at the origin, so that no distance is rounded before its square is taken.
+    let mut positions = inputs(9, -40, 10);
+    positions[0] = [0.0; 4];
+    positions[1] = [1e-30, 0.0, 0.0, 0.0];
+    let light = Light::Point { position: DVec3::ZERO, intensity: [8.0, 4.0, 2.0] };
+    let (mut near, mut far) = (0, 0);
+    for (position, got) in positions.iter().zip(run_with(&gpu(), &functions, body, &positions)) {
+        let at = DVec3::new(position[0].into(), position[1].into(), position[2].into());
+        let (towards, irradiance) = light.at(at);
+        // Squares that single floats do not hold count as zero.
+        let towards = if at.length() > 1e-18 { towards } else { DVec3::ZERO };
+        let want = [towards.x as f32, towards.y as f32, towards.z as f32, irradiance[1]];
+        for (got, want) in got.into_iter().zip(want) {
+            let close = (got - want).abs() <= LIGHT * want.abs().max(1.0);
+            assert!(close, "{position:?}: {got:e} and not {want:e}");
+        }
+        if at.length() < Light::LEAST_DISTANCE { near += 1 } else { far += 1 }
+    }
+    assert!(near > 1000 && far > 1000, "{near} and {far}");
 }

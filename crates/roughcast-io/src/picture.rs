@@ -1,11 +1,14 @@
 //! Rendered pictures: colours, unlike the textures of the other writers.
 
+use std::collections::BTreeSet;
 use std::io::{Seek, Write};
 
 use exr::prelude::{
     AnyChannel, AnyChannels, Compression, Encoding, FlatSamples, Layer, LayerAttributes, LineOrder,
     WritableImage,
 };
+use image::ExtendedColorType;
+use image::codecs::jpeg::JpegEncoder;
 
 use crate::WriteError;
 
@@ -56,41 +59,106 @@ impl Srgb8Picture {
     }
 }
 
-/// Writes a picture as PNG, marked as sRGB.
+/// Writes a picture as PNG of RGB, marked as sRGB.
 ///
 /// # Errors
 /// [`WriteError::Io`] where `out` fails.
 pub fn write_png(picture: &Srgb8Picture, out: impl Write) -> Result<(), WriteError> {
-    write_animation(std::slice::from_ref(picture), 1, out)
+    encode(picture, out, |encoder| encoder.set_color(png::ColorType::Rgb), &picture.pixels)
 }
 
-/// Writes pictures of equal size as an animated PNG that repeats for ever; a single one as a plain PNG.
+/// Writes the same picture in fewer bytes where it is grey or has few colours: as grey, or with a palette.
 ///
 /// # Errors
-/// [`WriteError::Unsupported`] where there is no picture or the sizes differ; [`WriteError::Io`] where `out` fails.
-pub fn write_animation(
-    frames: &[Srgb8Picture],
-    frames_per_second: u16,
-    out: impl Write,
-) -> Result<(), WriteError> {
-    let unsupported =
-        |what: &str, mend| WriteError::Unsupported { container: "PNG", what: what.to_owned(), mend };
-    let first = frames.first().ok_or_else(|| unsupported("no pictures", "give it at least one"))?;
-    if frames.iter().any(|frame| (frame.width, frame.height) != (first.width, first.height)) {
-        return Err(unsupported("frames of several sizes", "give all the same size"));
+/// [`WriteError::Io`] where `out` fails.
+pub fn write_compact_png(picture: &Srgb8Picture, out: impl Write) -> Result<(), WriteError> {
+    let (pixels, _) = picture.pixels.as_chunks::<3>();
+    if let Some(grey) = grey(pixels) {
+        return encode(picture, out, |encoder| encoder.set_color(png::ColorType::Grayscale), &grey);
     }
-    let mut encoder = png::Encoder::new(out, first.width, first.height);
-    encoder.set_color(png::ColorType::Rgb);
+    let Some(palette) = palette(pixels) else { return write_png(picture, out) };
+    let index = |pixel| palette.iter().position(|colour| colour == pixel).expect("the palette has all") as u8;
+    let indices: Vec<u8> = pixels.iter().map(index).collect();
+    let bits = match palette.len() {
+        0..=2 => 1,
+        3..=4 => 2,
+        5..=16 => 4,
+        _ => 8,
+    };
+    let depth = png::BitDepth::from_u8(bits).expect("a depth of PNG");
+    let configure = |encoder: &mut png::Encoder<'_, _>| {
+        encoder.set_color(png::ColorType::Indexed);
+        encoder.set_depth(depth);
+        encoder.set_palette(palette.as_flattened().to_vec());
+        // Whole bytes count colours from dark to bright, of which neighbours differ little.
+        encoder.set_filter(if bits == 8 { png::Filter::Adaptive } else { png::Filter::NoFilter });
+    };
+    encode(picture, out, configure, &packed(&indices, picture.width as usize, bits))
+}
+
+/// Writes a picture as JPEG, as grey where it is grey. `quality` goes from 1 to 100; from 80 on hardly any loss is
+/// seen.
+///
+/// # Errors
+/// [`WriteError::Unsupported`] where a side is longer than JPEG's 65535; [`WriteError::Io`] where `out` fails.
+pub fn write_jpeg(picture: &Srgb8Picture, quality: u8, out: impl Write) -> Result<(), WriteError> {
+    let Srgb8Picture { width, height, pixels } = picture;
+    let mut encoder = JpegEncoder::new_with_quality(out, quality);
+    let result = match grey(pixels.as_chunks::<3>().0) {
+        Some(grey) => encoder.encode(&grey, *width, *height, ExtendedColorType::L8),
+        None => encoder.encode(pixels, *width, *height, ExtendedColorType::Rgb8),
+    };
+    result.map_err(|error| match error {
+        image::ImageError::IoError(error) => WriteError::Io(error),
+        _ => WriteError::Unsupported {
+            container: "JPEG",
+            what: format!("a picture of {width}x{height} pixels"),
+            mend: "make it smaller, or write PNG",
+        },
+    })
+}
+
+/// The one number of every pixel, where all are grey.
+fn grey(pixels: &[[u8; 3]]) -> Option<Vec<u8>> {
+    pixels.iter().map(|[r, g, b]| (r == g && g == b).then_some(*r)).collect()
+}
+
+/// The colours from dark to bright, where one byte can number them.
+fn palette(pixels: &[[u8; 3]]) -> Option<Vec<[u8; 3]>> {
+    let mut colours = BTreeSet::new();
+    for pixel in pixels {
+        colours.insert(*pixel);
+        if colours.len() > 256 {
+            return None;
+        }
+    }
+    let mut colours: Vec<[u8; 3]> = colours.into_iter().collect();
+    colours.sort_by_key(|colour| colour.iter().map(|c| u32::from(*c)).sum::<u32>());
+    Some(colours)
+}
+
+/// Indices of so many bits, rows filled up to whole bytes.
+fn packed(indices: &[u8], width: usize, bits: u8) -> Vec<u8> {
+    let a_byte = usize::from(8 / bits);
+    let byte = |indices: &[u8]| {
+        let shifted = indices.iter().enumerate().map(|(i, index)| index << (8 - bits as usize * (i + 1)));
+        shifted.fold(0, |byte, index| byte | index)
+    };
+    indices.chunks(width).flat_map(|row| row.chunks(a_byte).map(byte)).collect()
+}
+
+fn encode<W: Write>(
+    picture: &Srgb8Picture,
+    out: W,
+    configure: impl FnOnce(&mut png::Encoder<'_, W>),
+    data: &[u8],
+) -> Result<(), WriteError> {
+    let mut encoder = png::Encoder::new(out, picture.width, picture.height);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    if frames.len() > 1 {
-        encoder.set_animated(frames.len() as u32, 0).map_err(failure)?;
-        encoder.set_frame_delay(1, frames_per_second).map_err(failure)?;
-    }
+    configure(&mut encoder);
     let mut writer = encoder.write_header().map_err(failure)?;
-    for frame in frames {
-        writer.write_image_data(&frame.pixels).map_err(failure)?;
-    }
+    writer.write_image_data(data).map_err(failure)?;
     writer.finish().map_err(failure)
 }
 
@@ -156,31 +224,72 @@ mod tests {
         let mut bytes = Vec::new();
         write_png(&picture, &mut bytes).expect("memory takes it");
         let mut reader = png::Decoder::new(Cursor::new(&bytes)).read_info().expect("a PNG");
-        assert!(reader.info().srgb.is_some() && reader.info().animation_control.is_none());
+        assert!(reader.info().srgb.is_some() && reader.info().color_type == png::ColorType::Rgb);
         let mut pixels = vec![0; reader.output_buffer_size().expect("it fits")];
         reader.next_frame(&mut pixels).expect("a frame");
         assert_eq!(pixels, picture.pixels);
     }
 
-    #[test]
-    fn every_frame_of_an_animation_reads_back() {
-        let frames = [gradient(4, 4, 0), gradient(4, 4, 90), gradient(4, 4, 200)];
+    /// Pixels of so many colours.
+    fn colours(width: u32, height: u32, count: usize, colour: fn(usize) -> [u8; 3]) -> Srgb8Picture {
+        let pixels = (0..(width * height) as usize).flat_map(|i| colour(i * 7 % count)).collect();
+        Srgb8Picture { width, height, pixels }
+    }
+
+    fn compact(picture: &Srgb8Picture) -> (Vec<u8>, png::ColorType, png::BitDepth) {
         let mut bytes = Vec::new();
-        write_animation(&frames, 12, &mut bytes).expect("memory takes it");
-        let mut reader = png::Decoder::new(Cursor::new(&bytes)).read_info().expect("a PNG");
-        assert_eq!(reader.info().animation_control.expect("animated").num_frames, 3);
-        for frame in &frames {
-            let mut pixels = vec![0; reader.output_buffer_size().expect("it fits")];
-            reader.next_frame(&mut pixels).expect("a frame");
-            assert_eq!(pixels, frame.pixels);
+        write_compact_png(picture, &mut bytes).expect("memory takes it");
+        let mut decoder = png::Decoder::new(Cursor::new(&bytes));
+        decoder.set_transformations(png::Transformations::EXPAND);
+        let mut reader = decoder.read_info().expect("a PNG");
+        assert!(reader.info().srgb.is_some());
+        let (colour, depth) = (reader.info().color_type, reader.info().bit_depth);
+        let mut pixels = vec![0; reader.output_buffer_size().expect("it fits")];
+        reader.next_frame(&mut pixels).expect("a frame");
+        if colour == png::ColorType::Grayscale {
+            pixels = pixels.iter().flat_map(|grey| [*grey; 3]).collect();
         }
+        (pixels, colour, depth)
     }
 
     #[test]
-    fn frames_that_do_not_fit_together_are_refused() {
-        for frames in [vec![], vec![gradient(4, 4, 0), gradient(4, 5, 0)]] {
-            let result = write_animation(&frames, 12, Vec::new());
-            assert!(matches!(result, Err(WriteError::Unsupported { .. })));
+    fn compact_pictures_are_the_same_in_fewer_bytes() {
+        use png::{BitDepth, ColorType};
+        let coloured = |i: usize| [(i % 256) as u8, (i / 2 % 256) as u8, (i / 256) as u8 + 9];
+        for (count, colour, depth) in [
+            (2, ColorType::Indexed, BitDepth::One),
+            (3, ColorType::Indexed, BitDepth::Two),
+            (16, ColorType::Indexed, BitDepth::Four),
+            (17, ColorType::Indexed, BitDepth::Eight),
+            (256, ColorType::Indexed, BitDepth::Eight),
+            (257, ColorType::Rgb, BitDepth::Eight),
+        ] {
+            // Rows that do not fill their last byte.
+            let picture = colours(61, 33, count, coloured);
+            assert_eq!(compact(&picture), (picture.pixels.clone(), colour, depth), "{count} colours");
+        }
+        let grey = colours(61, 33, 256, |i| [i as u8; 3]);
+        assert_eq!(compact(&grey), (grey.pixels.clone(), ColorType::Grayscale, BitDepth::Eight));
+    }
+
+    #[test]
+    fn a_jpeg_is_nearly_the_picture_and_grey_where_that_is() {
+        // A smooth picture, of which quality 90 loses next to nothing.
+        let smooth = |tint: usize| {
+            let pixels = (0..48 * 32).flat_map(|i| [i % 48 * 4, i % 48 * 4 + tint, i / 48 * 7]);
+            Srgb8Picture { width: 48, height: 32, pixels: pixels.map(|c| c as u8).collect() }
+        };
+        let mut grey = smooth(0);
+        grey.pixels.chunks_exact_mut(3).for_each(|pixel| pixel[2] = pixel[0]);
+        for (picture, channels) in [(grey, 1), (smooth(20), 3)] {
+            let mut bytes = Vec::new();
+            write_jpeg(&picture, 90, &mut bytes).expect("memory takes it");
+            let mut decoder = jpeg_decoder::Decoder::new(Cursor::new(&bytes));
+            let decoded = decoder.decode().expect("a JPEG");
+            assert_eq!(decoded.len(), 48 * 32 * channels);
+            let wanted = picture.pixels.iter().step_by(3 / channels);
+            let largest = decoded.iter().zip(wanted).map(|(a, b)| a.abs_diff(*b)).max();
+            assert!(largest <= Some(6), "{channels} channels: {largest:?}");
         }
     }
 

@@ -66,7 +66,8 @@ impl SlopeMap {
     #[inline]
     fn interpolated(&self, at: DVec2, wrap: Wrap) -> Slope {
         let corner = at.floor();
-        let (s, t) = ((at.x - corner.x) as f32, (at.y - corner.y) as f32);
+        // The maximum turns what is left of infinity, no number, into zero.
+        let (s, t) = ((at.x - corner.x).max(0.0) as f32, (at.y - corner.y).max(0.0) as f32);
         let (left, top) = (corner.x as i64, corner.y as i64);
         let (left, right) =
             (wrapped(left, self.width, wrap), wrapped(left.saturating_add(1), self.width, wrap));
@@ -107,13 +108,15 @@ mod tests {
     }
 
     #[test]
-    fn odd_coordinates_give_some_slope_of_the_map() {
-        let map = map(2, &[0.0, 1.0, 2.0, 3.0]);
-        for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300] {
-            for how in Reconstruction::ALL {
-                for wrap in Wrap::ALL {
-                    // Nothing sensible can be between texels at infinity; it must only not panic.
-                    let _ = map.at(DVec2::new(odd, 0.3), *wrap, *how);
+    fn coordinates_without_a_place_give_slopes_of_the_map() {
+        let map = map(2, &[1.0, 2.0, 3.0, 4.0]);
+        for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300] {
+            for at in [DVec2::new(odd, 0.3), DVec2::new(0.3, odd), DVec2::splat(odd)] {
+                for (how, wrap) in
+                    Reconstruction::ALL.iter().flat_map(|h| Wrap::ALL.iter().map(move |w| (h, w)))
+                {
+                    let Slope { x, y } = map.at(at, *wrap, *how);
+                    assert!((1.0..=4.0).contains(&x) && y == -x, "{at}, {wrap}, {how}: ({x}, {y})");
                 }
             }
         }

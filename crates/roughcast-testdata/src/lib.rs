@@ -133,11 +133,22 @@ fn rows_of(manifest: &Path) -> Vec<Row> {
 /// Where no corpus has the folder.
 #[track_caller]
 pub fn files_in(folder: &str) -> Vec<String> {
+    files_in_each(&[folder])
+}
+
+/// The same of several folders, of which some may be in the extended corpus only.
+///
+/// # Panics
+/// Where no corpus has any of them.
+#[track_caller]
+pub fn files_in_each(folders: &[&str]) -> Vec<String> {
     let mut files = BTreeSet::new();
     for corpus in corpora() {
-        collect(&corpus, &corpus.join(folder), &mut files);
+        for folder in folders {
+            collect(&corpus, &corpus.join(folder), &mut files);
+        }
     }
-    assert!(!files.is_empty(), "no corpus has the folder {folder}");
+    assert!(!files.is_empty(), "no corpus has any of the folders {folders:?}");
     files.into_iter().collect()
 }
 

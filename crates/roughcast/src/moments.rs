@@ -69,7 +69,7 @@ impl Covariance {
         Self { xx: variance, yy: variance, xy: 0.0 }
     }
 
-    /// The nearest by rule: a variance below zero becomes zero, `|xy|` is cut to `sqrt(xx yy)`.
+    /// The nearest by rule: a variance below zero becomes zero, `|xy|` is cut to `sqrt(xx yy)`. NaN becomes zero.
     pub fn positive_semidefinite(self) -> Self {
         let (xx, yy) = (self.xx.max(0.0), self.yy.max(0.0));
         // NaN stands for infinity times zero: nothing may be mixed along an axis without variance.
@@ -78,7 +78,8 @@ impl Covariance {
         if f64::from(limit) * f64::from(limit) > f64::from(xx) * f64::from(yy) {
             limit = limit.next_down().max(0.0);
         }
-        Self { xx, yy, xy: self.xy.clamp(-limit, limit) }
+        let xy = if self.xy.is_nan() { 0.0 } else { self.xy.clamp(-limit, limit) };
+        Self { xx, yy, xy }
     }
 
     /// Sum of the variances.
@@ -121,12 +122,16 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_are_none_are_mended_without_a_panic() {
-        let odd = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, -1.0, f32::MAX];
+    fn non_finite_inputs_become_positive_semidefinite() {
+        let odd = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, -1.0, 1.0, f32::MAX];
         for (xx, yy, xy) in odd.iter().flat_map(|x| odd.iter().flat_map(move |y| odd.map(|xy| (*x, *y, xy))))
         {
             let mended = Covariance { xx, yy, xy }.positive_semidefinite();
             assert!(mended.xx >= 0.0 && mended.yy >= 0.0, "{mended:?}");
+            // Infinity times zero, NaN, allows nothing.
+            let product = f64::from(mended.xx) * f64::from(mended.yy);
+            let limit = if product.is_nan() { 0.0 } else { product.sqrt() };
+            assert!(f64::from(mended.xy).abs() <= limit, "{mended:?} of {:?}", (xx, yy, xy));
         }
         let endless = Covariance { xx: f32::INFINITY, yy: 0.0, xy: 1.0 }.positive_semidefinite();
         assert_eq!(endless, Covariance { xx: f32::INFINITY, yy: 0.0, xy: 0.0 });

@@ -107,7 +107,8 @@ named_enum! {
     pub enum Wrap: "wrap mode" {
         /// The map repeats.
         Repeat = "repeat",
-        /// The edge texel goes on.
+        /// The edge texel goes on, for gradients. The pyramid's filters mirror the map, as for [`Wrap::Mirror`]: an edge
+        /// texel that went on for ever would count more than the others, and means would drift from level to level.
         Clamp = "clamp",
         /// The map is mirrored at the edge.
         Mirror = "mirror",

@@ -1,7 +1,7 @@
 //! How far a storage type carries: measured and bounded error of the variance, and the exponents that it allows.
 //!
-//! Source: "Shiny and CLEAN" and DESIGN's correction of it. With `V = M - B²`, texels of half a code's error over their
-//! range give `e_V = e_M + 2 |B| e_B + e_B²`, and the lobe is safe while `1/s > e_V`.
+//! Source: "Shiny and CLEAN", with the error of the mean counted in full. With `V = M - B²`, texels of half a code's error
+//! over their range give `e_V = e_M + 2 |B| e_B + e_B²`, and the lobe is safe while `1/s > e_V`.
 
 use rayon::prelude::*;
 

@@ -19,9 +19,13 @@ pub fn colour(error: f32) -> [u8; 3] {
     linear_from_oklab([t, chroma * hue.cos(), chroma * hue.sin()]).map(|value| srgb8(value as f32))
 }
 
-/// Errors from 0 to 1, row by row, as a picture.
+/// Colours of a picture of errors: as many as the eye can name on the scale, and few enough for a small file.
+const STEPS: f32 = 24.0;
+
+/// Errors from 0 to 1, row by row, as a picture of [`STEPS`] colours.
 pub fn error_picture(width: usize, errors: &[f32]) -> Srgb8Picture {
-    let pixels = errors.iter().flat_map(|error| colour(*error)).collect();
+    let last = STEPS - 1.0;
+    let pixels = errors.iter().flat_map(|error| colour((error * last).round() / last)).collect();
     Srgb8Picture { width: width as u32, height: (errors.len() / width) as u32, pixels }
 }
 
@@ -75,5 +79,8 @@ mod tests {
         assert_eq!((picture.width, picture.height, picture.pixels.len()), (3, 2, 18));
         assert_eq!(picture.pixels[6..12], [255; 6]);
         assert_eq!(legend(8, 2).pixels.len(), 48);
+        let colours: std::collections::BTreeSet<[u8; 3]> =
+            legend(1024, 1).pixels.as_chunks().0.iter().copied().collect();
+        assert_eq!(colours.len(), STEPS as usize);
     }
 }

@@ -204,12 +204,6 @@ impl Comparison {
         let found = self.trials.iter().find(|trial| trial.row.method == method && trial.row.filter == filter);
         found.expect("every method was tried with every filter")
     }
-
-    /// The truth of a method's base lobe.
-    pub fn truth(&self, method: Shading) -> &Srgb8Picture {
-        let found = self.truths.iter().find(|(lobe, _)| *lobe == method.base_lobe());
-        &found.expect("there is a truth of every base lobe").1
-    }
 }
 
 impl Truths {

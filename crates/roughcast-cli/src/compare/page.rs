@@ -1,8 +1,7 @@
 //! The report as a page: numbers first, then every picture beside its truth and its errors.
 
-use roughcast::Named;
 use roughcast::shading::Shading;
-use roughcast_scene::{Light, View};
+use roughcast_scene::{Filter, Light, View};
 
 use super::Compared;
 use super::colour_scale::legend;
@@ -30,11 +29,20 @@ pub fn page(settings: &Settings<'_>, compared: &[Compared]) -> String {
     overview(&mut page, settings, compared);
     limits(&mut page, settings, compared);
     page.heading(2, &given.subject.name);
-    given.comparisons.iter().for_each(|comparison| view(&mut page, settings, &given.subject, comparison));
+    for comparison in &given.comparisons {
+        page.heading(3, &view_heading(&given.subject, comparison));
+        film(&mut page, settings, comparison);
+        table(&mut page, comparison);
+        pictures(&mut page, comparison, &settings.filters);
+    }
     for Compared { subject, comparisons, .. } in others {
         page.heading(2, &subject.name);
         page.paragraph(&format!("{}.", subject.about));
-        comparisons.iter().for_each(|comparison| view(&mut page, settings, subject, comparison));
+        for comparison in comparisons {
+            page.heading(3, &view_heading(subject, comparison));
+            table(&mut page, comparison);
+            pictures(&mut page, comparison, &[settings.main_filter()]);
+        }
     }
     page.finish()
 }
@@ -79,7 +87,7 @@ fn how_it_was_made(page: &mut Page, settings: &Settings<'_>, given: &Compared) {
         "RMSE is the root mean square error in radiance. FLIP is the mean of HDR-FLIP, 0 to 1: the difference that a viewer \
          sees who flips between two pictures. Energy is the relative error of the highlight's light. Flicker is the variance \
          over time in excess of the truth's, in radiance squared. Pixels count that the surface covers fully. The pictures of a \
-         view share one exposure.",
+         view share one exposure; they are JPEG, and the numbers are not taken from them.",
     );
     page.begin_row();
     page.picture(&legend(256, 12), "FLIP in the error pictures, from 0 to 1");
@@ -140,25 +148,24 @@ fn sorted(trials: &[Trial]) -> Vec<&Trial> {
     sorted
 }
 
-/// One view of one map: moving pictures, the table, all pictures.
-fn view(page: &mut Page, settings: &Settings<'_>, subject: &Subject, comparison: &Comparison) {
-    let view = comparison.view;
-    page.heading(3, &format!("{}, {view} view: {}", subject.name, span(view)));
-    if !comparison.animation.is_empty() {
-        page.begin_row();
-        let filter = settings.main_filter();
-        let [ordinary, lean] = PAIR.map(|method| flicker(&comparison.trial(method, filter).row));
-        let caption = format!(
-            "While the camera moves: truth (off-centre Beckmann); ordinary bump mapping (blinn-phong, {filter}), flicker \
-             {ordinary}; LEAN ({filter}), flicker {lean}"
-        );
-        page.animation(&comparison.animation, FRAMES_PER_SECOND, &caption);
-        page.end_row();
+fn view_heading(subject: &Subject, comparison: &Comparison) -> String {
+    format!("{}, {} view: {}", subject.name, comparison.view, span(comparison.view))
+}
+
+/// What moves: the truth, the old way and the new.
+fn film(page: &mut Page, settings: &Settings<'_>, comparison: &Comparison) {
+    if comparison.animation.is_empty() {
+        return;
     }
-    table(page, comparison);
-    for method in Shading::all() {
-        pictures(page, settings, comparison, *method);
-    }
+    page.begin_row();
+    let filter = settings.main_filter();
+    let [ordinary, lean] = PAIR.map(|method| flicker(&comparison.trial(method, filter).row));
+    let caption = format!(
+        "While the camera moves: truth (off-centre Beckmann); ordinary bump mapping (blinn-phong, {filter}), flicker \
+         {ordinary}; LEAN ({filter}), flicker {lean}"
+    );
+    page.film(&comparison.animation, FRAMES_PER_SECOND, &caption);
+    page.end_row();
 }
 
 fn span(view: View) -> String {
@@ -182,17 +189,20 @@ fn table(page: &mut Page, comparison: &Comparison) {
     page.table(&["method, filter", "truth", "RMSE", "FLIP", "energy", "flicker"], &rows);
 }
 
-/// The truth of a model, and for every filter the model's picture and its errors.
-fn pictures(page: &mut Page, settings: &Settings<'_>, comparison: &Comparison, method: Shading) {
-    page.begin_row();
-    let truth = format!("{method}: truth ({})", method.base_lobe());
-    page.picture(comparison.truth(method), &truth);
-    for filter in &settings.filters {
-        let trial = comparison.trial(method, *filter);
-        page.picture(&trial.picture, &format!("{method}, {filter}: RMSE {:.4}", trial.row.rmse));
-        page.picture(&trial.error, &format!("its errors: FLIP {:.3}", trial.row.flip));
+/// The truth of every base lobe, and beside it each of its models' pictures with these filters and their errors.
+fn pictures(page: &mut Page, comparison: &Comparison, filters: &[Filter]) {
+    for (lobe, truth) in &comparison.truths {
+        page.begin_row();
+        page.photograph(truth, &format!("{lobe}: truth"));
+        for method in Shading::ALL.iter().filter(|method| method.base_lobe() == *lobe) {
+            for filter in filters {
+                let trial = comparison.trial(*method, *filter);
+                page.photograph(&trial.picture, &format!("{method}, {filter}: RMSE {:.4}", trial.row.rmse));
+                page.picture(&trial.error, &format!("its errors: FLIP {:.3}", trial.row.flip));
+            }
+        }
+        page.end_row();
     }
-    page.end_row();
 }
 
 fn flicker(row: &Row) -> String {

@@ -10,7 +10,8 @@ use crate::html::{Chart, Curve};
 const SHOWN: [f64; 3] = [8.0, 64.0, 512.0];
 /// The exponents of the table: 8, 16 … 16384.
 const DOUBLINGS: u32 = 12;
-/// The difference shrinks as 0.54 / s (DESIGN, section 3); at small exponents the next term of the expansion shows.
+/// `cos(θ)^s` exceeds `exp(-s/2 tan²θ)` by `s/4 θ⁴ exp(-s/2 θ²)` to first order, which is largest at `θ² = 4/s`: `4/e²/s`, or
+/// 0.54 / s. At small exponents the next term of the expansion shows.
 const DIFFERENCE_TIMES_S: f64 = 0.56;
 
 pub fn make() -> Figure {

@@ -174,7 +174,7 @@ fn page(figures: &[(&str, Figure)]) -> String {
         figure.panels.iter().for_each(|panel| page.picture(&panel.picture, &panel.caption));
         figure.charts.iter().for_each(|chart| page.chart(chart));
         page.end_row();
-        let numbers = figure.numbers.iter().map(|(name, value)| vec![name.clone(), value.to_string()]);
+        let numbers = figure.numbers.iter().map(|(name, value)| vec![name.clone(), shown(value)]);
         page.table(&["number", "value"], &numbers.collect::<Vec<_>>());
         if let Some(table) = &figure.table {
             page.table(&table.header, &table.rows);
@@ -183,6 +183,48 @@ fn page(figures: &[(&str, Figure)]) -> String {
     page.finish()
 }
 
+/// A number with four digits; results.json has all of them.
+fn shown(value: &Value) -> String {
+    match value.as_f64() {
+        Some(number) if value.is_f64() => four_digits(number),
+        _ => value.to_string(),
+    }
+}
+
+fn four_digits(number: f64) -> String {
+    let magnitude = number.abs().log10().floor();
+    if number == 0.0 {
+        "0".to_owned()
+    } else if (-4.0..6.0).contains(&magnitude) {
+        format!("{number:.*}", (3.0 - magnitude).max(0.0) as usize)
+    } else {
+        format!("{number:.3e}")
+    }
+}
+
 /// Pixels between the panels of a figure's picture, and their grey.
 const GAP: u32 = 4;
 const PAPER: u8 = 255;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_four_digits() {
+        for (value, text) in [
+            (json!(0.123_456_789_012_345_67), "0.1235"),
+            (json!(-1.0 / 3.0), "-0.3333"),
+            (json!(1.0), "1.000"),
+            (json!(0.99996), "1.0000"),
+            (json!(12.345_678), "12.35"),
+            (json!(123_456.7), "123457"),
+            (json!(1.234_567e-5), "1.235e-5"),
+            (json!(9.876_543e7), "9.877e7"),
+            (json!(0.0), "0"),
+            (json!(16_384), "16384"),
+        ] {
+            assert_eq!(shown(&value), text);
+        }
+    }
+}

@@ -198,7 +198,7 @@ pub fn difference(a: &[MomentLevel], b: &[MomentLevel]) -> Difference {
 /// Panics unless a table of expectations names exactly the files of these folders of the test data.
 #[track_caller]
 pub fn expect_every_file_named<T>(table: &BTreeMap<&'static str, T>, folders: &[&str]) {
-    let files: Vec<String> = folders.iter().flat_map(|folder| roughcast_testdata::files_in(folder)).collect();
+    let files = roughcast_testdata::files_in_each(folders);
     let missing: Vec<_> = files.iter().filter(|file| !table.contains_key(file.as_str())).collect();
     let gone = |file: &&&str| !files.iter().any(|other| other == **file) && available(file).is_some();
     let gone: Vec<_> = table.keys().filter(gone).collect();

@@ -50,7 +50,8 @@ fn project(
 // Unit vector, or another where the vector is zero.
 fn unit_or(v: vec3f, other: vec3f) -> vec3f {
     let squared = dot(v, v);
-    return select(other, v * inverseSqrt(squared), squared > 0.0);
+    // Smaller ones may be flushed to zero, whose inverse root is infinite.
+    return select(other, v * inverseSqrt(squared), squared > 1e-37);
 }
 
 // Any unit vector across a unit vector.
@@ -75,15 +76,18 @@ struct LightAt {
     irradiance: vec3f,
 }
 
-// Unit vector towards a light and the irradiance of a surface that faces it, at a point.
+// Square of the distance below which a point light's irradiance does not grow any more.
+const LEAST_SQUARED_DISTANCE: f32 = 1e-12;
+
+// Unit vector towards a light and the irradiance of a surface that faces it, at a point. The vector is zero at the place
+// of a point light, which therefore gives no light there.
 fn light_at(light: SceneLight, position: vec3f) -> LightAt {
     if light.place.w == 0.0 {
         return LightAt(light.place.xyz, light.irradiance);
     }
     let to_light = light.place.xyz - position;
-    // A light within the surface itself lights it from nowhere.
-    let squared = max(dot(to_light, to_light), 1e-30);
-    return LightAt(to_light * inverseSqrt(squared), light.irradiance / squared);
+    let squared = dot(to_light, to_light);
+    return LightAt(unit_or(to_light, vec3f(0.0)), light.irradiance / max(squared, LEAST_SQUARED_DISTANCE));
 }
 
 struct Parts {

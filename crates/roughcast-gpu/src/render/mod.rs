@@ -38,7 +38,7 @@ use crate::{Gpu, GpuError};
 use geometry::upload;
 use pipeline::{BindGroups, create_layouts, create_pipeline};
 use sampling::Sampling;
-use uniforms::{LIGHT_WORDS, VIEW_WORDS, light_words, view_words};
+use uniforms::{VIEW_WORDS, light_words, room_for, view_words};
 
 /// What is rendered to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -209,9 +209,8 @@ impl Drawing {
         scene.camera.validate().map_err(roughcast_scene::render::RenderError::from)?;
         let words = light_words(&scene.lights);
         if self.lights.size() < size_of_val(words.as_slice()) as u64 {
-            // Room for twice as many, so that lights added one by one do not cost a buffer each.
             let mut room = words.clone();
-            room.resize(words.len().next_power_of_two().max(LIGHT_WORDS), 0);
+            room.resize(room_for(words.len(), renderer.gpu.limits.max_storage_buffer_binding_size), 0);
             let lights = renderer.lights(&room).await?;
             let groups = BindGroups { gpu: &renderer.gpu, view_layout: &renderer.view_layout };
             self.scene = groups.scene(&self.view, &lights).await?;

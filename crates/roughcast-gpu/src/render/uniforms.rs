@@ -70,3 +70,42 @@ pub(super) fn light_words(lights: &[Light]) -> Vec<u32> {
     }
     words
 }
+
+/// Words of a buffer for lights of so many words: twice as many where the device's limit allows it, so that lights added
+/// one by one do not cost a buffer each.
+pub(super) fn room_for(words: usize, limit_bytes: u64) -> usize {
+    let limit = usize::try_from(limit_bytes / size_of::<u32>() as u64).unwrap_or(usize::MAX);
+    (2 * words).min(limit - limit % LIGHT_WORDS).max(words)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WEBGPUS_LIMIT: u64 = 128 << 20;
+
+    #[test]
+    fn lights_added_one_by_one_seldom_cost_a_buffer() {
+        let (mut room, mut buffers) = (LIGHT_WORDS, 1);
+        for lights in 1..=1024 {
+            let words = lights * LIGHT_WORDS;
+            if words > room {
+                room = room_for(words, WEBGPUS_LIMIT);
+                buffers += 1;
+                assert!(room >= words + LIGHT_WORDS, "no spare room for a light after {lights}");
+            }
+        }
+        // 1, 4, 10, 22, ... 1534: at the n-th there is room for 3 * 2^(n - 1) - 2.
+        assert_eq!(buffers, 10);
+    }
+
+    #[test]
+    fn spare_room_does_not_refuse_lights_that_fit() {
+        let limit = 100 * LIGHT_WORDS;
+        let bytes = (limit * size_of::<u32>()) as u64;
+        assert_eq!(room_for(limit, bytes), limit);
+        assert_eq!(room_for(limit - LIGHT_WORDS, bytes + 5), limit);
+        // What does not fit stays what it is, to be refused with its own size.
+        assert_eq!(room_for(limit + LIGHT_WORDS, bytes), limit + LIGHT_WORDS);
+    }
+}

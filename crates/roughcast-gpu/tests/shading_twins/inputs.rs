@@ -164,7 +164,18 @@ impl Inputs {
         [&gaussian_words(&gaussian)[..], &view, &light].concat()
     }
 
-    /// The same for GGX.
+    /// A Gaussian's words, and an offset of up to four standard deviations along each axis.
+    pub fn offset_in_gaussian(&mut self) -> Vec<f32> {
+        let [xx, yy] = [self.of_any_size(1e-6, 1.0).abs(), self.of_any_size(1e-6, 1.0).abs()];
+        let xy = self.between(-0.999, 0.999) * (xx * yy).sqrt();
+        let gaussian = slope_gaussian(Slope::default(), Covariance { xx, yy, xy }, &LobeOptions::default());
+        let (along, across) = (self.between(-4.0, 4.0), self.between(-4.0, 4.0));
+        let x = along * xx.sqrt();
+        let y = x * xy / xx + across * (gaussian.determinant / xx).sqrt();
+        [&gaussian_words(&gaussian)[..], &[x, y]].concat()
+    }
+
+    /// The words of GGX, and directions.
     pub fn ggx_lobe(&mut self) -> Vec<f32> {
         let surface = if self.below(2) == 0 {
             ggx_surface_of_normal(self.normal(), &self.options)

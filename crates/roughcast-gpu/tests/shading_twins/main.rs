@@ -78,22 +78,52 @@ fn the_cases_of_every_lobe_see_its_highlight() {
     }
 }
 
+/// Of how many results the tolerance may exceed a hundredth of the value: of how many the function is ill-conditioned.
+fn far_results_allowed(name: &str) -> f64 {
+    match name {
+        // Differences of the moments of steep slopes; one slope in ten is up to 128.
+        "lean_surface" => 0.15,
+        "clean_surface" => 0.08,
+        // Of a third of the texels z follows from x and y, which says little about the z of a steep normal.
+        "ggx_normal" => 0.2,
+        "ggx_surface" => 0.16,
+        // The same after it: a tangent across a normal that is nearly in the surface, a slope of one.
+        "ggx_surface_of_normal" | "ggx_facet" | "off_centre_surface" => 0.015,
+        // Determinants of covariances of rank one, which one case in ten is.
+        "slope_gaussian" => 0.006,
+        "variance_surface" => 1e-4,
+        // Stored normals whose value is the small difference of code and offset.
+        "bump_normal" | "toksvig_normal" | "toksvig_surface" => 0.004,
+        // Flanks of the narrowest lobes: their exponents multiply what half vectors are rounded by.
+        "blinn_phong_lobe" | "beckmann_lobe" | "toksvig_lobe" | "off_centre_lobe" | "lean_lobe"
+        | "clean_lobe" | "variance_lobe" | "gaussian_lobe" => 0.006,
+        "ggx_lobe" => 1e-3,
+        _ => 0.0,
+    }
+}
+
+/// The part of a function's results whose tolerance exceeds a hundredth of the value.
+fn far_results(twin: &Twin) -> f64 {
+    const FAR: f32 = 0.01;
+    let (mut results, mut far) = (0_u32, 0_u32);
+    for case in cases(twin) {
+        let (wanted, allowed) = wanted_and_allowed(twin, &case);
+        for (wanted, allowed) in wanted.iter().zip(&allowed).filter(|(wanted, _)| wanted.abs() > 1e-6) {
+            results += 1;
+            far += u32::from(*allowed > FAR * wanted.abs());
+        }
+    }
+    f64::from(far) / f64::from(results)
+}
+
 #[test]
 fn few_results_may_be_far_off() {
-    // Differences of the moments of steep slopes are ill-conditioned, as is the z of a flat normal that follows from its x and
-    // y: one case in ten has such. Of the lobes it is fewer than one in a hundred.
-    const FAR: f32 = 0.01;
-    const FEW: f64 = 0.2;
+    /// A limit this many times what is measured says nothing.
+    const LOOSEST: f64 = 4.0;
     for twin in twins() {
-        let (mut results, mut far) = (0_u32, 0_u32);
-        for case in cases(&twin) {
-            let (wanted, allowed) = wanted_and_allowed(&twin, &case);
-            for (wanted, allowed) in wanted.iter().zip(&allowed).filter(|(wanted, _)| wanted.abs() > 1e-6) {
-                results += 1;
-                far += u32::from(*allowed > FAR * wanted.abs());
-            }
-        }
-        assert!(f64::from(far) < FEW * f64::from(results), "{}: {far} of {results}", twin.name);
+        let (far, allowed) = (far_results(&twin), far_results_allowed(twin.name));
+        assert!(far <= allowed, "{}: {far} of the results may be far off, and not {allowed}", twin.name);
+        assert!(allowed <= LOOSEST * far, "{}: the limit {allowed} is loose for {far}", twin.name);
     }
 }
 
@@ -103,8 +133,9 @@ fn wrong_twins_are_caught() {
     // The kinds of mistake that one makes: a sign, a factor, a swapped axis, a forgotten normalisation, a wrong form, a
     // missing clamp, and a rounding that is too coarse.
     let mistakes = [
-        ("gaussian_lobe", "- 2.0 * surface.covariance", "+ 2.0 * surface.covariance"),
-        ("lean_lobe", "surface.variance.y * d.x * d.x", "surface.variance.x * d.x * d.x"),
+        ("gaussian_lobe", "d.y - surface.covariance * inverse_xx", "d.y + surface.covariance * inverse_xx"),
+        ("lean_lobe", "rest * rest * (surface.variance.x", "rest * rest * (surface.variance.y"),
+        ("squared_deviations", "1.0 / surface.variance.x", "1.0 / surface.variance.y"),
         ("lean_surface", "fma(-mean.xyx, mean.xyy, moments)", "moments"),
         ("clean_surface", "0.5 * max(trace, 0.0)", "max(trace, 0.0)"),
         ("positive_semidefinite", "sqrt(variances.x) * sqrt(variances.y)", "variances.x * variances.y"),

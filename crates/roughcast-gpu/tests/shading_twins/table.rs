@@ -365,6 +365,13 @@ fn part_twins() -> Vec<Twin> {
             rust: |a, o, _| gaussian_words(&slope_gaussian(slope(a), covariance(&a[2..]), o)).to_vec(),
         },
         Twin {
+            name: "squared_deviations",
+            gives: Gives::Numbers,
+            call: "put(squared_deviations(gaussian(0u), f2(6u)));",
+            arguments: Inputs::offset_in_gaussian,
+            rust: |a, _, _| one(squared_deviations(covariance(&a[2..]), a[5], [a[6], a[7]])),
+        },
+        Twin {
             name: "variance_from_stored",
             gives: Gives::Numbers,
             call: "put(variance_from_stored(f(0u), o().roughness_stored));",

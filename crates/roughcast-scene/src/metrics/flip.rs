@@ -108,7 +108,7 @@ fn toned(x: f32) -> f32 {
 }
 
 /// The factors by which the truth is exposed (HDR-FLIP, section 3.2).
-fn exposures(mut luminances: Vec<f32>) -> Vec<f32> {
+pub(super) fn exposures(mut luminances: Vec<f32>) -> Vec<f32> {
     luminances.retain(|y| y.is_finite());
     luminances.sort_by(f32::total_cmp);
     let Some(brightest) = luminances.last().copied().filter(|y| *y > 0.0) else { return vec![1.0] };

@@ -5,6 +5,8 @@ mod energy;
 mod flicker;
 mod flip;
 mod flip_filters;
+#[cfg(test)]
+mod hdr_flip_reference;
 mod rmse;
 
 pub use energy::energy_error;

@@ -36,6 +36,14 @@ fn slope_gaussian(mean: vec2f, sigma: vec3f, options: LobeOptions) -> SlopeGauss
     return SlopeGaussian(mean, sigma.xy + added, sigma.z, det + added * (trace + added));
 }
 
+// The square of a distance from the mean in standard deviations: of that along x, and of what the regression of y on x
+// leaves. A sum of squares loses no digits along a thin ellipse, whose quadratic form is a small difference of products.
+fn squared_deviations(surface: SlopeGaussian, d: vec2f) -> f32 {
+    let inverse_xx = 1.0 / surface.variance.x;
+    let rest = d.y - surface.covariance * inverse_xx * d.x;
+    return d.x * d.x * inverse_xx + rest * rest * (surface.variance.x / surface.det);
+}
+
 // The lobe for unit directions to the viewer and to the light.
 fn gaussian_lobe(surface: SlopeGaussian, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {
     if !both_above(view, light) {
@@ -44,10 +52,9 @@ fn gaussian_lobe(surface: SlopeGaussian, view: vec3f, light: vec3f, options: Lob
     let h = normalize(view + light);
     // Both sides of the quotient times h.z^2, so that grazing half vectors divide nothing by zero.
     let d = h.xy - surface.mean * h.z;
-    let squares = surface.variance.y * d.x * d.x + surface.variance.x * d.y * d.y;
-    let squared_distance = max(squares - 2.0 * surface.covariance * d.x * d.y, 0.0);
-    let scale = 2.0 * surface.det * h.z * h.z;
-    if !((scale > 0.0) & (squared_distance < LARGEST_EXPONENT * scale)) {
+    let squared_distance = squared_deviations(surface, d);
+    let scale = 2.0 * h.z * h.z;
+    if !((surface.det > 0.0) & (scale > 0.0) & (squared_distance < LARGEST_EXPONENT * scale)) {
         return 0.0;
     }
     let density = exp(-squared_distance / scale) / sqrt(surface.det);

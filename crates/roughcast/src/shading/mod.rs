@@ -40,7 +40,9 @@ pub use clean::{clean_lobe, clean_surface};
 pub use facet::{
     BumpFacet, LEAST_COSINE, LEAST_NORMAL_Z, bump_facet, bump_normal, cosine_lobe, cosine_power, unit_normal,
 };
-pub use gaussian::{LARGEST_EXPONENT, LEAST_VARIANCE, SlopeGaussian, gaussian_lobe, slope_gaussian};
+pub use gaussian::{
+    LARGEST_EXPONENT, LEAST_VARIANCE, SlopeGaussian, gaussian_lobe, slope_gaussian, squared_deviations,
+};
 pub use ggx::{
     GgxSurface, ISOTROPIC, LEAST_STORED_POWER, ggx_lobe, ggx_normal, ggx_surface, ggx_surface_of_normal,
 };

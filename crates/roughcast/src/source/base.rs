@@ -95,7 +95,7 @@ pub(crate) enum UseOfBase {
     Apart,
 }
 
-/// Slope variance per axis of a roughness as stored: `alpha^2 / 2`, DESIGN's table of conventions.
+/// Slope variance per axis of a roughness as stored: `alpha^2 / 2`, as Beckmann's lobe has it.
 pub fn variance_from_stored(value: f32, stored: RoughnessStored) -> f32 {
     let alpha_squared = match stored {
         RoughnessStored::Perceptual => value.powi(4),

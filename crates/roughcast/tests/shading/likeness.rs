@@ -167,7 +167,7 @@ fn the_facets_base_is_what_a_turn_makes_of_a_round_lobe() {
         for (found, base) in found.into_iter().zip([base.xx, base.yy, base.xy]) {
             assert!((found - f64::from(base)).abs() < 1e-4, "{slope:?}: {found} {base}");
         }
-        // DESIGN's words: (1 + B²)² along B, (1 + B²) across.
+        // The variances that the documentation of `BaseLobe` promises: (1 + B²)² along B, (1 + B²) across.
         let squared = slope[0] * slope[0] + slope[1] * slope[1];
         let (along, across) = base.eigenvalues();
         assert!((f64::from(along) / (1.0 + squared).powi(2) - 1.0).abs() < 1e-5);
