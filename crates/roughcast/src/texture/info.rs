@@ -339,7 +339,12 @@ impl TextureInfo {
         if self.base_variance < 0.0 || self.base_variance.is_infinite() {
             return Err(InfoError::Invalid { key: BASE_VARIANCE, value: self.base_variance.to_string() });
         }
-        Ok(self)
+        // Only pbr has the choice, and text does not name it elsewhere: words that do are read like the text.
+        let roughness_texture = match self.layout {
+            Layout::Pbr => self.roughness_texture,
+            _ => before_there_was_a_choice(self.part),
+        };
+        Ok(Self { roughness_texture, ..self })
     }
 }
 
@@ -349,7 +354,15 @@ fn before_there_was_a_choice(part: Part) -> RoughnessTexture {
         Part::OcclusionRoughnessMetallic => RoughnessTexture::Packed,
         _ => RoughnessTexture::Alone,
     }
-}
 
-#[cfg(test)]
-mod tests;
+    #[test]
+    fn a_roughness_layout_of_maps_without_roughness_reads_like_the_text() {
+        let odd = TextureInfo {
+            roughness_texture: RoughnessTexture::Green,
+            ..TextureInfo::new(Layout::Variance, Part::Split)
+        };
+        let read = TextureInfo::from_words(&odd.to_words()).expect("the rest makes sense");
+        assert_eq!(read.roughness_texture, RoughnessTexture::Alone);
+        assert_eq!(TextureInfo::from_pairs(&read.to_pairs()), Ok(read));
+    }
+}
