@@ -354,15 +354,4 @@ fn before_there_was_a_choice(part: Part) -> RoughnessTexture {
         Part::OcclusionRoughnessMetallic => RoughnessTexture::Packed,
         _ => RoughnessTexture::Alone,
     }
-
-    #[test]
-    fn a_roughness_layout_of_maps_without_roughness_reads_like_the_text() {
-        let odd = TextureInfo {
-            roughness_texture: RoughnessTexture::Green,
-            ..TextureInfo::new(Layout::Variance, Part::Split)
-        };
-        let read = TextureInfo::from_words(&odd.to_words()).expect("the rest makes sense");
-        assert_eq!(read.roughness_texture, RoughnessTexture::Alone);
-        assert_eq!(TextureInfo::from_pairs(&read.to_pairs()), Ok(read));
-    }
 }

@@ -75,3 +75,14 @@ fn foreign_metadata_is_named_as_such() {
     assert!(matches!(TextureInfo::from_pairs(&BTreeMap::new()), Err(InfoError::Missing(LAYOUT))));
     assert!(matches!(TextureInfo::from_words(&[0; 11]), Err(InfoError::Missing(LAYOUT))));
 }
+
+#[test]
+fn a_roughness_layout_of_maps_without_roughness_reads_like_the_text() {
+    let odd = TextureInfo {
+        roughness_texture: RoughnessTexture::Green,
+        ..TextureInfo::new(Layout::Variance, Part::Split)
+    };
+    let read = TextureInfo::from_words(&odd.to_words()).expect("the rest makes sense");
+    assert_eq!(read.roughness_texture, RoughnessTexture::Alone);
+    assert_eq!(TextureInfo::from_pairs(&read.to_pairs()), Ok(read));
+}
