@@ -86,7 +86,7 @@ impl TypedValueParser for WordParser {
 }
 
 impl WordParser {
-    /// What a word that is none of ours is called here.
+    /// The word that this program uses for another tool's, as advice.
     fn hint(&self, text: &str) -> Option<String> {
         let lower = text.to_ascii_lowercase();
         let (_, meant) = self

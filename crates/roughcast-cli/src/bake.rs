@@ -257,12 +257,14 @@ pub fn bake_file(input: &Path, output: &Path, args: &Args, stages: &mut Stages) 
     drop(image);
     stages.begin("compressing");
     let Baked { mut arrays, report } = baked;
-    if args.splits(container) && arrays.iter().any(|array| array.layers.len() > 1) {
+    let splits = args.splits(container);
+    if splits && arrays.iter().any(|array| array.layers.len() > 1) {
         mark_set(&mut arrays);
     }
-    let (stored, compression) = stored_of(arrays, args.compress).with_context(named)?;
-    let stored: Vec<Stored> =
-        if args.splits(container) { stored.into_iter().flat_map(Stored::split).collect() } else { stored };
+    let (mut stored, compression) = stored_of(arrays, args.compress).with_context(named)?;
+    if splits {
+        stored = stored.into_iter().flat_map(Stored::split).collect();
+    }
     stages.begin("writing");
     let supercompression = match args.supercompress {
         Supercompress::None => Supercompression::None,

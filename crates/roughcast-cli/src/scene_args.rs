@@ -247,9 +247,7 @@ impl CameraArgs {
         }
         Ok(seen)
     }
-}
 
-impl CameraArgs {
     /// A camera that looks straight down or up has the far side of the scene, -z, at the top of its picture.
     fn camera_at(&self, eye: DVec3, target: DVec3) -> Result<Camera, UsageError> {
         let with = |up| Camera::new(eye, target, up, self.fov.to_radians());

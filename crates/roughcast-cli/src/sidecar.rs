@@ -2,9 +2,8 @@
 
 use std::path::PathBuf;
 
-use roughcast::Named;
 use roughcast::texture::{Packing, TextureInfo, layers_of};
-use roughcast::{SampleType, level_sizes};
+use roughcast::{Bits, Named, SampleType, level_sizes};
 use serde_json::{Value, json};
 
 use crate::output::Stored;
@@ -13,6 +12,7 @@ use crate::output::Stored;
 pub fn sidecar(stored: &[Stored], files: &[PathBuf]) -> Value {
     let first = &stored[0];
     let info = first.info();
+    let pairs = info.to_pairs();
     let (width, height) = first.size();
     let levels = level_sizes(width, height).len();
     // One file for each of what is stored, or one for each level of it.
@@ -35,10 +35,10 @@ pub fn sidecar(stored: &[Stored], files: &[PathBuf]) -> Value {
         "roughness_stored": info.roughness_stored.name(),
         "wrap": info.wrap.name(),
         "normal_range": info.normal_range.name(),
-        "set": (info.set != 0).then(|| format!("{:016x}", info.set)),
+        "set": pairs.get("roughcast.set"),
         "packing": packing(info, sample_type),
         "files": described.map(|(part, files)| file(part, files)).collect::<Vec<_>>(),
-        "conventions": info.to_pairs().get("roughcast.conventions"),
+        "conventions": pairs.get("roughcast.conventions"),
     })
 }
 
@@ -74,6 +74,6 @@ fn file(stored: &Stored, files: &[PathBuf]) -> Value {
 }
 
 fn bits_in_words(sample_type: SampleType) -> &'static str {
-    let bits = roughcast::Bits::all().iter().find(|bits| bits.sample_type() == sample_type);
+    let bits = Bits::all().iter().find(|bits| bits.sample_type() == sample_type);
     bits.expect("each type has a number of bits").name()
 }

@@ -126,12 +126,12 @@ mod tests {
         let odd = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, -1.0, 1.0, f32::MAX];
         for (xx, yy, xy) in odd.iter().flat_map(|x| odd.iter().flat_map(move |y| odd.map(|xy| (*x, *y, xy))))
         {
-            let mended = Covariance { xx, yy, xy }.positive_semidefinite();
-            assert!(mended.xx >= 0.0 && mended.yy >= 0.0, "{mended:?}");
+            let repaired = Covariance { xx, yy, xy }.positive_semidefinite();
+            assert!(repaired.xx >= 0.0 && repaired.yy >= 0.0, "{repaired:?}");
             // Infinity times zero, NaN, allows nothing.
-            let product = f64::from(mended.xx) * f64::from(mended.yy);
+            let product = f64::from(repaired.xx) * f64::from(repaired.yy);
             let limit = if product.is_nan() { 0.0 } else { product.sqrt() };
-            assert!(f64::from(mended.xy).abs() <= limit, "{mended:?} of {:?}", (xx, yy, xy));
+            assert!(f64::from(repaired.xy).abs() <= limit, "{repaired:?} of {:?}", (xx, yy, xy));
         }
         let endless = Covariance { xx: f32::INFINITY, yy: 0.0, xy: 1.0 }.positive_semidefinite();
         assert_eq!(endless, Covariance { xx: f32::INFINITY, yy: 0.0, xy: 0.0 });
