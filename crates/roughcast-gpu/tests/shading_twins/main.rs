@@ -84,7 +84,7 @@ fn far_results_allowed(name: &str) -> f64 {
     match name {
         // Differences of the moments of steep slopes; one slope in ten is up to 128.
         "lean_surface" => 0.15,
-        "clean_surface" => 0.08,
+        "clean_surface" => 0.06,
         // Of a third of the texels z follows from x and y, which says little about the z of a steep normal.
         "ggx_normal" => 0.2,
         "ggx_surface" => 0.16,
@@ -92,9 +92,10 @@ fn far_results_allowed(name: &str) -> f64 {
         "ggx_surface_of_normal" | "ggx_facet" | "off_centre_surface" => 0.015,
         // Determinants of covariances of rank one, which one case in ten is.
         "slope_gaussian" => 0.006,
-        "moment_surface" => 0.004,
+        "moment_surface" => 0.0015,
         // Footprints that are nearly circles have no longer axis.
         "footprint_axes" => 3e-4,
+        "footprint_ratio" => 2e-4,
         // Stored normals whose value is the small difference of code and offset.
         "bump_normal" | "toksvig_normal" | "toksvig_surface" => 0.004,
         // Flanks of the narrowest lobes: their exponents multiply what half vectors are rounded by.
@@ -125,10 +126,6 @@ fn few_results_may_be_far_off() {
     const LOOSEST: f64 = 4.0;
     for twin in twins() {
         let (far, allowed) = (far_results(&twin), far_results_allowed(twin.name));
-        eprintln!("FAR {} {far} {allowed}", twin.name);
-        if true {
-            continue;
-        }
         assert!(far <= allowed, "{}: {far} of the results may be far off, and not {allowed}", twin.name);
         assert!(allowed <= LOOSEST * far, "{}: the limit {allowed} is loose for {far}", twin.name);
     }
