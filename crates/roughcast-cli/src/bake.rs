@@ -24,7 +24,7 @@ use crate::progress::Stages;
 use crate::report::{CompressionError, FileReport};
 use crate::roughness::{Roughness, RoughnessArgs};
 use crate::sidecar::sidecar;
-use crate::target::Target;
+use crate::target::{Target, reader_note};
 use crate::textures::leftover_parts;
 use crate::{UsageError, usage};
 
@@ -265,6 +265,7 @@ pub fn bake_file(input: &Path, output: &Path, args: &Args, stages: &mut Stages) 
     if splits {
         stored = stored.into_iter().flat_map(Stored::split).collect();
     }
+    let reader_note = reader_note(container, stored[0].layer_count(), stored[0].sample_type());
     stages.begin("writing");
     let supercompression = match args.supercompress {
         Supercompress::None => Supercompression::None,
@@ -297,6 +298,7 @@ pub fn bake_file(input: &Path, output: &Path, args: &Args, stages: &mut Stages) 
         report,
         compression,
         green_correlation,
+        reader_note,
         warnings,
         times: Vec::new(),
     })

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result};
 use clap::ValueHint;
 use roughcast::texture::{Layout, MomentLevel, Texture, TextureArray, TextureInfo, decode};
-use roughcast::{BakeOptions, Bits, Image, bake};
+use roughcast::{BakeOptions, Bits, Image, SampleType, bake};
 use roughcast_io::{Decoded, FileInfo};
 use serde_json::{Map as JsonMap, Value, json};
 
@@ -122,7 +122,7 @@ impl Findings {
 
     /// A file that `bake` wrote: what its texels mean, and the slopes that they decode to.
     fn textures(&mut self, args: &Args, array: TextureArray) {
-        self.layout(&array.info);
+        self.layout(&array.info, array.layers[0].sample_type());
         let named = |(texture, channel): (&Texture, usize)| {
             (format!("{}.{}", texture.name, texture.channels[channel]), range_over_levels(texture, channel))
         };
@@ -162,14 +162,19 @@ impl Findings {
         Ok(())
     }
 
-    fn layout(&mut self, info: &TextureInfo) {
+    fn layout(&mut self, info: &TextureInfo, sample_type: SampleType) {
         self.put("layout", json!(info.layout.name()), info.layout.name().to_owned());
         self.put("part", json!(info.part.name()), info.part.name().to_owned());
         if let Some(layer) = name_of_layer(info) {
             self.put("layer", json!(layer), layer.to_owned());
         }
-        self.put("scale", json!(info.scale), info.scale.to_string());
-        self.put("variance_scale", json!(info.variance_scale), info.variance_scale.to_string());
+        let unsigned = !sample_type.is_float();
+        if unsigned && info.layout.uses_scale() {
+            self.put("scale", json!(info.scale), info.scale.to_string());
+        }
+        if unsigned && info.layout.uses_variance_scale() {
+            self.put("variance_scale", json!(info.variance_scale), info.variance_scale.to_string());
+        }
         self.put("base", json!(info.base.name()), info.base.name().to_owned());
         let varies = info.base_variance.is_nan();
         let base_variance =
@@ -192,16 +197,17 @@ impl Findings {
     fn slopes(&mut self, levels: &[MomentLevel]) {
         let mut rows = Vec::new();
         self.lines.push(format!(
-            "{:>5} {:>11} {:>10} {:>10} {:>10} {:>12} {:>12}",
-            "level", "size", "mean x", "mean y", "steepest", "variance x", "variance y"
+            "{:>5} {:>11} {:>10} {:>10} {:>10} {:>10} {:>12} {:>12}",
+            "level", "size", "mean x", "mean y", "rms", "steepest", "variance x", "variance y"
         ));
         for (number, level) in levels.iter().enumerate() {
             let stats = LevelSlopes::of(level);
             self.lines.push(format!(
-                "{number:>5} {:>11} {:>10.5} {:>10.5} {:>10.4} {:>12.4e} {:>12.4e}",
+                "{number:>5} {:>11} {:>10.5} {:>10.5} {:>10.5} {:>10.4} {:>12.4e} {:>12.4e}",
                 format!("{}x{}", level.width, level.height),
                 stats.mean[0],
                 stats.mean[1],
+                stats.rms,
                 stats.steepest,
                 stats.variance[0],
                 stats.variance[1],

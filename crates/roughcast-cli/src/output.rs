@@ -116,6 +116,13 @@ impl Stored {
         }
     }
 
+    pub fn layer_count(&self) -> usize {
+        match self {
+            Stored::Texels(array) => array.layers.len(),
+            Stored::Blocks(blocks) => blocks.layers.len(),
+        }
+    }
+
     /// The type of the texels; blocks are read as 8 bits are.
     pub fn sample_type(&self) -> SampleType {
         match self {

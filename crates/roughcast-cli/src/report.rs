@@ -21,6 +21,8 @@ pub struct FileReport {
     pub report: BakeReport,
     pub compression: Option<CompressionError>,
     pub green_correlation: Option<f64>,
+    /// Which common readers refuse such a file.
+    pub reader_note: Option<String>,
     pub warnings: Vec<String>,
     /// Only filled where they are to be shown.
     pub times: Vec<(&'static str, Duration)>,
@@ -114,10 +116,11 @@ impl FileReport {
                 texels_in_words(self.options.bits),
             ),
             format!(
-                "  slopes: rms {:.4}, steepest {:.3}; scale {}; specular power up to {:.0} ({:.0} in any direction)",
+                "  slopes: rms {:.4}{}, steepest {:.3}{}; specular power up to {:.0} ({:.0} in any direction)",
                 report.rms_slope,
+                self.with_base_in_words(),
                 report.steepest,
-                report.scale,
+                self.scales_in_words(),
                 self.bounds().usable_specular_power(),
                 self.bounds().usable_specular_power_any_direction(),
             ),
@@ -143,6 +146,9 @@ impl FileReport {
                 advice.factor, advice.max_slope
             ));
         }
+        if let Some(note) = &self.reader_note {
+            lines.push(format!("  {note}"));
+        }
         if let Some(error) = self.compression {
             lines.push(format!(
                 "  block compression adds to sigma: {:.5} rms, {:.5} at most",
@@ -150,6 +156,33 @@ impl FileReport {
             ));
         }
         lines
+    }
+
+    /// The root mean square with the base roughness, where it is another.
+    fn with_base_in_words(&self) -> String {
+        let BakeReport { rms_slope, rms_slope_with_base, .. } = self.report;
+        if rms_slope_with_base > rms_slope {
+            format!(" ({rms_slope_with_base:.4} with the base roughness)")
+        } else {
+            String::new()
+        }
+    }
+
+    /// The scales that a shader needs to decode the texels.
+    fn scales(&self) -> [Option<f32>; 2] {
+        let BakeOptions { layout, bits, .. } = self.options;
+        let unsigned = !bits.sample_type().is_float();
+        [
+            (unsigned && layout.uses_scale()).then_some(self.report.scale),
+            (unsigned && layout.uses_variance_scale()).then_some(self.report.variance_scale),
+        ]
+    }
+
+    fn scales_in_words(&self) -> String {
+        let [scale, variance_scale] = self.scales();
+        let scale = scale.map(|scale| format!("; scale {scale}"));
+        let variance_scale = variance_scale.map(|scale| format!("; variance scale {scale}"));
+        scale.into_iter().chain(variance_scale).collect()
     }
 
     /// The report as JSON; its keys are documented in the README.
@@ -188,8 +221,8 @@ impl FileReport {
             "filter": self.options.filter.name(),
             "wrap": self.source.wrap.name(),
             "max_slope": self.source.max_slope,
-            "scale": report.scale,
-            "variance_scale": report.variance_scale,
+            "scale": self.scales()[0],
+            "variance_scale": self.scales()[1],
             "texels": report.texels,
             "clamped": report.counts.clamped,
             "behind": report.counts.behind,
@@ -197,6 +230,7 @@ impl FileReport {
             "non_finite": report.counts.non_finite,
             "steepest_slope": report.steepest,
             "rms_slope": report.rms_slope,
+            "rms_slope_with_base": report.rms_slope_with_base,
             "slope_error": self.bounds().slope,
             "variance_error": self.bounds().variance,
             "usable_specular_power": self.bounds().usable_specular_power(),
@@ -212,6 +246,7 @@ impl FileReport {
             })),
             "roughness_resampled_from": report.roughness_resampled_from.map(|(width, height)| [width, height]),
             "levels": levels,
+            "reader_note": self.reader_note,
             "warnings": self.warnings,
             "seconds": times,
         })

@@ -1,6 +1,6 @@
 //! Where textures are going to be used, and what can be read there.
 
-use roughcast::{BakeOptions, Bits, Blocks, named_enum};
+use roughcast::{BakeOptions, Bits, Blocks, SampleType, named_enum};
 
 use crate::UsageError;
 use crate::output::Container;
@@ -15,6 +15,23 @@ named_enum! {
         /// Everywhere, phones included.
         Any = "any",
     }
+}
+
+/// Which common readers refuse files of this kind: one line, or none.
+///
+/// Sources: the loaders of three.js 0.187 (uploads layer 0 of an uncompressed array), Babylon.js and Godot (read no arrays);
+/// Babylon.js and PlayCanvas (read no 16-bit UNORM); WebGPU and WebGL, which need an extension for it.
+pub fn reader_note(container: Container, layers: usize, sample_type: SampleType) -> Option<String> {
+    if !matches!(container, Container::Ktx2 | Container::Dds) {
+        return None;
+    }
+    let arrays = (layers > 1).then_some(
+        "three.js, Babylon.js and Godot read no array textures (--split writes a file for each layer)",
+    );
+    let sixteen = (sample_type == SampleType::U16)
+        .then_some("browsers and Babylon.js read no 16-bit integers (--bits half or --target web)");
+    let all: Vec<&str> = arrays.into_iter().chain(sixteen).collect();
+    (!all.is_empty()).then(|| all.join("; "))
 }
 
 impl Target {

@@ -248,3 +248,58 @@ fn shaders_of_layouts_are_named() {
         run(["shader", name]).expect_usage_error(words);
     }
 }
+
+#[test]
+fn the_report_says_which_readers_refuse_a_file() {
+    let folder = scratch();
+    let note = |output: &str, options: &[&str]| {
+        let outcome = bake(&map(), &folder.path().join(output), &[options, &["--json"]].concat());
+        outcome.expect_success().json()["reader_note"].clone()
+    };
+    let told = |note: &Value, words: &str| note.as_str().is_some_and(|line| line.contains(words));
+    let both = note("a.ktx2", &[]);
+    assert!(told(&both, "--split") && told(&both, "16-bit"), "{both}");
+    let arrays = note("b.ktx2", &["--bits", "half"]);
+    assert!(told(&arrays, "--split") && !told(&arrays, "16-bit"), "{arrays}");
+    let sixteen = note("c.dds", &["--split"]);
+    assert!(!told(&sixteen, "--split") && told(&sixteen, "16-bit"), "{sixteen}");
+    for (output, options) in
+        [("d.ktx2", &["--as", "clean", "--bits", "8"][..]), ("e.exr", &[]), ("f.ktx2", &["--target", "web"])]
+    {
+        assert!(note(output, options).is_null(), "{output} {options:?}");
+    }
+}
+
+#[test]
+fn scales_and_lengths_are_said_where_they_mean_something() {
+    let folder = scratch();
+    let output = folder.path().join("map.ktx2");
+    let both = |options: &[&str]| {
+        let told = bake(&map(), &output, options).expect_success().stdout;
+        let json = bake(&map(), &output, &[options, &["--json"]].concat()).expect_success().json();
+        (told, json)
+    };
+    let (told, json) = both(&["--as", "lean"]);
+    assert!(told.contains("; scale ") && !told.contains("variance scale"), "{told}");
+    assert!(json["scale"].is_number() && json["variance_scale"].is_null());
+    let (told, json) = both(&["--as", "variance"]);
+    assert!(told.contains("; scale ") && told.contains("; variance scale "), "{told}");
+    assert!(json["scale"].is_number() && json["variance_scale"].is_number());
+    for options in [&["--as", "lean", "--bits", "half"][..], &["--as", "pbr", "--roughness", "0.5"]] {
+        let (told, json) = both(options);
+        assert!(!told.contains("scale"), "{told}");
+        assert!(json["scale"].is_null() && json["variance_scale"].is_null());
+        let output =
+            if options.contains(&"pbr") { folder.path().join("map.normal.ktx2") } else { output.clone() };
+        let shown = run(["info", text(&output)]).expect_success().stdout;
+        assert!(!shown.lines().any(|line| line.starts_with("scale")), "{shown}");
+    }
+    // A roughness of 0.5 is alpha = 0.25, a variance of 1/32 each way.
+    let plain = both(&["--as", "lean"]).1["rms_slope"].as_f64().expect("a number");
+    let (told, json) = both(&["--as", "pbr", "--roughness", "0.5"]);
+    let number = |key: &str| json[key].as_f64().expect("a number");
+    let with_base = (plain * plain + 2.0 / 32.0).sqrt();
+    assert!((number("rms_slope") / plain - 1.0).abs() < 1e-4, "{json}");
+    assert!((number("rms_slope_with_base") / with_base - 1.0).abs() < 1e-4, "{json}");
+    assert!(told.contains(&format!("rms {plain:.4} ({with_base:.4} with the base roughness)")), "{told}");
+}

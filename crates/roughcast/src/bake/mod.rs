@@ -18,7 +18,7 @@ use crate::texture::orient::orient;
 use crate::texture::{self, Base, Bounds, EncoderShape, Layout, Part, Peaks, RoughnessStored, TextureArray};
 use crate::{Image, SourceCounts};
 use allocate::{allocate, level_outs};
-use scales::{advice, largest_variance, set_scales, stores_variance};
+use scales::{advice, largest_variance, set_scales};
 
 /// Why a map could not be baked. One line, with the mend.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -53,8 +53,10 @@ pub struct BakeReport {
     pub variance_scale: f32,
     /// Length of the steepest slope.
     pub steepest: f32,
-    /// Root mean square length of the slopes, base roughness included where it is folded in.
+    /// Root mean square length of the slopes, without any base roughness.
     pub rms_slope: f64,
+    /// The same with the base roughness, where it is folded in.
+    pub rms_slope_with_base: f64,
     /// The moments of the whole map: the last level's.
     pub whole: Moments,
     /// Largest errors of what the textures give back.
@@ -125,8 +127,10 @@ pub fn bake_reusing(
     // A scale that is to be found needs a look at every slope first; otherwise one pass does it all.
     let looked_at = (!sample_type.is_float() && options.scale == ScaleChoice::Auto)
         .then(|| survey(&source.slopes_only()));
-    let largest_variance =
-        stores_variance(options.layout).then(|| largest_variance(&source.slopes_only(), pyramid_options));
+    let largest_variance = options
+        .layout
+        .uses_variance_scale()
+        .then(|| largest_variance(&source.slopes_only(), pyramid_options));
     set_scales(&mut info, looked_at.as_ref(), largest_variance, options);
     let mut arrays = allocate(textures, &info, options, (image.width(), image.height()));
     let shape = EncoderShape {
@@ -143,13 +147,17 @@ pub fn bake_reusing(
         slope: finest.steepest,
         variance: largest_variance.unwrap_or(finest.max_variance),
     };
+    let whole = f64::from(built.whole.xx) + f64::from(built.whole.yy);
+    // A texel of level 0 is one slope, so that all variance there is the base's.
+    let base = finest.mean_variance_x + finest.mean_variance_y;
     let report = BakeReport {
         counts: built.counts,
         texels: image.width() as u64 * image.height() as u64,
         scale: info.scale,
         variance_scale: info.variance_scale,
         steepest: finest.steepest,
-        rms_slope: f64::from(built.whole.xx + built.whole.yy).sqrt(),
+        rms_slope: (whole - base).max(0.0).sqrt(),
+        rms_slope_with_base: whole.sqrt(),
         whole: built.whole,
         bounds: texture::bounds_of_shape(&info, sample_type, shape, &peaks),
         advice: looked_at.and_then(|looked_at| advice(&info, sample_type, shape, &looked_at, &peaks)),

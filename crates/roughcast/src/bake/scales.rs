@@ -16,11 +16,6 @@ const STEEP_COST: f32 = 4.0;
 /// A flat map has no slopes to scale by; slopes below this cannot be told from it.
 const SMALLEST_SCALE: f32 = 1.0 / 1024.0;
 
-/// Whether a layout holds variances or deviations themselves, which need a scale of their own.
-pub(super) fn stores_variance(layout: Layout) -> bool {
-    matches!(layout, Layout::Schilling | Layout::SchillingIsotropic | Layout::Variance)
-}
-
 /// The largest variance of any level, which is only known when all have been made.
 pub(super) fn largest_variance(source: &MapSource<'_>, options: PyramidOptions) -> f32 {
     let sizes = level_sizes(source.width(), source.height());
@@ -55,7 +50,7 @@ pub(super) fn set_scales(
 
 /// The smallest scale that holds every slope and, where a layout stores them, every second moment.
 fn smallest_scale(layout: Layout, peaks: &Peaks) -> f32 {
-    let needed = if stores_variance(layout) { peaks.component } else { peaks.second().sqrt() };
+    let needed = if layout.uses_variance_scale() { peaks.component } else { peaks.second().sqrt() };
     needed.max(SMALLEST_SCALE)
 }
 

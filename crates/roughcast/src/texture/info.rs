@@ -80,6 +80,20 @@ impl Layout {
             | Layout::Moments => &[Part::Whole],
         }
     }
+
+    /// Whether unsigned texels of the layout hold slopes or their moments, over [`TextureInfo::scale`]. Floats hold the values
+    /// themselves.
+    pub const fn uses_scale(self) -> bool {
+        matches!(
+            self,
+            Layout::Lean | Layout::Clean | Layout::Schilling | Layout::SchillingIsotropic | Layout::Variance
+        )
+    }
+
+    /// Whether they hold variances or standard deviations, over [`TextureInfo::variance_scale`].
+    pub const fn uses_variance_scale(self) -> bool {
+        matches!(self, Layout::Schilling | Layout::SchillingIsotropic | Layout::Variance)
+    }
 }
 
 named_enum! {
