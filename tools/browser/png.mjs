@@ -12,19 +12,23 @@ function chunk(type, data) {
   return bytes;
 }
 
-/** Writes RGBA floats, row 0 at the bottom, of which `white` becomes white, with a gamma of 2.2. */
-export function writePng(path, pixels, { width, height }, white) {
-  const rows = Buffer.alloc(height * (1 + 3 * width));
-  for (let y = 0; y < height; y++) {
-    for (let x = 0; x < width; x++) {
+/**
+ * Writes pictures side by side. Each is RGBA floats, row 0 at the bottom, of which `white` becomes white, with a gamma of 2.2.
+ */
+export function writePng(path, pictures, { width, height }, white) {
+  const stride = 1 + 3 * width * pictures.length;
+  const rows = Buffer.alloc(height * stride);
+  pictures.forEach((pixels, place) => {
+    for (let i = 0; i < width * height; i++) {
+      const [x, y] = [place * width + (i % width), height - 1 - Math.floor(i / width)];
       for (let channel = 0; channel < 3; channel++) {
-        const value = pixels[4 * ((height - 1 - y) * width + x) + channel] / white;
-        rows[y * (1 + 3 * width) + 1 + 3 * x + channel] = 255 * Math.min(Math.max(value, 0), 1) ** (1 / 2.2);
+        const value = Math.min(Math.max(pixels[4 * i + channel] / white, 0), 1);
+        rows[y * stride + 1 + 3 * x + channel] = 255 * value ** (1 / 2.2);
       }
     }
-  }
+  });
   const header = Buffer.from([0, 0, 0, 0, 0, 0, 0, 0, 8, 2, 0, 0, 0]);
-  header.writeUInt32BE(width, 0);
+  header.writeUInt32BE(width * pictures.length, 0);
   header.writeUInt32BE(height, 4);
   const signature = Buffer.from([0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a]);
   const end = Buffer.alloc(0);

@@ -1,74 +1,165 @@
-// Baked textures in three.js, in headless Chromium, against `roughcast render`. CONTRIBUTING.md says how to run it.
+// Baked textures in three.js, in headless Chromium, against `roughcast render` of the same files. CONTRIBUTING.md says how to run it.
 
 import assert from 'node:assert/strict';
-import { mkdirSync, mkdtempSync, rmSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { after, before, describe, test } from 'node:test';
+import { after, before, test } from 'node:test';
 import { openPage } from './browser.mjs';
 import { difference, within } from './compare.mjs';
 import { writePng } from './png.mjs';
 import { readExr, roughcast } from './program.mjs';
-import { job, renderArguments, SIZE } from './scene.mjs';
+import { fresnelRatios, job, renderArguments, SIZE } from './scene.mjs';
 import { serve } from './server.mjs';
 
 const here = (path) => new URL(path, import.meta.url).pathname;
 const MAP = here('../../testdata/crops/rock020_normal_256.jpg');
-/** Pictures of both and of their difference, to look at. */
+// Pictures to look at, three in a file: three.js, ours, and their difference times DIFFERENCE.
 const PICTURES = here('../../target/browser');
-const baked = mkdtempSync(join(tmpdir(), 'roughcast-browser-'));
+const DIFFERENCE = 10;
 
-const TOLERANCE = { near: { rms: 0.01, worst: 0.05 }, far: { rms: 0.02, worst: 0.05 } };
+// What SwiftShader, which draws in software, may differ by, as parts of the picture (see compare.mjs). Vertices lie on a grid of 1/16 of a
+// pixel: shifting our own near picture by that much changes it by 0.006 (rms) and 0.02 (worst). Levels of detail come from a logarithm that is
+// interpolated between powers of two, and from differences within blocks of 2x2 pixels: a shift of 0.05 levels changes our far picture by
+// 0.007 and 0.05.
+const TOLERANCE = { near: { rms: 0.006, worst: 0.03 }, far: { rms: 0.01, worst: 0.06 } };
+// A wrong picture must not pass by chance or fail by a hair.
+const CLEARLY = 4;
+// Less contrast than this would be a picture that shows nothing.
+const LEAST_CONTRAST = 0.2;
 
+const SPECULAR_POWER = 64;
+const ROUGHNESS = 0.3;
+const VIEWS = ['near', 'far'];
+
+// What was baked: the file for `roughcast render`, and the textures for three.js.
+const PBR = {
+  albedo: 0,
+  map: 'pbr.normal.ktx2',
+  textures: { normal: 'pbr.normal.ktx2', roughness: 'pbr.roughness.ktx2' },
+  material: 'pbr',
+};
+const BLOCKS = { ...PBR, map: 'blocks.normal.ktx2', textures: { normal: 'blocks.normal.ktx2', roughness: 'blocks.roughness.ktx2' } };
+const LEAN = {
+  albedo: 0.1,
+  map: 'lean.lean1.ktx2',
+  textures: { lean1: 'lean.lean1.ktx2', lean2: 'lean.lean2.ktx2' },
+  material: 'lean',
+};
+const CLEAN = { albedo: 0.1, map: 'clean.ktx2', textures: { clean: 'clean.ktx2' }, material: 'clean' };
+const SUBJECTS = { pbr: PBR, 'pbr in blocks': BLOCKS, 'split lean': LEAN, clean: CLEAN };
+
+const folder = mkdtempSync(join(tmpdir(), 'roughcast-browser-'));
 let server;
 let page;
 
 before(async () => {
   mkdirSync(PICTURES, { recursive: true });
-  roughcast('bake', MAP, '-o', join(baked, 'rock.ktx2'), '--as', 'pbr', '--roughness', '0.3');
-  server = await serve({ '/': here('page'), '/three/': here('node_modules/three'), '/baked/': baked });
+  const bake = (output, ...others) => roughcast('bake', MAP, '-o', join(folder, output), '--green', 'down', ...others);
+  bake('pbr.ktx2', '--as', 'pbr', '--roughness', ROUGHNESS);
+  bake('blocks.ktx2', '--as', 'pbr', '--roughness', ROUGHNESS, '--compress', 'bc');
+  bake('red.ktx2', '--as', 'pbr', '--roughness', ROUGHNESS, '--roughness-layout', 'r');
+  bake('lean.ktx2', '--target', 'web', '--sidecar');
+  bake('clean.ktx2', '--as', 'clean', '--target', 'web', '--sidecar', '--supercompress', 'zstd');
+  server = await serve({ '/': here('page'), '/three/': here('node_modules/three'), '/baked/': folder });
   page = await openPage(server.url);
 });
 
 after(async () => {
   await page?.close();
   server?.close();
-  rmSync(baked, { recursive: true });
+  rmSync(folder, { recursive: true });
 });
 
-/** Renders with the program. */
-function ours(view, map, appearance, ...others) {
-  const output = join(baked, 'ours.exr');
-  roughcast(...renderArguments(view, join(baked, map), output, appearance), ...others);
-  return readExr(output).pixels;
-}
-
-function keep(name, got, reference) {
-  const white = reference.reduce((most, value, i) => (i % 4 === 3 ? most : Math.max(most, value)), 0) * 0.8;
-  const absolute = got.map((value, i) => 10 * Math.abs(value - reference[i]));
-  for (const [what, pixels] of Object.entries({ 'three.js': got, ours: reference, 'difference-10-times': absolute })) {
-    writePng(join(PICTURES, `${name}.${what}.png`), pixels, SIZE, white);
+/** What our renderer makes of a subject; each picture is rendered once. */
+function ours(subject, view) {
+  const key = `${subject.map} ${view}`;
+  if (!references.has(key)) {
+    const output = join(folder, 'ours.exr');
+    const power = subject.material === 'pbr' ? [] : ['--specular-power', SPECULAR_POWER];
+    roughcast(...renderArguments(view, subject.albedo, join(folder, subject.map), output), ...power);
+    const { pixels } = readExr(output);
+    references.set(key, subject.material === 'pbr' ? withFresnelOfThree(pixels) : pixels);
   }
+  return references.get(key);
+}
+const references = new Map();
+
+const withFresnelOfThree = (pixels) => pixels.map((value, i) => (i % 4 === 3 ? value : value * FRESNEL_RATIOS[Math.floor(i / 4)]));
+const FRESNEL_RATIOS = fresnelRatios();
+
+/** What three.js is told to draw. */
+function drawing(subject, view, changes = {}) {
+  const { material, albedo, textures } = { ...subject, ...changes };
+  const urls = Object.fromEntries(Object.entries(textures).map(([name, file]) => [name, `/baked/${file}`]));
+  const shader = material === 'pbr' ? {} : shaderInputs(material);
+  return job(view, albedo, { material, ...shader, ...changes, textures: urls });
 }
 
-async function compare(name, view, drawn, reference) {
-  const got = await page.draw(drawn);
-  keep(`${name}-${view}`, got, reference);
+function shaderInputs(model) {
+  const library = roughcast('shader', model, 'reflectance', '--lang', 'glsl');
+  const { packing } = JSON.parse(readFileSync(join(folder, `${model}.json`), 'utf8'));
+  const options = { specular_power: SPECULAR_POWER, form: 0, base: 0, repair: 0, base_in_maps: 0, roughness_stored: 0 };
+  return { library, packing, options };
+}
+
+/** Draws, compares, and keeps the pictures. */
+async function compare(name, subject, view, changes) {
+  const reference = ours(subject, view);
+  const got = await page.draw(drawing(subject, view, changes));
+  const white = 0.5 * reference.reduce((most, value, i) => (i % 4 === 3 ? most : Math.max(most, value)), 0);
+  const scaled = got.map((value, i) => DIFFERENCE * Math.abs(value - reference[i]));
+  writePng(join(PICTURES, `${name.replaceAll(' ', '-')}-${view}.png`), [got, reference, scaled], SIZE, white);
   const found = difference(got, reference);
-  console.log(name, view, found);
+  console.log(`${name}, ${view}: rms ${found.rms.toFixed(4)}, worst ${found.worst.toFixed(4)}, contrast ${found.contrast.toFixed(2)}`);
   return found;
 }
 
-const PBR = { normal: '/baked/rock.normal.ktx2', roughness: '/baked/rock.roughness.ktx2' };
-for (const view of ['near', 'far']) {
-  test(`matte ${view}`, async () => {
-    const reference = ours(view, 'rock.normal.ktx2', 'matte');
-    const found = await compare('matte', view, job(view, 'matte', { normal: PBR.normal }), reference);
-    assert(within(found, TOLERANCE[view]));
-  });
-  test(`pbr ${view}`, async () => {
-    const reference = ours(view, 'rock.normal.ktx2', 'shiny', '--form', 'normalised');
-    const found = await compare('pbr', view, job(view, 'pbr', PBR), reference);
-    assert(within(found, TOLERANCE[view]));
+for (const [name, subject] of Object.entries(SUBJECTS)) {
+  for (const view of VIEWS) {
+    test(`${name}, ${view}: three.js draws what roughcast render draws`, async () => {
+      const found = await compare(name, subject, view);
+      assert(found.contrast >= LEAST_CONTRAST, `contrast ${found.contrast}`);
+      assert(within(found, TOLERANCE[view]), JSON.stringify(found));
+    });
+  }
+}
+
+test('pbr with tangents in the geometry needs no other sign of y', async () => {
+  const found = await compare('pbr with tangents', PBR, 'near', { tangents: 'attribute' });
+  assert(within(found, TOLERANCE.near), JSON.stringify(found));
+});
+
+// What pages get wrong, each in a view that shows it.
+const WRONG = [
+  ['pbr without roughness', PBR, 'far', { textures: { normal: PBR.textures.normal } }],
+  ['pbr with roughness in red alone', PBR, 'far', { textures: { ...PBR.textures, roughness: 'red.roughness.ktx2' } }],
+  ['pbr with green flipped', PBR, 'near', { flipGreen: true }],
+  ['pbr in blocks with green flipped', BLOCKS, 'near', { flipGreen: true }],
+  ['lean with its files exchanged', LEAN, 'near', { textures: { lean1: LEAN.textures.lean2, lean2: LEAN.textures.lean1 } }],
+  ...Object.entries({ pbr: PBR, 'pbr in blocks': BLOCKS, lean: LEAN, clean: CLEAN }).map(([name, subject]) => [
+    `${name} with level 0 alone`, subject, 'far', { sampling: 'level 0 alone' },
+  ]),
+  // KTX2Loader sets nearest filters on everything but blocks.
+  ...Object.entries({ pbr: PBR, lean: LEAN, clean: CLEAN }).map(([name, subject]) => [
+    `${name} with the loader's filters`, subject, 'near', { sampling: 'as loaded' },
+  ]),
+];
+
+for (const [name, subject, view, changes] of WRONG) {
+  test(`${name}, ${view}: the difference is seen`, async () => {
+    const found = await compare(name, subject, view, changes);
+    assert(found.rms > CLEARLY * TOLERANCE[view].rms, JSON.stringify(found));
   });
 }
+
+test('a difference is measured', () => {
+  const reference = Float32Array.of(3, 4, 0, 9, 3, 4, 0, 9);
+  assert.equal(difference(reference, reference).rms, 0);
+  const { rms, worst } = difference(Float32Array.of(3, 4, 0, 0, 3, 4, 1, 0), reference);
+  assert(Math.abs(rms - Math.sqrt(1 / 50)) < 1e-12 && worst === 0.25);
+  assert(within({ rms: 0.1, worst: 0.2 }, { rms: 0.1, worst: 0.2 }));
+  assert(!within({ rms: 0.1, worst: 0.3 }, { rms: 0.1, worst: 0.2 }) && !within({ rms: 0.2, worst: 0.1 }, { rms: 0.1, worst: 0.2 }));
+  assert.throws(() => difference(Float32Array.of(NaN, 4, 0, 9, 3, 4, 0, 9), reference));
+  assert.throws(() => difference(reference.slice(4), reference));
+});
