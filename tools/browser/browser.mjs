@@ -5,14 +5,20 @@ import { chromium } from 'playwright-core';
 
 const EXECUTABLE = process.env.CHROMIUM ?? '/usr/bin/chromium';
 
-/** Opens the page. Resolves to `{ draw, version, close }`; `draw(job)` resolves to the RGBA floats of page/draw.js. */
+// Chromium's remark that reading pixels back waits for them.
+const EXPECTED = /GPU stall due to ReadPixels/;
+
+/**
+ * Opens the page. Resolves to `{ draw, complaints, close }`: `draw(job)` resolves to the RGBA floats of page/draw.js, `complaints()` is what
+ * the browser has logged.
+ */
 export async function openPage(url) {
   if (!existsSync(EXECUTABLE)) throw new Error(`${EXECUTABLE} is missing: apt-get install chromium, or name another in CHROMIUM`);
   // Chromium's own sandbox refuses to run as root and in most containers. The page is ours, and it loads nothing from elsewhere.
   const browser = await chromium.launch({ executablePath: EXECUTABLE, args: ['--no-sandbox', '--enable-unsafe-swiftshader'] });
   const page = await browser.newPage();
   const messages = [];
-  page.on('console', (message) => messages.push(message.text()));
+  page.on('console', (message) => EXPECTED.test(message.text()) || messages.push(message.text()));
   page.on('pageerror', (error) => messages.push(String(error)));
   page.on('requestfailed', (request) => messages.push(`${request.url()}: ${request.failure()?.errorText}`));
   page.on('response', (response) => response.ok() || messages.push(`${response.url()}: ${response.status()}`));
@@ -29,5 +35,5 @@ export async function openPage(url) {
       throw new Error(`${error.message}\n${messages.join('\n')}`);
     }
   };
-  return { draw, version: browser.version(), close: () => browser.close() };
+  return { draw, complaints: () => messages, close: () => browser.close() };
 }

@@ -13,15 +13,17 @@ renderer.debug.onShaderError = (gl, program, vertex, fragment) => {
 const shaderErrors = [];
 loader.detectSupport(renderer);
 
-// The square of `roughcast render --scene plane`: from -1 to 1 on the ground, u to +x and v to +z, so that row 0 of a file is at -z.
-function square(repeats, tangents) {
+// The square of `roughcast render --scene plane`: from -1 to 1 on the ground, u to +x and, as in glTF, v down the map, to +z, so that row 0 of a
+// file is at -z. `v` is 'up' for the coordinates that three.js's own geometries have, which textures.js mirrors.
+function square({ repeats, tangents, v = 'down' }) {
+  const sign = v === 'up' ? -1 : 1;
   const corners = [[-1, -1], [-1, 1], [1, 1], [1, -1]];
   const attribute = (size, of) => new THREE.Float32BufferAttribute(corners.flatMap(of), size);
   const geometry = new THREE.BufferGeometry();
   geometry.setIndex([0, 1, 2, 0, 2, 3]);
   geometry.setAttribute('position', attribute(3, ([x, z]) => [x, 0, z]));
   geometry.setAttribute('normal', attribute(3, () => [0, 1, 0]));
-  geometry.setAttribute('uv', attribute(2, ([x, z]) => [(x / 2 + 0.5) * repeats, (z / 2 + 0.5) * repeats]));
+  geometry.setAttribute('uv', attribute(2, ([x, z]) => [(x / 2 + 0.5) * repeats, sign * (z / 2 + 0.5) * repeats]));
   // As glTF has them: the bitangent cross(normal, tangent) * w points up the texture, to -z.
   if (tangents === 'attribute') geometry.setAttribute('tangent', attribute(4, () => [1, 0, 0, 1]));
   return geometry;
@@ -52,16 +54,16 @@ function packed(floats) {
 /**
  * Renders one picture.
  *
- * `job`: `material` (a name in materials.js), `textures` (name: URL), `sampling` (see textures.js), `view` (eye, target, fov in degrees,
- * width, height), `repeats`, `light` (towards, irradiance), and what the material needs. Returns RGBA floats, row 0 at the bottom, in base64.
+ * `job`: `material` (a name in materials.js), `textures` (name: URL), `sampling` and `v` (see textures.js), `view` (eye, target, fov in
+ * degrees, width, height), `repeats`, `tangents`, `light` (towards, irradiance), and what the material needs. Returns RGBA floats, row 0 at the bottom, in base64.
  */
 export async function draw(job) {
   const textures = {};
-  for (const [name, url] of Object.entries(job.textures)) textures[name] = await loadTexture(url, job.sampling);
+  for (const [name, url] of Object.entries(job.textures)) textures[name] = await loadTexture(url, job);
   const material = MATERIALS[job.material](textures, job);
 
   const scene = new THREE.Scene();
-  scene.add(new THREE.Mesh(square(job.repeats, job.tangents), material), lightOf(job.light));
+  scene.add(new THREE.Mesh(square(job), material), lightOf(job.light));
   const { width, height } = job.view;
   const target = new THREE.WebGLRenderTarget(width, height, { type: THREE.FloatType });
   renderer.setRenderTarget(target);

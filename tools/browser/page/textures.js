@@ -20,9 +20,11 @@ const SAMPLING = {
   },
 };
 
-export async function loadTexture(url, sampling = 'right') {
+/** `v` is 'up' where the geometry's texture coordinates grow upwards: row 0 of a file is the top, and nothing is flipped on upload. */
+export async function loadTexture(url, { sampling = 'right', v = 'down' }) {
   const texture = await loader.loadAsync(url);
   texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
+  if (v === 'up') texture.repeat.y = -1;
   SAMPLING[sampling](texture);
   texture.needsUpdate = true;
   return texture;
