@@ -6,7 +6,7 @@ use std::sync::Arc;
 use anyhow::{Context, Result};
 use clap::Args;
 use glam::DVec3;
-use roughcast::shading::{BaseLobe, Form, LobeOptions, Material, Repair};
+use roughcast::shading::{BaseLobe, FootprintModel, Form, LobeOptions, Masking, Material, Repair};
 use roughcast::{Bits, Lobe};
 use roughcast_scene::render::{MAX_PIXELS, MAX_SAMPLES};
 use roughcast_scene::{
@@ -285,9 +285,20 @@ pub struct ShadingArgs {
     #[arg(long, value_name = "S", default_value_t = 256.0, value_parser = specular_power)]
     pub specular_power: f32,
 
-    /// The lobes' form: as the LEAN text has them, or normalised as microfacet distributions
-    #[arg(long, default_value = "paper", value_parser = one_of::<Form>())]
+    /// The terms around the lobe: a microfacet BRDF with shadowing and masking, or without them, normalised or as the LEAN paper
+    /// has it
+    #[arg(long, default_value = "physical", value_parser = one_of::<Form>())]
     pub form: Form,
+
+    /// Whose slopes shadow and mask in the physical form: the base roughness', as bump mapping shows it, or base and bumps', as
+    /// displaced geometry does
+    #[arg(long, default_value = "base", value_parser = one_of::<Masking>())]
+    pub masking: Masking,
+
+    /// The variance that counts as roughness: what is under the pixel, or all that is under the texture filter, as the papers
+    /// have it
+    #[arg(long, default_value = "corrected", value_parser = one_of::<FootprintModel>())]
+    pub footprint: FootprintModel,
 
     /// The base roughness in the plane of the surface: round, as LEAN has it, or as the facet's own lobe looks there
     #[arg(long = "base-lobe", value_name = "BASE", default_value = "plane", value_parser = one_of::<BaseLobe>())]
@@ -326,6 +337,8 @@ impl ShadingArgs {
             form: self.form,
             base: self.base,
             repair: self.repair,
+            masking: self.masking,
+            footprint: self.footprint,
             ..LobeOptions::default()
         }
     }

@@ -77,7 +77,7 @@ fn stage(distance: f64) -> Stage {
     Stage {
         map: random_ridges(512, 0.25, 13),
         scene: scene(Shape::Torus(Torus::default()), 4.0, camera, DVec3::new(0.5, 1.0, 0.6)),
-        options: LobeOptions { specular_power: SPECULAR_POWER, ..LobeOptions::default() },
+        options: LobeOptions::published(SPECULAR_POWER),
         bits: Bits::Eight,
         size: (pixels, pixels),
     }

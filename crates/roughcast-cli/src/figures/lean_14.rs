@@ -133,7 +133,7 @@ fn stage(size: (u32, u32), edge_slope: f64) -> Stage {
     Stage {
         map: raised_checker(512, 16, 4.0, edge_slope),
         scene: scene(shape, 16.0, camera, DVec3::new(0.05, 0.35, -1.0)),
-        options: LobeOptions { specular_power: SPECULAR_POWER, ..LobeOptions::default() },
+        options: LobeOptions::published(SPECULAR_POWER),
         bits: Bits::Sixteen,
         size,
     }

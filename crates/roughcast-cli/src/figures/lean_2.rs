@@ -171,11 +171,5 @@ fn stage(map: Pattern) -> Stage {
     let camera = Camera { eye, target: DVec3::ZERO, up: DVec3::Y, vertical_fov: 0.18 };
     let mut scene = scene(Shape::Sphere(Sphere), 2.0, camera, eye);
     scene.material.albedo = [0.02; 3];
-    Stage {
-        map,
-        scene,
-        options: LobeOptions { specular_power: SPECULAR_POWER, ..LobeOptions::default() },
-        bits: Bits::Sixteen,
-        size: SIZE,
-    }
+    Stage { map, scene, options: LobeOptions::published(SPECULAR_POWER), bits: Bits::Sixteen, size: SIZE }
 }

@@ -79,7 +79,7 @@ fn stage() -> Stage {
     Stage {
         map: random_bumps(512, 0.15, 5),
         scene,
-        options: LobeOptions { specular_power: SPECULAR_POWER, ..LobeOptions::default() },
+        options: LobeOptions::published(SPECULAR_POWER),
         bits: Bits::Sixteen,
         size: SIZE,
     }

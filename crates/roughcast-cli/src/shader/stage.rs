@@ -28,9 +28,9 @@ pub fn calls(model: Shading) -> Calls {
         Shading::Phong | Shading::BlinnPhong | Shading::Beckmann | Shading::OffCentre => {
             ("bump_normal(lean1, packing)", "normal, options")
         }
-        Shading::Lean => ("bump_normal(lean1, packing)", "lean1, lean2, packing, options"),
-        Shading::Clean => ("slope_normal(surface.mean)", "clean, packing, options"),
-        Shading::Variance => ("slope_normal(surface.mean)", "variance, packing, options"),
+        Shading::Lean => ("bump_normal(lean1, packing)", "lean1, lean2, ratio, packing, options"),
+        Shading::Clean => ("slope_normal(surface.mean)", "clean, ratio, packing, options"),
+        Shading::Variance => ("slope_normal(surface.mean)", "variance, ratio, packing, options"),
         Shading::Toksvig => ("toksvig_normal(toksvig, packing)", "toksvig, packing, options"),
         Shading::Ggx => ("ggx_normal(bump, packing)", "bump, roughness.x, anisotropy, packing, options"),
     };
@@ -64,6 +64,7 @@ struct Parameters {
     ambient: vec4f,
     specular: vec4f,
     irradiance: vec4f,
+    max_anisotropy: f32,
 }
 
 @group(0) @binding(0) var<uniform> parameters: Parameters;
@@ -115,6 +116,19 @@ pub fn fragment_shaders(models: &[Shading]) -> String {
     code
 }
 
+/// What the pixel sees of the variance under the sampler, which tells nobody its anisotropy.
+fn pixel_ratio(mean: &str, texture: &Texture) -> String {
+    format!(
+        "    let mean = {mean}.xy * packing.slope.x + packing.slope.y;
+    let size = vec2f(textureDimensions({}));
+    let axes = footprint_axes(dpdx(uv) * size, dpdy(uv) * size);
+    let filtered = hardware_variances(axes, parameters.max_anisotropy, 0.0);
+    let ratio = footprint_ratio(axes, filtered, dpdx(mean), dpdy(mean), options);
+",
+        texture.variable
+    )
+}
+
 fn fragment_shader(model: Shading) -> String {
     let name = identifier(model);
     let calls = calls(model);
@@ -126,6 +140,9 @@ fn fragment_shader(model: Shading) -> String {
             "    let {variable} = textureSample({}, linear_sampler, uv{layer});\n",
             texture.variable
         );
+    }
+    if let Some(input) = model.mean_input() {
+        body += &pixel_ratio(calls.texels[input], texture_of(model.inputs(Lobe::Anisotropic)[input].layer).0);
     }
     for (value, call) in calls.in_order() {
         body += &format!("    let {value} = {call};\n");

@@ -19,6 +19,7 @@ struct SceneLight {
 struct Sampling {
     detail: f32,            // levels added to the hardware's; or the level, where it is fixed
     roughness_channel: u32, // of the second texture
+    max_anisotropy: f32,    // taps along the footprint; 0 where only the nearest texel is taken
 }
 
 @group(0) @binding(0) var<uniform> scene_view: SceneView;

@@ -120,7 +120,8 @@ impl BindGroups<'_> {
         let packing = textures.packing.to_array();
         let packing =
             upload(self.gpu, "the packing of textures", bytemuck::cast_slice(&packing), usage).await?;
-        let detail = [sampling.value.to_bits(), textures.roughness_channel, 0, 0];
+        let taps = f32::from(sampling.max_anisotropy);
+        let detail = [sampling.value.to_bits(), textures.roughness_channel, taps.to_bits(), 0];
         let detail = upload(self.gpu, "the sampling", bytemuck::cast_slice(&detail), usage).await?;
         let descriptor = sampling.descriptor();
         let sampler = self.gpu.checked("a sampler", |device| device.create_sampler(&descriptor)).await?;

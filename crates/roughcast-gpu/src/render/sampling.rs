@@ -20,6 +20,8 @@ pub(super) struct Sampling {
     pub detail: Detail,
     /// The level, or what is added to it.
     pub value: f32,
+    /// Taps along the footprint that the sampler may take; 0 for the nearest texel alone.
+    pub max_anisotropy: u16,
     filter: Filter,
     wrap: Wrap,
 }
@@ -43,7 +45,12 @@ impl Sampling {
             Some(level) => (Detail::Fixed, if level > 0.0 { level.min(LAST_LEVEL) } else { 0.0 }),
             None => (Detail::Derivatives, mip_bias.clamp(BIASES.0, BIASES.1)),
         };
-        Ok(Self { detail, value: value as f32, filter, wrap })
+        let max_anisotropy = match (filter, detail) {
+            (Filter::Nearest, _) => 0,
+            (Filter::Anisotropic, Detail::Derivatives) => MAX_TAPS,
+            _ => 1,
+        };
+        Ok(Self { detail, value: value as f32, max_anisotropy, filter, wrap })
     }
 
     /// Samplers with anisotropy need derivatives; at a fixed level they are trilinear ones, as on the CPU.
@@ -57,7 +64,6 @@ impl Sampling {
             Filter::Nearest => (wgpu::FilterMode::Nearest, wgpu::MipmapFilterMode::Nearest),
             _ => (wgpu::FilterMode::Linear, wgpu::MipmapFilterMode::Linear),
         };
-        let anisotropic = self.filter == Filter::Anisotropic && self.detail == Detail::Derivatives;
         wgpu::SamplerDescriptor {
             label: Some("maps"),
             address_mode_u: address,
@@ -65,7 +71,7 @@ impl Sampling {
             mag_filter: texels,
             min_filter: texels,
             mipmap_filter: levels,
-            anisotropy_clamp: if anisotropic { MAX_TAPS } else { 1 },
+            anisotropy_clamp: self.max_anisotropy.max(1),
             ..Default::default()
         }
     }

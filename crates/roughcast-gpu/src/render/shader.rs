@@ -47,6 +47,7 @@ pub fn shader_source(key: ShaderKey) -> Result<String, UnknownName> {
         "fn sampled(map: texture_2d<f32>, uv: vec2f) -> vec4f {{\n    \
          return {sample}(map, map_sampler, uv, sampling.detail);\n}}\n"
     );
+    let sampled = [sampled, footprint(key)].concat();
     let mut textures = String::new();
     for index in 0..key.shading.inputs(key.lobe).len() as u32 {
         let binding = FIRST_TEXTURE + index;
@@ -55,6 +56,32 @@ pub fn shader_source(key: ShaderKey) -> Result<String, UnknownName> {
     let model = model(key.shading, key.lobe);
     let parts: [&str; 5] = [&library, include_str!("common.wgsl"), &textures, &sampled, &model];
     Ok(parts.join("\n"))
+}
+
+/// What the pixel sees of the variance under the sampler, for models of moments.
+fn footprint(key: ShaderKey) -> String {
+    if key.shading.mean_input().is_none() {
+        return String::new();
+    }
+    let filter = match key.detail {
+        Detail::Derivatives => "hardware_variances(axes, sampling.max_anisotropy, sampling.detail)",
+        Detail::Fixed => "level_variances(sampling.detail)",
+    };
+    format!(
+        "fn pixel_ratio(mean: vec2f, uv: vec2f, size: vec2u) -> FootprintRatio {{
+    // Fine derivatives: the difference to the one neighbour, as the CPU renderer has it.
+    let texels_dx = dpdxFine(uv) * vec2f(size);
+    let texels_dy = dpdyFine(uv) * vec2f(size);
+    let mean_dx = dpdxFine(mean);
+    let mean_dy = dpdyFine(mean);
+    if sampling.max_anisotropy == 0.0 {{
+        return whole_footprint();
+    }}
+    let axes = footprint_axes(texels_dx, texels_dy);
+    return footprint_ratio(axes, {filter}, mean_dx, mean_dy, lobe_options);
+}}
+"
+    )
 }
 
 /// From texels to a surface and from a surface to its lobe, in the model's own functions.
@@ -72,12 +99,12 @@ fn model(shading: Shading, lobe: Lobe) -> String {
         Shading::Lean => (
             "SlopeGaussian",
             "bump_normal(texel0, map_packing)",
-            "lean_surface(texel0, texel1, map_packing, lobe_options)".to_owned(),
+            "lean_surface(texel0, texel1, ratio, map_packing, lobe_options)".to_owned(),
         ),
         Shading::Clean | Shading::Variance => (
             "SlopeGaussian",
             "slope_normal(lobe.mean)",
-            format!("{name}_surface(texel0, map_packing, lobe_options)"),
+            format!("{name}_surface(texel0, ratio, map_packing, lobe_options)"),
         ),
         Shading::Toksvig => (
             "BumpFacet",
@@ -101,6 +128,13 @@ fn model(shading: Shading, lobe: Lobe) -> String {
     let mut body = String::new();
     for index in 0..shading.inputs(lobe).len() {
         let _ = writeln!(body, "    let texel{index} = sampled(map{index}, uv);");
+    }
+    if let Some(input) = shading.mean_input() {
+        let _ = writeln!(
+            body,
+            "    let mean = texel{input}.xy * map_packing.slope.x + map_packing.slope.y;\n    \
+             let ratio = pixel_ratio(mean, uv, textureDimensions(map{input}));"
+        );
     }
     // Each of the two may need the other.
     let lines = [format!("    let normal = {normal};\n"), format!("    let lobe = {surface};\n")];

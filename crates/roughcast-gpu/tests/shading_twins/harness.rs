@@ -142,9 +142,9 @@ const CANCELLED_ULPS: f32 = 4.0;
 /// by 2^-21, which an exponent of at most 430 (beyond it nothing is left where `log` is used) doubles into 1e-4.
 const RELATIVE: f32 = 1e-4;
 
-/// What is smaller than this counts as nothing: GPUs may flush what is no normal single float to zero, here or in a
-/// product on the way.
-const FLUSHED: f32 = 1e-36;
+/// What is smaller than this counts as nothing: GPUs may flush what is no normal single float to zero, 1.2e-38, also on the way
+/// to a product with an exponent of up to 16384.
+const FLUSHED: f32 = 2e-34;
 
 /// The first result that is not what the Rust twin gives, in words.
 pub fn first_difference(twin: &Twin, cases: &[Case], results: &[Vec<f32>]) -> Option<String> {

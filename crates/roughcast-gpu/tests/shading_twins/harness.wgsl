@@ -32,6 +32,8 @@ fn o() -> LobeOptions {
         input_words[i + 3u],
         input_words[i + 4u],
         input_words[i + 5u],
+        input_words[i + 6u],
+        input_words[i + 7u],
     );
 }
 
@@ -57,6 +59,39 @@ fn put2(v: vec2f) {
 fn put3(v: vec3f) {
     put2(v.xy);
     put(v.z);
+}
+
+fn put_part(part: PixelPart) {
+    put(part.ratio);
+    put(part.linear_trace);
+}
+
+fn put_ratio(ratio: FootprintRatio) {
+    put_part(ratio.moments);
+    put_part(ratio.variances);
+}
+
+fn put_variances(filtered: FilterVariances) {
+    put2(filtered.moments);
+    put2(filtered.variances);
+}
+
+fn put_axes(axes: FootprintAxes) {
+    put2(axes.squared_lengths);
+    put2(axes.along);
+    put2(axes.across);
+}
+
+fn part(i: u32) -> PixelPart {
+    return PixelPart(f(i), f(i + 1u));
+}
+
+fn ratio(i: u32) -> FootprintRatio {
+    return FootprintRatio(part(i), part(i + 2u));
+}
+
+fn axes(i: u32) -> FootprintAxes {
+    return FootprintAxes(f2(i), f2(i + 2u), f2(i + 4u));
 }
 
 fn put_facet(surface: BumpFacet) {

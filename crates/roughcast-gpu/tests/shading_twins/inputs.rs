@@ -2,8 +2,8 @@
 
 use roughcast::Slope;
 use roughcast::shading::{
-    BaseLobe, Form, LobeOptions, Repair, SlopeGaussian, bump_facet, ggx_surface, ggx_surface_of_normal,
-    slope_gaussian,
+    BaseLobe, FootprintModel, Form, LobeOptions, Masking, Repair, SlopeGaussian, bump_facet, ggx_surface,
+    ggx_surface_of_normal, slope_gaussian,
 };
 use roughcast::texture::{Base, Packing, RoughnessStored};
 use roughcast::{Covariance, Moments};
@@ -38,11 +38,13 @@ impl Inputs {
         };
         self.options = LobeOptions {
             specular_power: power,
-            form: Form::ALL[self.below(2)],
+            form: Form::ALL[self.below(3)],
             base: BaseLobe::ALL[self.below(2)],
             repair: Repair::ALL[self.below(2)],
             base_in_maps: [Base::None, Base::None, Base::Baked][self.below(3)],
             roughness_stored: RoughnessStored::ALL[self.below(RoughnessStored::ALL.len())],
+            masking: Masking::ALL[self.below(2)],
+            footprint: FootprintModel::ALL[usize::from(self.below(8) == 0)],
         };
         self.packing = [Packing::IDENTITY, SCALED][self.below(2)];
     }
@@ -145,6 +147,30 @@ impl Inputs {
             Self::stored(moments.xx, second),
             Self::stored(moments.yy, second),
         ]
+    }
+
+    /// The derivatives of a footprint, in texels: mostly of a few texels, round or long, some tiny or huge.
+    pub fn footprint(&mut self) -> [f32; 4] {
+        let long = match self.below(8) {
+            0 => self.of_any_size(1e-4, 1e6).abs(),
+            _ => self.of_any_size(0.05, 64.0).abs(),
+        };
+        let short = long * self.between(-6.0, 0.0).exp2();
+        let (turned, across) = (self.between(0.0, 6.3).sin_cos(), self.between(0.0, 6.3).sin_cos());
+        let (a, b) = ((long * turned.0, short * turned.1), (-long * turned.1, short * turned.0));
+        // A rotation of the picture mixes both.
+        let mix = |(along, side): (f32, f32)| {
+            [across.1 * along + across.0 * side, across.1 * side - across.0 * along]
+        };
+        let [ax, bx] = mix(a);
+        let [ay, by] = mix(b);
+        [ax, ay, bx, by]
+    }
+
+    /// What a pixel sees, of moments and of variances.
+    pub fn ratio(&mut self) -> [f32; 4] {
+        let trace = |inputs: &mut Self| inputs.of_any_size(1e-4, 2.0).abs();
+        [self.unit(), trace(self), self.unit(), trace(self)]
     }
 
     /// A facet's words, and a pair of directions whose half vector is near its normal.

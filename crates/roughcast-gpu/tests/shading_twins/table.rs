@@ -4,22 +4,23 @@ use roughcast::shading::*;
 use roughcast::texture::{Packing, RoughnessStored};
 use roughcast::{Covariance, Slope, variance_from_stored};
 
+use crate::footprint_table::{footprint_twins, masking_twins, ratio};
 use crate::harness::{Gives, Twin};
 use crate::inputs::{Inputs, gaussian_words};
 
-fn v3(a: &[f32]) -> [f32; 3] {
+pub fn v3(a: &[f32]) -> [f32; 3] {
     [a[0], a[1], a[2]]
 }
 
-fn v4(a: &[f32]) -> [f32; 4] {
+pub fn v4(a: &[f32]) -> [f32; 4] {
     [a[0], a[1], a[2], a[3]]
 }
 
-fn slope(a: &[f32]) -> Slope {
+pub fn slope(a: &[f32]) -> Slope {
     Slope { x: a[0], y: a[1] }
 }
 
-fn covariance(a: &[f32]) -> Covariance {
+pub fn covariance(a: &[f32]) -> Covariance {
     Covariance { xx: a[0], yy: a[1], xy: a[2] }
 }
 
@@ -27,7 +28,7 @@ fn covariance_words(Covariance { xx, yy, xy }: Covariance) -> Vec<f32> {
     vec![xx, yy, xy]
 }
 
-fn facet(a: &[f32]) -> BumpFacet {
+pub fn facet(a: &[f32]) -> BumpFacet {
     BumpFacet { normal: v3(a), specular_power: a[3] }
 }
 
@@ -35,11 +36,11 @@ fn facet_words(facet: BumpFacet) -> Vec<f32> {
     [&facet.normal[..], &[facet.specular_power]].concat()
 }
 
-fn gaussian(a: &[f32]) -> SlopeGaussian {
+pub fn gaussian(a: &[f32]) -> SlopeGaussian {
     SlopeGaussian { mean: slope(a), covariance: covariance(&a[2..]), determinant: a[5] }
 }
 
-fn ggx(a: &[f32]) -> GgxSurface {
+pub fn ggx(a: &[f32]) -> GgxSurface {
     GgxSurface { normal: v3(a), alpha_along: a[3], tangent: v3(&a[4..]), alpha_across: a[7] }
 }
 
@@ -53,7 +54,7 @@ fn normalized(v: [f64; 3]) -> Vec<f32> {
 }
 
 /// A number that a function returns alone.
-fn one(value: f32) -> Vec<f32> {
+pub fn one(value: f32) -> Vec<f32> {
     vec![value]
 }
 
@@ -132,16 +133,16 @@ fn surface_twins() -> Vec<Twin> {
         Twin {
             name: "lean_surface",
             gives: Gives::Gaussian,
-            call: "put_gaussian(lean_surface(f4(0u), f4(4u), p(), o()));",
-            arguments: Inputs::lean,
-            rust: |a, o, p| gaussian_words(&lean_surface(v4(a), v4(&a[4..]), p, o)).to_vec(),
+            call: "put_gaussian(lean_surface(f4(0u), f4(4u), ratio(8u), p(), o()));",
+            arguments: |inputs| [inputs.lean(), inputs.ratio().to_vec()].concat(),
+            rust: |a, o, p| gaussian_words(&lean_surface(v4(a), v4(&a[4..]), &ratio(&a[8..]), p, o)).to_vec(),
         },
         Twin {
             name: "clean_surface",
             gives: Gives::Gaussian,
-            call: "put_gaussian(clean_surface(f4(0u), p(), o()));",
-            arguments: clean,
-            rust: |a, o, p| gaussian_words(&clean_surface(v4(a), p, o)).to_vec(),
+            call: "put_gaussian(clean_surface(f4(0u), ratio(4u), p(), o()));",
+            arguments: |inputs| [clean(inputs), inputs.ratio().to_vec()].concat(),
+            rust: |a, o, p| gaussian_words(&clean_surface(v4(a), &ratio(&a[4..]), p, o)).to_vec(),
         },
         Twin {
             name: "toksvig_normal",
@@ -160,9 +161,9 @@ fn surface_twins() -> Vec<Twin> {
         Twin {
             name: "variance_surface",
             gives: Gives::Gaussian,
-            call: "put_gaussian(variance_surface(f4(0u), p(), o()));",
-            arguments: variance,
-            rust: |a, o, p| gaussian_words(&variance_surface(v4(a), p, o)).to_vec(),
+            call: "put_gaussian(variance_surface(f4(0u), ratio(4u), p(), o()));",
+            arguments: |inputs| [variance(inputs), inputs.ratio().to_vec()].concat(),
+            rust: |a, o, p| gaussian_words(&variance_surface(v4(a), &ratio(&a[4..]), p, o)).to_vec(),
         },
         Twin {
             name: "ggx_surface",
@@ -344,6 +345,13 @@ fn part_twins() -> Vec<Twin> {
             rust: |a, o, _| covariance_words(base_covariance(slope(a), o)),
         },
         Twin {
+            name: "base_in_map",
+            gives: Gives::Numbers,
+            call: "put(base_in_map(o()));",
+            arguments: |_| vec![0.0],
+            rust: |_, o, _| one(base_in_map(o)),
+        },
+        Twin {
             name: "base_to_add",
             gives: Gives::Numbers,
             call: "put3(base_to_add(f2(0u), o()));",
@@ -427,5 +435,8 @@ fn part_twins() -> Vec<Twin> {
 
 /// All twins.
 pub fn twins() -> Vec<Twin> {
-    [part_twins(), surface_twins(), lobe_twins()].into_iter().flatten().collect()
+    [part_twins(), masking_twins(), footprint_twins(), surface_twins(), lobe_twins()]
+        .into_iter()
+        .flatten()
+        .collect()
 }

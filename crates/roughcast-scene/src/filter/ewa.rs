@@ -5,6 +5,7 @@
 
 use glam::DVec2;
 use roughcast::Wrap;
+use roughcast::shading::FilterVariances;
 
 use super::footprint::Ellipse;
 use crate::Footprint;
@@ -52,6 +53,18 @@ pub(super) fn sample(mipmap: &Mipmap, uv: DVec2, texels: &Footprint, wrap: Wrap)
     let (along, across) = (variance(long.length_squared()), variance(short.length_squared()));
     let direction = if long == DVec2::ZERO { DVec2::X } else { long.normalize() };
     Gaussian::new(direction, along, across).average(level, uv, wrap)
+}
+
+/// Variances along the axes of the footprint, in texels of level 0, squared: those that [`sample`] gives its Gaussian, and for
+/// stored variances those of the area under each texel.
+pub(super) fn variances(texels: &Footprint) -> FilterVariances {
+    let ellipse = Ellipse::of(texels);
+    let major = PIXEL_DEVIATION * ellipse.major;
+    let minor = (PIXEL_DEVIATION * ellipse.minor).max(major / MAX_ECCENTRICITY);
+    let number = (minor / TEXELS).max(1.0).log2().floor();
+    let under_texel = (4.0_f64.powf(number) - 1.0) / 12.0;
+    let whole = |deviation: f64| (deviation * deviation).max(INTERPOLATION_VARIANCE) as f32;
+    FilterVariances { moments: [whole(major), whole(minor)], variances: [under_texel as f32; 2] }
 }
 
 /// A Gaussian over the texels of a level.

@@ -9,6 +9,7 @@ mod summed_area;
 #[cfg(test)]
 mod tests;
 mod trilinear;
+mod variances;
 
 pub use summed_area::SummedAreaTable;
 
@@ -67,18 +68,9 @@ impl Sampler {
     pub fn sample(&self, texture: &Mipmap, uv: DVec2, footprint: &Footprint) -> [f32; 4] {
         let (width, height) = texture.size();
         let uv = footprint::reduced(uv, self.wrap);
-        let bias = if self.mip_bias.is_finite() { self.mip_bias.clamp(-MAX_LEVEL, MAX_LEVEL) } else { 0.0 };
-        let (texels, fixed) = match self.level {
-            None => (footprint::in_texels(footprint, (width, height)), None),
-            Some(level) => {
-                let level = if level > 0.0 { level.min(MAX_LEVEL) } else { 0.0 };
-                let side = level.exp2();
-                (Footprint { dx: DVec2::new(side, 0.0), dy: DVec2::new(0.0, side) }, Some(level))
-            }
-        };
-        let scale = if fixed.is_none() { bias.exp2() } else { 1.0 };
-        let scaled = Footprint { dx: texels.dx * scale, dy: texels.dy * scale };
-        let mean = match (self.filter, fixed) {
+        let bias = self.finite_bias();
+        let texels = footprint::in_texels(footprint, (width, height));
+        let mean = match (self.filter, self.fixed_level()) {
             (Filter::Nearest, fixed) => {
                 let last = texture.levels().len() - 1;
                 let level = (fixed.unwrap_or(0.0).round() as usize).min(last);
@@ -91,9 +83,32 @@ impl Sampler {
                 trilinear::sample(texture, uv, trilinear::level_of(&texels) + bias, self.wrap)
             }
             (Filter::Anisotropic, None) => anisotropic::sample(texture, uv, &texels, bias, self.wrap),
-            (Filter::Ewa, _) => ewa::sample(texture, uv, &scaled, self.wrap),
-            (Filter::SummedArea, _) => texture.table().sample(uv, &scaled, self.wrap),
+            (Filter::Ewa, _) => ewa::sample(texture, uv, &self.covered(&texels), self.wrap),
+            (Filter::SummedArea, _) => texture.table().sample(uv, &self.covered(&texels), self.wrap),
         };
         mean.map(|value| value as f32)
+    }
+
+    /// The level that is given, 0 or more. What is not a number is the finest.
+    fn fixed_level(&self) -> Option<f64> {
+        self.level.map(|level| if level > 0.0 { level.min(MAX_LEVEL) } else { 0.0 })
+    }
+
+    fn finite_bias(&self) -> f64 {
+        if self.mip_bias.is_finite() { self.mip_bias.clamp(-MAX_LEVEL, MAX_LEVEL) } else { 0.0 }
+    }
+
+    /// The footprint in texels that a filter without levels covers.
+    fn covered(&self, texels: &Footprint) -> Footprint {
+        match self.fixed_level() {
+            Some(level) => {
+                let side = level.exp2();
+                Footprint { dx: DVec2::new(side, 0.0), dy: DVec2::new(0.0, side) }
+            }
+            None => {
+                let scale = self.finite_bias().exp2();
+                Footprint { dx: texels.dx * scale, dy: texels.dy * scale }
+            }
+        }
     }
 }

@@ -4,6 +4,7 @@
 
 use glam::DVec2;
 use roughcast::Wrap;
+use roughcast::shading::FilterVariances;
 
 use crate::Footprint;
 use crate::mipmap::Level;
@@ -53,6 +54,17 @@ impl SummedAreaTable {
         }
         sum.map(|sum| sum / (x.length * y.length))
     }
+}
+
+/// Variances along a direction of the texture and across it, in texels of level 0, squared: those of the box over texels that are
+/// areas with one value each. Stored variances of level 0 have none.
+pub(super) fn variances(texels: &Footprint, direction: DVec2) -> FilterVariances {
+    let sides = (texels.dx.abs() + texels.dy.abs()).max(DVec2::ONE);
+    let box_and_texel = (sides * sides + 1.0) / 12.0;
+    let squares = DVec2::new(direction.x * direction.x, direction.y * direction.y);
+    let [along, across] = [squares, DVec2::new(squares.y, squares.x)];
+    let moments = [along, across].map(|squares| squares.dot(box_and_texel) as f32);
+    FilterVariances { moments, variances: [0.0; 2] }
 }
 
 /// An integral along one axis, as weights of the corners that the table knows.

@@ -1,6 +1,6 @@
 //! A shading method as a GPU runs it: one sample a pixel, at its centre, from filtered textures.
 
-use roughcast::shading::{LobeOptions, Shading};
+use roughcast::shading::{FootprintRatio, LobeOptions, Shading};
 use roughcast::texture::{Packing, TextureArray, TextureInfo};
 
 use super::inputs::model_inputs;
@@ -97,7 +97,19 @@ impl Method<'_> {
         for (texel, texture) in texels.iter_mut().zip(&self.textures.textures) {
             *texel = self.sampler.sample(texture, hit.uv * repeats, &footprint);
         }
-        let count = self.textures.textures.len();
-        self.textures.shading.surface(&texels[..count], &self.textures.packing, options)
+        let ShadingTextures { shading, textures, packing, .. } = self.textures;
+        let ratio = shading.mean_input().map_or(FootprintRatio::WHOLE, |input| {
+            let [slope_scale, _] = packing.slope;
+            let uv = hit.uv * repeats;
+            self.sampler.footprint_ratio(
+                &textures[input],
+                slope_scale,
+                texels[input],
+                uv,
+                &footprint,
+                options,
+            )
+        });
+        shading.surface(&texels[..textures.len()], &ratio, packing, options)
     }
 }

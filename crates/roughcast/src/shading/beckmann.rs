@@ -5,7 +5,7 @@
 
 use std::f32::consts::TAU;
 
-use super::facet::{BumpFacet, LEAST_COSINE, bump_facet};
+use super::facet::{BumpFacet, LEAST_COSINE, bump_facet, facet_visible_part};
 use super::gaussian::LARGEST_EXPONENT;
 use super::vector::{Vector, cross, dot, half_vector};
 use super::{Form, LobeOptions};
@@ -29,8 +29,10 @@ pub fn beckmann_lobe(surface: &BumpFacet, view: Vector, light: Vector, options: 
         return 0.0;
     }
     let density = surface.specular_power * (-exponent).exp();
+    let distribution = density / (TAU * cosine.powi(4));
     match options.form {
         Form::Paper => density,
-        Form::Normalised => density / (TAU * cosine.powi(4)),
+        Form::Normalised => distribution,
+        Form::Physical => distribution * facet_visible_part(surface, view, light, options),
     }
 }

@@ -20,6 +20,13 @@ fn beckmann_lobe(surface: BumpFacet, view: vec3f, light: vec3f, options: LobeOpt
         return 0.0;
     }
     let density = surface.specular_power * exp(-exponent);
+    if options.form == FORM_PAPER {
+        return density;
+    }
     let squared = cosine * cosine;
-    return select(density, density / (TWO_PI * squared * squared), options.form == FORM_NORMALISED);
+    let distribution = density / (TWO_PI * squared * squared);
+    if options.form == FORM_NORMALISED {
+        return distribution;
+    }
+    return distribution * facet_visible_part(surface, view, light, options);
 }

@@ -3,9 +3,9 @@
 //! Source: Blinn, "Models of light reflection for computer synthesized pictures", 1977; its likeness to Beckmann's lobe is
 //! LEAN mapping's, 3.1.
 
-use super::LobeOptions;
-use super::facet::{BumpFacet, bump_facet, cosine_lobe};
+use super::facet::{BumpFacet, bump_facet, cosine_lobe, facet_visible_part};
 use super::vector::{Vector, half_vector};
+use super::{Form, LobeOptions};
 
 /// The facet of a filtered normal, of any length.
 pub fn blinn_phong_surface(normal: Vector, options: &LobeOptions) -> BumpFacet {
@@ -15,7 +15,11 @@ pub fn blinn_phong_surface(normal: Vector, options: &LobeOptions) -> BumpFacet {
 /// The lobe for unit directions to the viewer and to the light. Normalised about the bump normal.
 pub fn blinn_phong_lobe(surface: &BumpFacet, view: Vector, light: Vector, options: &LobeOptions) -> f32 {
     let Some(half) = half_vector(view, light) else { return 0.0 };
-    cosine_lobe(surface.normal, half, surface.specular_power, options.form)
+    let lobe = cosine_lobe(surface.normal, half, surface.specular_power, options.form);
+    match options.form {
+        Form::Paper | Form::Normalised => lobe,
+        Form::Physical => lobe * facet_visible_part(surface, view, light, options),
+    }
 }
 
 /// The largest difference between `cos^s` and Beckmann's `exp(-s/2 tan²)` over all angles: LEAN mapping, Figure 4.

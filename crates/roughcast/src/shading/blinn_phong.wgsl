@@ -8,5 +8,9 @@ fn blinn_phong_lobe(surface: BumpFacet, view: vec3f, light: vec3f, options: Lobe
     if !both_above(view, light) {
         return 0.0;
     }
-    return cosine_lobe(surface.normal, normalize(view + light), surface.specular_power, options.form);
+    let lobe = cosine_lobe(surface.normal, normalize(view + light), surface.specular_power, options.form);
+    if options.form != FORM_PHYSICAL {
+        return lobe;
+    }
+    return lobe * facet_visible_part(surface, view, light, options);
 }

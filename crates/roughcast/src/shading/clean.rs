@@ -4,23 +4,27 @@
 //! give LEAN's lobe. A trace below zero counts as none: here the text's rule and [`super::Repair::Clamp`] are the same.
 
 use super::LobeOptions;
-use super::base::base_to_add;
-use super::gaussian::{SlopeGaussian, gaussian_lobe, slope_gaussian};
+use super::footprint::FootprintRatio;
+use super::gaussian::{SlopeGaussian, gaussian_lobe};
+use super::moment_surface::moment_surface;
 use super::vector::Vector;
 use crate::moments::Covariance;
 use crate::slope::Slope;
 use crate::texture::Packing;
 use crate::texture::packing::unpack;
 
-/// The Gaussian that a filtered texel of CLEAN's texture holds.
-pub fn clean_surface(clean: [f32; 4], packing: &Packing, options: &LobeOptions) -> SlopeGaussian {
+/// The Gaussian that a filtered texel of CLEAN's texture holds, less what the pixel does not see of it.
+pub fn clean_surface(
+    clean: [f32; 4],
+    ratio: &FootprintRatio,
+    packing: &Packing,
+    options: &LobeOptions,
+) -> SlopeGaussian {
     let mean = Slope { x: unpack(clean[0], packing.slope), y: unpack(clean[1], packing.slope) };
     let squared = f64::from(mean.x) * f64::from(mean.x) + f64::from(mean.y) * f64::from(mean.y);
     let trace = (f64::from(unpack(clean[2], packing.trace)) - squared) as f32;
     let variance = 0.5 * trace.max(0.0);
-    let base = base_to_add(mean, options);
-    let covariance = Covariance { xx: variance + base.xx, yy: variance + base.yy, xy: base.xy };
-    slope_gaussian(mean, covariance, options)
+    moment_surface(mean, Covariance::isotropic(variance), ratio.moments, options)
 }
 
 /// The lobe for unit directions to the viewer and to the light. Normalised about the surface normal.

@@ -1,7 +1,8 @@
 //! A facet of the filtered bump map: what the models in the frame of the bump have in common.
 
-use super::Form;
+use super::masking::{gaussian_lambda, visible_part};
 use super::vector::{Vector, cross, dot, normalize};
+use super::{Form, LobeOptions, Masking};
 use crate::texture::Packing;
 use crate::texture::packing::unpack;
 
@@ -10,6 +11,9 @@ pub const LEAST_NORMAL_Z: f32 = crate::texture::pbr::FLATTEST;
 
 /// Cosines below this count as none. Its square is the smallest by which an f32 can still be divided.
 pub const LEAST_COSINE: f32 = 1e-18;
+
+/// Exponents below this mask as it does: all but at the normal itself is masked then.
+const LEAST_MASKING_POWER: f32 = 1e-6;
 
 /// A facet and the exponent of the cosine lobe about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,11 +52,28 @@ pub fn cosine_power(axis: Vector, direction: Vector, exponent: f32) -> f32 {
     (-0.5 * exponent * tangent_squared.ln_1p()).exp()
 }
 
-/// The cosine lobe about an axis. Normalised it integrates to 1 over the projected solid angle of that axis.
+/// `G2 / n·v` about the normal of a facet, whose own roughness masks as the equivalent Gaussian of slopes. Zero where viewer or
+/// light is not above the facet.
+pub fn facet_visible_part(surface: &BumpFacet, view: Vector, light: Vector, options: &LobeOptions) -> f32 {
+    let cosines = [view, light].map(|direction| dot(surface.normal, direction));
+    if cosines[0].min(cosines[1]) < LEAST_COSINE {
+        return 0.0;
+    }
+    let power = match options.masking {
+        Masking::Base => options.specular_power,
+        Masking::Full => surface.specular_power,
+    };
+    let variance = 1.0 / power.max(LEAST_MASKING_POWER);
+    let [of_view, of_light] =
+        cosines.map(|cosine| gaussian_lambda(cosine, variance * (1.0 - cosine * cosine).max(0.0)));
+    visible_part(cosines[0], of_view, of_light)
+}
+
+/// The cosine lobe about an axis, without masking in any form. Normalised it integrates to 1 over the projected solid angle of that axis.
 pub fn cosine_lobe(axis: Vector, direction: Vector, exponent: f32, form: Form) -> f32 {
     let constant = match form {
         Form::Paper => exponent,
-        Form::Normalised => (exponent + 2.0) / std::f32::consts::TAU,
+        Form::Normalised | Form::Physical => (exponent + 2.0) / std::f32::consts::TAU,
     };
     constant * cosine_power(axis, direction, exponent)
 }

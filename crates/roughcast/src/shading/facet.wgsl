@@ -6,6 +6,9 @@ const LEAST_NORMAL_Z: f32 = 0.001953125;
 // Cosines below this count as none: its square can still be divided by.
 const LEAST_COSINE: f32 = 1e-18;
 
+// Exponents below this mask as it does.
+const LEAST_MASKING_POWER: f32 = 1e-6;
+
 struct BumpFacet {
     normal: vec3f,          // unit bump normal
     specular_power: f32,    // Blinn-Phong exponent
@@ -46,8 +49,23 @@ fn cosine_power(axis: vec3f, direction: vec3f, exponent: f32) -> f32 {
     return exp(-0.5 * exponent * log_one_plus(tangent_squared));
 }
 
-// The cosine lobe about an axis. Normalised it integrates to 1 over the projected solid angle of that axis.
+// G2 / n.v about the normal of a facet, whose own roughness masks as the equivalent Gaussian of slopes. Zero where viewer or
+// light is not above the facet.
+fn facet_visible_part(surface: BumpFacet, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {
+    let of_view = dot(surface.normal, view);
+    let of_light = dot(surface.normal, light);
+    if min(of_view, of_light) < LEAST_COSINE {
+        return 0.0;
+    }
+    let own = select(options.specular_power, surface.specular_power, options.masking == MASKING_FULL);
+    let power = max(own, LEAST_MASKING_POWER);
+    let lambda_of_view = gaussian_lambda(of_view, max(1.0 - of_view * of_view, 0.0) / power);
+    let lambda_of_light = gaussian_lambda(of_light, max(1.0 - of_light * of_light, 0.0) / power);
+    return visible_part(of_view, lambda_of_view, lambda_of_light);
+}
+
+// The cosine lobe about an axis, without masking in any form. Normalised it integrates to 1 over the projected solid angle of that axis.
 fn cosine_lobe(axis: vec3f, direction: vec3f, exponent: f32, form: u32) -> f32 {
-    let peak = select(exponent, (exponent + 2.0) / TWO_PI, form == FORM_NORMALISED);
+    let peak = select((exponent + 2.0) / TWO_PI, exponent, form == FORM_PAPER);
     return peak * cosine_power(axis, direction, exponent);
 }

@@ -5,8 +5,9 @@
 
 use std::f32::consts::TAU;
 
+use super::masking::{gaussian_lambda, projected_variance, visible_part};
 use super::vector::{Vector, half_vector};
-use super::{Form, LobeOptions, Repair};
+use super::{Form, LobeOptions, Masking, Repair};
 use crate::moments::Covariance;
 use crate::slope::Slope;
 
@@ -66,10 +67,28 @@ pub fn gaussian_lobe(surface: &SlopeGaussian, view: Vector, light: Vector, optio
         return 0.0;
     }
     let density = (-squared_distance / scale).exp() / determinant.sqrt();
+    let distribution = density / (TAU * half[2].powi(4));
     match options.form {
         Form::Paper => density,
-        Form::Normalised => density / (TAU * half[2].powi(4)),
+        Form::Normalised => distribution,
+        Form::Physical => distribution * gaussian_visible_part(surface, view, light, options),
     }
+}
+
+/// `G2 / v.z` about the surface normal. The surface is a flat one on which bumps are drawn, so that no mean slope tilts it.
+/// Viewer and light must be above it.
+pub fn gaussian_visible_part(
+    surface: &SlopeGaussian,
+    view: [f32; 3],
+    light: [f32; 3],
+    options: &LobeOptions,
+) -> f32 {
+    let covariance = match options.masking {
+        Masking::Base => Covariance::isotropic(1.0 / options.specular_power),
+        Masking::Full => surface.covariance,
+    };
+    let [of_view, of_light] = [view, light].map(|d| gaussian_lambda(d[2], projected_variance(covariance, d)));
+    visible_part(view[2], of_view, of_light)
 }
 
 /// `dᵀ Σ⁻¹ d`: the square of a distance in standard deviations, for a positive definite covariance and its determinant.

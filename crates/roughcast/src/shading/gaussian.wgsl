@@ -44,6 +44,16 @@ fn squared_deviations(surface: SlopeGaussian, d: vec2f) -> f32 {
     return d.x * d.x * inverse_xx + rest * rest * (surface.variance.x / surface.det);
 }
 
+// G2 / v.z about the surface normal.
+fn gaussian_visible_part(surface: SlopeGaussian, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {
+    let base = 1.0 / options.specular_power;
+    let full = vec3f(surface.variance, surface.covariance);
+    let sigma = select(vec3f(base, base, 0.0), full, options.masking == MASKING_FULL);
+    let of_view = gaussian_lambda(view.z, projected_variance(sigma, view));
+    let of_light = gaussian_lambda(light.z, projected_variance(sigma, light));
+    return visible_part(view.z, of_view, of_light);
+}
+
 // The lobe for unit directions to the viewer and to the light.
 fn gaussian_lobe(surface: SlopeGaussian, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {
     if !both_above(view, light) {
@@ -58,6 +68,13 @@ fn gaussian_lobe(surface: SlopeGaussian, view: vec3f, light: vec3f, options: Lob
         return 0.0;
     }
     let density = exp(-squared_distance / scale) / sqrt(surface.det);
+    if options.form == FORM_PAPER {
+        return density;
+    }
     let squared = h.z * h.z;
-    return select(density, density / (TWO_PI * squared * squared), options.form == FORM_NORMALISED);
+    let distribution = density / (TWO_PI * squared * squared);
+    if options.form == FORM_NORMALISED {
+        return distribution;
+    }
+    return distribution * gaussian_visible_part(surface, view, light, options);
 }

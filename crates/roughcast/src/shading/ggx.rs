@@ -8,6 +8,7 @@ use std::f32::consts::{PI, TAU};
 
 use super::facet::{LEAST_COSINE, unit_normal};
 use super::gaussian::LEAST_VARIANCE;
+use super::masking::visible_part;
 use super::vector::{Vector, cross, dot, half_vector, normalize, scaled, sum};
 use super::{Form, LobeOptions};
 use crate::source::variance_from_stored;
@@ -97,5 +98,24 @@ pub fn ggx_lobe(surface: &GgxSurface, view: Vector, light: Vector, options: &Lob
     match options.form {
         Form::Paper => TAU * cosine.powi(4) * lobe,
         Form::Normalised => lobe,
+        Form::Physical => lobe * ggx_visible_part(surface, view, light),
     }
+}
+
+/// `G2 / n·v` about the bump normal. The lobe's own widths mask, whatever [`super::Masking`] says: what part of them is the
+/// base's the textures do not tell.
+pub fn ggx_visible_part(surface: &GgxSurface, view: Vector, light: Vector) -> f32 {
+    let cosines = [view, light].map(|direction| dot(surface.normal, direction));
+    if cosines[0].min(cosines[1]) < LEAST_COSINE {
+        return 0.0;
+    }
+    let of_view = ggx_lambda(surface, view, cosines[0]);
+    visible_part(cosines[0], of_view, ggx_lambda(surface, light, cosines[1]))
+}
+
+/// Smith's Λ of GGX, `(sqrt(1 + (αx² d.x² + αy² d.y²) / d.z²) - 1) / 2`, for a direction with this cosine to the bump normal, above zero.
+pub fn ggx_lambda(surface: &GgxSurface, direction: Vector, cosine: f32) -> f32 {
+    let x = dot(surface.tangent, direction) * surface.alpha_along;
+    let y = dot(cross(surface.normal, surface.tangent), direction) * surface.alpha_across;
+    0.5 * ((1.0 + (x * x + y * y) / (cosine * cosine)).sqrt() - 1.0)
 }

@@ -70,6 +70,24 @@ fn ggx_surface_of_normal(normal: vec3f, options: LobeOptions) -> GgxSurface {
     return ggx_facet(unit_normal(normal), vec2f(1.0, 0.0), alpha, alpha);
 }
 
+// Smith's lambda of GGX for a direction with this cosine to the bump normal, above zero.
+fn ggx_lambda(surface: GgxSurface, direction: vec3f, cosine: f32) -> f32 {
+    let x = dot(surface.tangent, direction) * surface.alpha_along;
+    let y = dot(cross(surface.normal, surface.tangent), direction) * surface.alpha_across;
+    return 0.5 * (sqrt(1.0 + (x * x + y * y) / (cosine * cosine)) - 1.0);
+}
+
+// G2 / n.v about the bump normal, with the widths of the lobe itself. Zero where viewer or light is not above the facet.
+fn ggx_visible_part(surface: GgxSurface, view: vec3f, light: vec3f) -> f32 {
+    let of_view = dot(surface.normal, view);
+    let of_light = dot(surface.normal, light);
+    if min(of_view, of_light) < LEAST_COSINE {
+        return 0.0;
+    }
+    let lambda_of_view = ggx_lambda(surface, view, of_view);
+    return visible_part(of_view, lambda_of_view, ggx_lambda(surface, light, of_light));
+}
+
 fn ggx_lobe(surface: GgxSurface, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {
     if !both_above(view, light) {
         return 0.0;
@@ -84,6 +102,12 @@ fn ggx_lobe(surface: GgxSurface, view: vec3f, light: vec3f, options: LobeOptions
     // The slope density times cos^-4, with the fourth power taken into the bracket: finite at grazing angles.
     let bracket = cosine * cosine + x * x + y * y;
     let lobe = 1.0 / (PI * surface.alpha_along * surface.alpha_across * bracket * bracket);
-    let squared = cosine * cosine;
-    return select(TWO_PI * squared * squared * lobe, lobe, options.form == FORM_NORMALISED);
+    if options.form == FORM_PAPER {
+        let squared = cosine * cosine;
+        return TWO_PI * squared * squared * lobe;
+    }
+    if options.form == FORM_NORMALISED {
+        return lobe;
+    }
+    return lobe * ggx_visible_part(surface, view, light);
 }

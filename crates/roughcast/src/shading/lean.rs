@@ -2,19 +2,21 @@
 //!
 //! Source: Olano & Baker, "LEAN Mapping", 2010, Eq. 1, 5 and 6, Figure 16.
 
-use super::base::base_to_add;
-use super::gaussian::{SlopeGaussian, gaussian_lobe, slope_gaussian};
+use super::footprint::FootprintRatio;
+use super::gaussian::{SlopeGaussian, gaussian_lobe};
+use super::moment_surface::moment_surface;
 use super::vector::Vector;
 use super::{LobeOptions, Repair};
-use crate::moments::{Covariance, Moments};
+use crate::moments::Moments;
 use crate::slope::Slope;
 use crate::texture::Packing;
 use crate::texture::packing::unpack;
 
-/// The Gaussian that filtered texels of LEAN's two textures hold.
+/// The Gaussian that filtered texels of LEAN's two textures hold, less what the pixel does not see of it.
 pub fn lean_surface(
     lean1: [f32; 4],
     lean2: [f32; 4],
+    ratio: &FootprintRatio,
     packing: &Packing,
     options: &LobeOptions,
 ) -> SlopeGaussian {
@@ -26,13 +28,11 @@ pub fn lean_surface(
         xy: unpack(lean1[3], packing.mixed),
     };
     // Eq. 5.
-    let bumps = match options.repair {
+    let stored = match options.repair {
         Repair::Clamp => moments.covariance(),
         Repair::Published => moments.covariance_as_stored(),
     };
-    let base = base_to_add(mean, options);
-    let covariance = Covariance { xx: bumps.xx + base.xx, yy: bumps.yy + base.yy, xy: bumps.xy + base.xy };
-    slope_gaussian(mean, covariance, options)
+    moment_surface(mean, stored, ratio.moments, options)
 }
 
 /// The lobe for unit directions to the viewer and to the light. Normalised about the surface normal.

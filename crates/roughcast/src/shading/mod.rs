@@ -2,7 +2,8 @@
 //!
 //! Every model has two steps, with the same names in Rust and in WGSL:
 //!
-//! 1. `<model>_surface`: filtered texels of the model's layout become a surface, once a pixel;
+//! 1. `<model>_surface`: filtered texels of the model's layout become a surface, once a pixel; models of moments take, beside
+//!    them, which part of their variance the pixel sees ([`footprint_ratio`]);
 //! 2. `<model>_lobe`: the lobe for a direction to the viewer and one to the light, once a light.
 //!
 //! The base lobes (`phong`, `blinn_phong`, `beckmann`, `off_centre`) take a filtered normal instead of texels, so that they
@@ -10,7 +11,7 @@
 //! [`reflect`] makes radiance of its lobe.
 //!
 //! All directions are unit vectors in the tangent frame of the *surface* (x right, y up, z the surface normal), and `h` is
-//! the half vector. A lobe of slope density `p` has two forms ([`Form`]).
+//! the half vector. A lobe of slope density `p` has three forms ([`Form`]).
 //!
 //! No lobe is ever NaN or infinite, whatever filtering leaves: a zero normal counts as flat, a horizontal one as steep, and
 //! a covariance without width is given the least there is ([`LEAST_VARIANCE`]). The base's exponent s is meant to be from 1
@@ -21,9 +22,12 @@ mod beckmann;
 mod blinn_phong;
 mod clean;
 mod facet;
+mod footprint;
 mod gaussian;
 mod ggx;
 mod lean;
+mod masking;
+mod moment_surface;
 mod off_centre;
 mod phong;
 mod reflectance;
@@ -33,20 +37,29 @@ mod variance;
 mod vector;
 pub mod wgsl;
 
-pub use base::{base_covariance, base_to_add};
+pub use base::{base_covariance, base_in_map, base_to_add};
 pub use beckmann::{beckmann_lobe, beckmann_surface};
 pub use blinn_phong::{blinn_phong_against_beckmann, blinn_phong_lobe, blinn_phong_surface};
 pub use clean::{clean_lobe, clean_surface};
 pub use facet::{
-    BumpFacet, LEAST_COSINE, LEAST_NORMAL_Z, bump_facet, bump_normal, cosine_lobe, cosine_power, unit_normal,
+    BumpFacet, LEAST_COSINE, LEAST_NORMAL_Z, bump_facet, bump_normal, cosine_lobe, cosine_power,
+    facet_visible_part, unit_normal,
+};
+pub use footprint::{
+    FilterVariances, FootprintAxes, FootprintRatio, PixelPart, footprint_axes, footprint_ratio,
+    hardware_variances, level_variances, pixel_part,
 };
 pub use gaussian::{
-    LARGEST_EXPONENT, LEAST_VARIANCE, SlopeGaussian, gaussian_lobe, slope_gaussian, squared_deviations,
+    LARGEST_EXPONENT, LEAST_VARIANCE, SlopeGaussian, gaussian_lobe, gaussian_visible_part, slope_gaussian,
+    squared_deviations,
 };
 pub use ggx::{
-    GgxSurface, ISOTROPIC, LEAST_STORED_POWER, ggx_lobe, ggx_normal, ggx_surface, ggx_surface_of_normal,
+    GgxSurface, ISOTROPIC, LEAST_STORED_POWER, ggx_lambda, ggx_lobe, ggx_normal, ggx_surface,
+    ggx_surface_of_normal, ggx_visible_part,
 };
 pub use lean::{lean_lobe, lean_surface};
+pub use masking::{gaussian_lambda, projected_variance, visible_part};
+pub use moment_surface::moment_surface;
 pub use off_centre::{off_centre_lobe, off_centre_surface};
 pub use phong::{phong_lobe, phong_surface};
 pub use reflectance::{
@@ -92,6 +105,31 @@ named_enum! {
         /// A microfacet distribution, `D = p / h.z^4`: it integrates to 1 over the projected solid angle of its own axis.
         /// Blinn-Phong is `(s + 2) / (2 pi) cos^s`.
         Normalised = "normalised",
+        /// `D G2 / n.v`: that distribution with Smith's height-correlated shadowing and masking, so that a quarter of it
+        /// with Fresnel's term is what a microfacet BRDF reflects of a light's irradiance. Models in the surface frame take
+        /// the surface normal for n, those in the frame of the bump the bump normal.
+        Physical = "physical",
+    }
+}
+
+named_enum! {
+    /// Whose slopes mask in [`Form::Physical`], for models that can tell base from bumps. Phong's and GGX's cannot.
+    pub enum Masking: "masking" {
+        /// Those of the base roughness: what bump mapping shows from near, where each bump is lit on its own.
+        Base = "base",
+        /// Those of base roughness and bumps: what displaced geometry shows (Dupuy et al., "Linear Efficient Antialiased
+        /// Displacement and Reflectance Mapping", 2013).
+        Full = "full",
+    }
+}
+
+named_enum! {
+    /// Which variance counts as roughness.
+    pub enum FootprintModel: "footprint" {
+        /// That under the pixel: what the texture filter covers beyond it is taken off. See [`footprint_ratio`].
+        Corrected = "corrected",
+        /// All that is under the texture filter, as the papers have it.
+        Published = "published",
     }
 }
 
@@ -131,30 +169,50 @@ pub struct LobeOptions {
     pub base_in_maps: Base,
     /// How a material's roughness is stored.
     pub roughness_stored: RoughnessStored,
+    /// Whose slopes mask, in the physical form.
+    pub masking: Masking,
+    /// Which variance counts as roughness.
+    pub footprint: FootprintModel,
 }
 
 impl Default for LobeOptions {
     fn default() -> Self {
         Self {
             specular_power: 256.0,
-            form: Form::Paper,
+            form: Form::Physical,
             base: BaseLobe::Plane,
             repair: Repair::Clamp,
             base_in_maps: Base::None,
             roughness_stored: RoughnessStored::Perceptual,
+            masking: Masking::Base,
+            footprint: FootprintModel::Corrected,
         }
     }
 }
 
 impl LobeOptions {
-    /// The same options for textures with this meaning.
+    /// LEAN mapping as it was published: the paper's form, and all variance under the texture filter.
+    #[must_use]
+    pub fn published(specular_power: f32) -> Self {
+        Self { specular_power, form: Form::Paper, footprint: FootprintModel::Published, ..Self::default() }
+    }
+
+    /// The same options for textures with this meaning. Maps that hold a base roughness, or a factor of one, bring its
+    /// exponent with them. Where it varies over the map it is no longer told from the bumps: then all of the map's variance
+    /// masks, and none is taken off for the footprint, which could be the base's.
     #[must_use]
     pub fn for_maps(self, info: &TextureInfo) -> Self {
-        Self { base_in_maps: info.base, roughness_stored: info.roughness_stored, ..self }
+        let options = Self { base_in_maps: info.base, roughness_stored: info.roughness_stored, ..self };
+        match (info.base, info.specular_power()) {
+            (Base::Baked, Some(specular_power)) => Self { specular_power, ..options },
+            (Base::Baked, None) => {
+                Self { masking: Masking::Full, footprint: FootprintModel::Published, ..options }
+            }
+            (Base::None, _) => options,
+        }
     }
 
     /// The bytes of WGSL's `struct LobeOptions`: the exponent's bits, then the place of each choice in its enum's `ALL`.
-    /// The last two words are zero, since uniform buffers hold structs in multiples of sixteen bytes.
     pub fn to_words(&self) -> [u32; 8] {
         [
             self.specular_power.to_bits(),
@@ -163,8 +221,8 @@ impl LobeOptions {
             self.repair as u32,
             self.base_in_maps as u32,
             self.roughness_stored as u32,
-            0,
-            0,
+            self.masking as u32,
+            self.footprint as u32,
         ]
     }
 }
@@ -187,6 +245,18 @@ impl Shading {
             Self::Toksvig => Layout::Toksvig,
             Self::Variance => Layout::Variance,
             Self::Ggx => Layout::Pbr,
+        }
+    }
+
+    /// Which of [`Shading::inputs`] has the mean slope in its first two channels, by which models of moments tell what the
+    /// pixel sees of them; `None` for the others.
+    pub const fn mean_input(self) -> Option<usize> {
+        match self {
+            Self::Lean => Some(1),
+            Self::Clean | Self::Variance => Some(0),
+            Self::Phong | Self::BlinnPhong | Self::Beckmann | Self::OffCentre | Self::Toksvig | Self::Ggx => {
+                None
+            }
         }
     }
 

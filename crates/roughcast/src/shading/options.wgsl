@@ -1,4 +1,4 @@
-// How lobes are evaluated. Uploaded: 24 bytes, in uniform buffers filled up with zeros to 32.
+// How lobes are evaluated. Uploaded: 32 bytes, a word each.
 
 struct LobeOptions {
     specular_power: f32,    // Blinn-Phong exponent s of the base roughness, 1 to 100000; its slope variance is 1 / s
@@ -7,10 +7,13 @@ struct LobeOptions {
     repair: u32,            // REPAIR_...
     base_in_maps: u32,      // MAPS_...
     roughness_stored: u32,  // STORED_...
+    masking: u32,           // MASKING_..., in the physical form
+    footprint: u32,         // FOOTPRINT_...
 }
 
 const FORM_PAPER: u32 = 0u;         // 2 pi p of the slope density p; cosine lobes s cos^s
 const FORM_NORMALISED: u32 = 1u;    // p / h.z^4: a microfacet distribution; cosine lobes (s + 2) / (2 pi) cos^s
+const FORM_PHYSICAL: u32 = 2u;      // D G2 / n.v: that distribution with shadowing and masking
 
 const BASE_PLANE: u32 = 0u;         // variance 1 / s in the plane of the surface
 const BASE_FACET: u32 = 1u;         // the lobe of a facet of slope B, seen there
@@ -26,3 +29,9 @@ const STORED_ALPHA: u32 = 1u;           // alpha
 const STORED_ALPHA_SQUARED: u32 = 2u;   // alpha^2
 const STORED_GLOSS: u32 = 3u;           // 1 - sqrt(alpha)
 const STORED_SPECULAR_POWER: u32 = 4u;  // 2 / alpha^2
+
+const MASKING_BASE: u32 = 0u;   // of the base roughness
+const MASKING_FULL: u32 = 1u;   // of base roughness and bumps
+
+const FOOTPRINT_CORRECTED: u32 = 0u;    // the variance under the pixel
+const FOOTPRINT_PUBLISHED: u32 = 1u;    // the variance under the texture filter

@@ -3,9 +3,11 @@
 //! Source: Phong, "Illumination for Computer Generated Pictures", 1975, on the filtered bump normal. The exponent is
 //! Phong's own: about the half vector, the same highlight has about four times it.
 
-use super::LobeOptions;
-use super::facet::{BumpFacet, bump_facet, cosine_lobe};
+use std::f32::consts::TAU;
+
+use super::facet::{BumpFacet, bump_facet, cosine_lobe, cosine_power};
 use super::vector::{Vector, both_above, dot, scaled, sum};
+use super::{Form, LobeOptions};
 
 /// The facet of a filtered normal, of any length.
 pub fn phong_surface(normal: Vector, options: &LobeOptions) -> BumpFacet {
@@ -13,11 +15,18 @@ pub fn phong_surface(normal: Vector, options: &LobeOptions) -> BumpFacet {
 }
 
 /// The lobe for unit directions to the viewer and to the light. Normalised about the reflected ray.
+///
+/// Phong's lobe is one of directions to the light, not of facets, so that there is nothing to mask: in the physical form it
+/// is `4 (s + 1) / (2 π) cos^s`, with which all light that arrives along the reflected ray is reflected.
 pub fn phong_lobe(surface: &BumpFacet, view: Vector, light: Vector, options: &LobeOptions) -> f32 {
     if !both_above(view, light) {
         return 0.0;
     }
     let twice = 2.0 * dot(surface.normal, view);
     let reflected = sum(scaled(surface.normal, twice), scaled(view, -1.0));
-    cosine_lobe(reflected, light, surface.specular_power, options.form)
+    let exponent = surface.specular_power;
+    match options.form {
+        Form::Paper | Form::Normalised => cosine_lobe(reflected, light, exponent, options.form),
+        Form::Physical => 4.0 * (exponent + 1.0) / TAU * cosine_power(reflected, light, exponent),
+    }
 }

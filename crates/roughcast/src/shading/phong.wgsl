@@ -9,5 +9,9 @@ fn phong_lobe(surface: BumpFacet, view: vec3f, light: vec3f, options: LobeOption
         return 0.0;
     }
     let reflected = 2.0 * dot(surface.normal, view) * surface.normal - view;
-    return cosine_lobe(reflected, light, surface.specular_power, options.form);
+    let exponent = surface.specular_power;
+    if options.form != FORM_PHYSICAL {
+        return cosine_lobe(reflected, light, exponent, options.form);
+    }
+    return 4.0 * (exponent + 1.0) / TWO_PI * cosine_power(reflected, light, exponent);
 }

@@ -1,19 +1,23 @@
 //! From lobes to light: ambient, diffuse and specular radiance of a surface under a light.
 //!
 //! Source: Schlick, "A customizable reflectance model for everyday rendering", 1993, for the Fresnel term; Kilgard, "A
-//! practical and robust bump-mapping technique", 2000, for diffuse light from the unnormalised filtered normal; LEAN
-//! mapping, section 2: Ward's model with a Fresnel term, which is Cook & Torrance's without shadowing and masking.
+//! practical and robust bump-mapping technique", 2000, for diffuse light from the unnormalised filtered normal; Walter et
+//! al., "Microfacet Models for Refraction through Rough Surfaces", 2007, Eq. 20, for the physical form; LEAN mapping, section
+//! 2, for the others: Ward's model with a Fresnel term, which is Cook & Torrance's without shadowing and masking.
 //!
 //! | part | radiance |
 //! |---|---|
 //! | ambient | `albedo * ambient` |
 //! | diffuse | `albedo / π * max(0, N · l) * E` |
-//! | specular, paper's form | `F(v · h) * lobe / (8 π) * E` |
+//! | specular, physical | `F(v · h) * lobe / 4 * E` |
 //! | specular, normalised | `F(v · h) * lobe * l.z / 4 * E` |
+//! | specular, paper's form | `F(v · h) * lobe / (8 π) * E` |
 //!
-//! The normalised form is `F D G / (4 n.l n.v) * n.l * E` with `G = n.l n.v` and the surface normal's cosines. The paper's
+//! The physical form is a microfacet BRDF, `F D G2 / (4 n.l n.v) * n.l * E`: its lobe is `D G2 / n.v`, with Smith's G2 and the
+//! normal that D is about. The other two have no masking. The normalised form is `F D G / (4 n.l n.v) * n.l * E` with `G = n.l n.v` and the surface normal's cosines. The paper's
 //! form folds the constants into the specular coefficient: with `lobe = 2 π p`, `lobe / (8 π)` is `p / 4`, which is what
-//! the normalised form gives where light, eye and surface normal meet.
+//! the other forms give where light, eye and surface normal meet. Away from there both are darker than a microfacet BRDF:
+//! four times at 60°.
 
 use std::f32::consts::PI;
 
@@ -95,6 +99,7 @@ pub fn specular_radiance(
     let coefficient = match options.form {
         Form::Paper => 1.0 / (8.0 * PI),
         Form::Normalised => 0.25 * light[2],
+        Form::Physical => 0.25,
     };
     let cosine = dot(view, half);
     [0, 1, 2].map(|i| schlick(specular[i], cosine) * coefficient * lobe * irradiance[i])

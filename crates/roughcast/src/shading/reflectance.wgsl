@@ -34,8 +34,13 @@ fn specular_radiance(
     if !both_above(view, light) {
         return vec3f(0.0);
     }
-    // 1 / (8 pi) in the paper's form, where the lobe is 2 pi p.
-    let coefficient = select(0.125 / PI, 0.25 * light.z, options.form == FORM_NORMALISED);
+    var coefficient = 0.25;
+    if options.form == FORM_NORMALISED {
+        coefficient = 0.25 * light.z;
+    } else if options.form == FORM_PAPER {
+        // The lobe is 2 pi p.
+        coefficient = 0.125 / PI;
+    }
     let cosine = dot(view, normalize(view + light));
     let fresnel = vec3f(schlick(specular.x, cosine), schlick(specular.y, cosine), schlick(specular.z, cosine));
     return fresnel * coefficient * lobe * irradiance;

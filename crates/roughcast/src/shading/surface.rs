@@ -4,6 +4,7 @@ use super::beckmann::{beckmann_lobe, beckmann_surface};
 use super::blinn_phong::{blinn_phong_lobe, blinn_phong_surface};
 use super::clean::{clean_lobe, clean_surface};
 use super::facet::{BumpFacet, bump_normal};
+use super::footprint::FootprintRatio;
 use super::gaussian::SlopeGaussian;
 use super::ggx::{GgxSurface, ISOTROPIC, ggx_lobe, ggx_normal, ggx_surface, ggx_surface_of_normal};
 use super::lean::{lean_lobe, lean_surface};
@@ -99,11 +100,18 @@ impl Shading {
         }
     }
 
-    /// The surface that filtered texels hold, one for each of [`Shading::inputs`].
+    /// The surface that filtered texels hold, one for each of [`Shading::inputs`]. Models without a
+    /// [mean slope](Shading::mean_input) pass over the ratio.
     ///
     /// # Panics
     /// If there are fewer texels than inputs.
-    pub fn surface(self, texels: &[[f32; 4]], packing: &Packing, options: &LobeOptions) -> Surface {
+    pub fn surface(
+        self,
+        texels: &[[f32; 4]],
+        ratio: &FootprintRatio,
+        packing: &Packing,
+        options: &LobeOptions,
+    ) -> Surface {
         let first = texels[0];
         match self {
             Self::Phong | Self::BlinnPhong | Self::Beckmann | Self::OffCentre => {
@@ -111,10 +119,10 @@ impl Shading {
             }
             Self::Lean => Surface {
                 normal: bump_normal(first, packing),
-                lobe: SurfaceLobe::Lean(lean_surface(first, texels[1], packing, options)),
+                lobe: SurfaceLobe::Lean(lean_surface(first, texels[1], ratio, packing, options)),
             },
             Self::Clean => {
-                let lobe = clean_surface(first, packing, options);
+                let lobe = clean_surface(first, ratio, packing, options);
                 Surface { normal: slope_normal(lobe.mean), lobe: SurfaceLobe::Clean(lobe) }
             }
             Self::Toksvig => Surface {
@@ -122,7 +130,7 @@ impl Shading {
                 lobe: SurfaceLobe::Toksvig(toksvig_surface(first, packing, options)),
             },
             Self::Variance => {
-                let lobe = variance_surface(first, packing, options);
+                let lobe = variance_surface(first, ratio, packing, options);
                 Surface { normal: slope_normal(lobe.mean), lobe: SurfaceLobe::Variance(lobe) }
             }
             Self::Ggx => {

@@ -3,24 +3,25 @@
 //! Source: the way out that Olano, "Shiny and CLEAN", 2011, names for eight-bit textures.
 
 use super::LobeOptions;
-use super::base::base_to_add;
-use super::gaussian::{SlopeGaussian, gaussian_lobe, slope_gaussian};
+use super::footprint::FootprintRatio;
+use super::gaussian::{SlopeGaussian, gaussian_lobe};
+use super::moment_surface::moment_surface;
 use super::vector::Vector;
 use crate::moments::Covariance;
 use crate::slope::Slope;
 use crate::texture::Packing;
 use crate::texture::packing::unpack;
 
-/// The Gaussian that a filtered texel of the variance texture holds.
-pub fn variance_surface(variance: [f32; 4], packing: &Packing, options: &LobeOptions) -> SlopeGaussian {
+/// The Gaussian that a filtered texel of the variance texture holds, less what the pixel does not see of it.
+pub fn variance_surface(
+    variance: [f32; 4],
+    ratio: &FootprintRatio,
+    packing: &Packing,
+    options: &LobeOptions,
+) -> SlopeGaussian {
     let mean = Slope { x: unpack(variance[0], packing.slope), y: unpack(variance[1], packing.slope) };
-    let base = base_to_add(mean, options);
-    let covariance = Covariance {
-        xx: unpack(variance[2], packing.variance).max(0.0) + base.xx,
-        yy: unpack(variance[3], packing.variance).max(0.0) + base.yy,
-        xy: base.xy,
-    };
-    slope_gaussian(mean, covariance, options)
+    let [xx, yy] = [variance[2], variance[3]].map(|stored| unpack(stored, packing.variance).max(0.0));
+    moment_surface(mean, Covariance { xx, yy, xy: 0.0 }, ratio.variances, options)
 }
 
 /// The lobe for unit directions to the viewer and to the light. Normalised about the surface normal.

@@ -61,9 +61,25 @@ pub const MODULES: &[Module] = &[
         role: Role::Part,
     },
     Module {
+        name: "masking",
+        source: include_str!("masking.wgsl"),
+        needs: &[],
+        summary: "shadowing and masking",
+        citation: "Smith, 1967; Walter et al., 2007, 5.2; Heitz, 2014",
+        role: Role::Part,
+    },
+    Module {
+        name: "footprint",
+        source: include_str!("footprint.wgsl"),
+        needs: &["options"],
+        summary: "which part of the variance under a texture filter is the pixel's",
+        citation: "",
+        role: Role::Part,
+    },
+    Module {
         name: "facet",
         source: include_str!("facet.wgsl"),
-        needs: &["options", "packing", "vector"],
+        needs: &["options", "packing", "vector", "masking"],
         summary: "a facet of the bump map and cosine lobes",
         citation: "",
         role: Role::Part,
@@ -79,9 +95,17 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "gaussian",
         source: include_str!("gaussian.wgsl"),
-        needs: &["options", "vector"],
+        needs: &["options", "vector", "masking"],
         summary: "a Gaussian of slopes",
         citation: "Olano & Baker, LEAN Mapping, 2010, Eq. 1",
+        role: Role::Part,
+    },
+    Module {
+        name: "moment-surface",
+        source: include_str!("moment_surface.wgsl"),
+        needs: &["base", "footprint", "gaussian"],
+        summary: "from filtered moments to a Gaussian of slopes",
+        citation: "",
         role: Role::Part,
     },
     Module {
@@ -119,7 +143,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "lean",
         source: include_str!("lean.wgsl"),
-        needs: &["facet", "base", "gaussian"],
+        needs: &["facet", "moment-surface"],
         summary: "LEAN mapping, from filtered moments",
         citation: "Olano & Baker, LEAN Mapping, 2010, Eq. 1, 5 and 6, Figure 16",
         role: Role::Model,
@@ -127,7 +151,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "clean",
         source: include_str!("clean.wgsl"),
-        needs: &["packing", "base", "gaussian"],
+        needs: &["packing", "moment-surface"],
         summary: "CLEAN mapping, from the filtered trace of the moments",
         citation: "Olano, Shiny and CLEAN, 2011",
         role: Role::Model,
@@ -143,7 +167,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "variance",
         source: include_str!("variance.wgsl"),
-        needs: &["packing", "base", "gaussian"],
+        needs: &["packing", "moment-surface"],
         summary: "off-centre Beckmann with a stored variance",
         citation: "Olano, Shiny and CLEAN, 2011",
         role: Role::Model,
@@ -174,7 +198,7 @@ pub const CONVENTIONS: &[&str] = &[
     "Texels are sampled linearly, never as sRGB. Packing says how they are read: value = stored * x + y.",
     "NAME_surface makes a surface of filtered texels, or of a filtered normal, once a pixel.",
     "NAME_lobe is its lobe for a direction to the viewer and one to the light, zero where either is not above the surface.",
-    "In the normalised form a lobe is a microfacet distribution D; in the paper's form it is D h.z^4 2 pi.",
+    "In the normalised form a lobe is a microfacet distribution D; in the physical form D G2 / n.v; in the paper's 2 pi D h.z^4.",
     "No lobe is NaN or infinite for texels that filtering can give and specular powers from 1 to 100000.",
 ];
 
@@ -265,8 +289,9 @@ mod tests {
         ]) {
             assert_eq!(words(LobeOptions { roughness_stored: *stored, ..default })[5], number(name));
         }
-        use crate::shading::{BaseLobe, Form, Repair};
-        for (form, name) in [(Form::Paper, "FORM_PAPER"), (Form::Normalised, "FORM_NORMALISED")] {
+        use crate::shading::{BaseLobe, FootprintModel, Form, Masking, Repair};
+        for (form, name) in Form::ALL.iter().copied().zip(["FORM_PAPER", "FORM_NORMALISED", "FORM_PHYSICAL"])
+        {
             assert_eq!(words(LobeOptions { form, ..default })[1], number(name));
         }
         for (base, name) in [(BaseLobe::Plane, "BASE_PLANE"), (BaseLobe::Facet, "BASE_FACET")] {
@@ -277,6 +302,15 @@ mod tests {
         }
         for (base, name) in [(Base::None, "MAPS_WITHOUT_BASE"), (Base::Baked, "MAPS_WITH_BASE")] {
             assert_eq!(words(LobeOptions { base_in_maps: base, ..default })[4], number(name));
+        }
+        for (masking, name) in [(Masking::Base, "MASKING_BASE"), (Masking::Full, "MASKING_FULL")] {
+            assert_eq!(words(LobeOptions { masking, ..default })[6], number(name));
+        }
+        for (footprint, name) in [
+            (FootprintModel::Corrected, "FOOTPRINT_CORRECTED"),
+            (FootprintModel::Published, "FOOTPRINT_PUBLISHED"),
+        ] {
+            assert_eq!(words(LobeOptions { footprint, ..default })[7], number(name));
         }
         assert_eq!(f32::from_bits(default.to_words()[0]), default.specular_power);
     }

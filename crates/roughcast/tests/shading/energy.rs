@@ -4,8 +4,9 @@ use std::f64::consts::TAU;
 
 use roughcast::Slope;
 use roughcast::shading::{
-    BaseLobe, Form, LobeOptions, Shading, Surface, SurfaceLobe, beckmann_surface, blinn_phong_surface,
-    ggx_surface, ggx_surface_of_normal, off_centre_surface, phong_surface, slope_gaussian,
+    BaseLobe, FootprintRatio, Form, LobeOptions, Shading, Surface, SurfaceLobe, beckmann_surface,
+    blinn_phong_surface, ggx_surface, ggx_surface_of_normal, off_centre_surface, phong_surface,
+    slope_gaussian,
 };
 use roughcast::texture::{Base, Packing, RoughnessStored};
 use roughcast::{Covariance, Lobe};
@@ -186,7 +187,9 @@ fn ggx_isotropic_and_anisotropic() {
 fn toksvig_keeps_the_energy_of_its_dulled_exponent() {
     for gloss in [1.0_f32, 0.3, 0.01] {
         let options = options(4096.0, Form::Normalised);
-        let surface = Shading::Toksvig.surface(&[[0.0, 0.0, 0.9, gloss]], &Packing::IDENTITY, &options).lobe;
+        let surface = Shading::Toksvig
+            .surface(&[[0.0, 0.0, 0.9, gloss]], &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
+            .lobe;
         let width = (1.0 / (4096.0 * f64::from(gloss))).sqrt();
         let integral = integral(&Frame::SURFACE, [0.0; 2], round(width), along(surface, options));
         assert!(is_one(integral), "{gloss}: {integral}");

@@ -1,7 +1,8 @@
 //! Models that must agree where one is a special case, or the limit, of another.
 
 use roughcast::shading::{
-    BaseLobe, Form, LobeOptions, Shading, Surface, base_covariance, blinn_phong_against_beckmann,
+    BaseLobe, FootprintRatio, Form, LobeOptions, Shading, Surface, base_covariance,
+    blinn_phong_against_beckmann,
 };
 use roughcast::texture::Packing;
 use roughcast::{Covariance, Moments, Slope};
@@ -46,7 +47,8 @@ fn lean_at_the_finest_level_is_off_centre_beckmann() {
                 let slope =
                     Slope { x: random.between(-1.0, 1.0) as f32, y: random.between(-1.0, 1.0) as f32 };
                 let texels = lean_texels(Moments::of_slope(slope));
-                let lean = Shading::Lean.surface(&texels, &Packing::IDENTITY, &options);
+                let lean =
+                    Shading::Lean.surface(&texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options);
                 let bump = Shading::Lean.surface_of_slope(slope, &options);
                 let width = 1.0 / f64::from(s).sqrt();
                 let found = difference(lean, bump, slope, width, &options);
@@ -67,15 +69,20 @@ fn clean_is_lean_for_isotropic_bumps_and_variance_is_lean_without_mixed_terms() 
     ];
     let lean = |sigma| {
         let texels = lean_texels(Moments::from_mean_and_covariance(mean, sigma));
-        Shading::Lean.surface(&texels, &Packing::IDENTITY, &options)
+        Shading::Lean.surface(&texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
     };
     let clean = |sigma: Covariance| {
         let trace = sigma.trace() + mean.x * mean.x + mean.y * mean.y;
-        Shading::Clean.surface(&[[mean.x, mean.y, trace, 1.0]], &Packing::IDENTITY, &options)
+        Shading::Clean.surface(
+            &[[mean.x, mean.y, trace, 1.0]],
+            &FootprintRatio::WHOLE,
+            &Packing::IDENTITY,
+            &options,
+        )
     };
     let variance = |sigma: Covariance| {
         let texel = [mean.x, mean.y, sigma.xx, sigma.yy];
-        Shading::Variance.surface(&[texel], &Packing::IDENTITY, &options)
+        Shading::Variance.surface(&[texel], &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
     };
     let of = |one, other| difference(one, other, mean, 0.1, &options);
     assert!(of(lean(round), clean(round)) < ROUNDING);
@@ -111,7 +118,7 @@ fn lobes_turn_with_the_bumps() {
     };
     let lean = |[x, y]: [f32; 2], sigma| {
         let texels = lean_texels(Moments::from_mean_and_covariance(Slope { x, y }, sigma));
-        Shading::Lean.surface(&texels, &Packing::IDENTITY, &options)
+        Shading::Lean.surface(&texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
     };
     let plain = lean([0.2, 0.05], sigma).lobe(view, light, &options);
     let turned = lean(turn([0.2, 0.05]), turned_sigma).lobe(turn3(view), turn3(light), &options);

@@ -2,8 +2,10 @@
 
 mod accuracy;
 mod energy;
+mod footprint;
 mod likeness;
 mod oracle;
+mod physical;
 mod reflectance;
 mod sturdy;
 mod support;

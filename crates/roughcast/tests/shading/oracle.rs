@@ -11,10 +11,11 @@ fn slope_in(frame: &Frame, h: Vector) -> ([f64; 2], f64) {
     ([x / z, y / z], z)
 }
 
+/// Without the masking of the physical form, which is up to the caller.
 fn in_form(density: f64, cosine: f64, form: Form) -> f64 {
     match form {
         Form::Paper => TAU * density,
-        Form::Normalised => density / cosine.powi(4),
+        Form::Normalised | Form::Physical => density / cosine.powi(4),
     }
 }
 
@@ -44,7 +45,7 @@ pub fn cosine_lobe(axis: Vector, direction: Vector, s: f64, form: Form) -> f64 {
     let power = (0.5 * s * (-dot(sine, sine)).ln_1p()).exp();
     match form {
         Form::Paper => s * power,
-        Form::Normalised => (s + 2.0) / TAU * power,
+        Form::Normalised | Form::Physical => (s + 2.0) / TAU * power,
     }
 }
 

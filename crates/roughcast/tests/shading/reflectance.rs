@@ -44,7 +44,7 @@ fn diffuse_light_takes_the_normal_at_its_length() {
 }
 
 #[test]
-fn the_two_forms_agree_where_eye_light_and_normal_meet() {
+fn the_forms_agree_where_eye_light_and_normal_meet() {
     let light = LightSample { direction: UP, irradiance: [1.0, 2.0, 3.0] };
     for shading in [Shading::Beckmann, Shading::OffCentre, Shading::Ggx] {
         let specular = |form| {
@@ -52,9 +52,12 @@ fn the_two_forms_agree_where_eye_light_and_normal_meet() {
             let surface = shading.surface_of_slope(Slope::default(), &options);
             reflect(&surface, &material(), UP, &light, &options).specular
         };
-        let (paper, normalised) = (specular(Form::Paper), specular(Form::Normalised));
-        for (a, b) in paper.into_iter().zip(normalised) {
-            assert!(a > 0.0 && close(a, b), "{shading}: {paper:?} {normalised:?}");
+        let normalised = specular(Form::Normalised);
+        for form in [Form::Paper, Form::Physical] {
+            let other = specular(form);
+            for (a, b) in other.into_iter().zip(normalised) {
+                assert!(a > 0.0 && close(a, b), "{shading}, {form}: {other:?} {normalised:?}");
+            }
         }
     }
 }

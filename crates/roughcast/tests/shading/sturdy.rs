@@ -1,7 +1,8 @@
 //! No lobe is NaN, infinite or negative, whatever the texels, the options and the directions.
 
 use roughcast::shading::{
-    BaseLobe, Form, LobeOptions, Repair, Shading, blinn_phong_surface, ggx_surface_of_normal,
+    BaseLobe, FootprintModel, FootprintRatio, Form, LobeOptions, Masking, Repair, Shading,
+    blinn_phong_surface, ggx_surface_of_normal,
 };
 use roughcast::texture::{Base, Packing, RoughnessStored};
 use roughcast::{Lobe, Slope};
@@ -25,6 +26,8 @@ fn all_options() -> Vec<LobeOptions> {
                                 repair,
                                 base_in_maps,
                                 roughness_stored,
+                                masking: Masking::ALL[all.len() % 2],
+                                footprint: FootprintModel::Corrected,
                             });
                         }
                     }
@@ -44,7 +47,7 @@ fn directions() -> Vec<[f32; 3]> {
 }
 
 fn check(shading: Shading, texels: &[[f32; 4]], packing: &Packing, options: &LobeOptions) {
-    let surface = shading.surface(texels, packing, options);
+    let surface = shading.surface(texels, &FootprintRatio::WHOLE, packing, options);
     assert!(surface.normal.iter().all(|v| v.is_finite()), "{shading} {texels:?}: {surface:?}");
     let directions = directions();
     for view in &directions {
@@ -100,7 +103,9 @@ fn a_mirror_with_its_base_baked_in_is_finite() {
     let lobe = |repair| {
         let options = LobeOptions { base_in_maps: Base::Baked, repair, ..LobeOptions::default() };
         let texels = [[0.1, 0.0, 0.9, 0.0], [0.25, 0.0, 0.0625, 0.0]];
-        Shading::Lean.surface(&texels, &Packing::IDENTITY, &options).lobe(h, h, &options)
+        Shading::Lean
+            .surface(&texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
+            .lobe(h, h, &options)
     };
     assert!(lobe(Repair::Clamp) > 0.0);
     assert_eq!(lobe(Repair::Published), 0.0);
@@ -113,7 +118,9 @@ fn a_covariance_that_is_none_is_mended_or_shows_nothing() {
     let h = narrow(Frame::SURFACE.direction([0.25, 0.0]));
     let lobe = |repair| {
         let options = LobeOptions { repair, ..LobeOptions::default() };
-        Shading::Lean.surface(&texels, &Packing::IDENTITY, &options).lobe(h, h, &options)
+        Shading::Lean
+            .surface(&texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
+            .lobe(h, h, &options)
     };
     assert!(lobe(Repair::Clamp) > 0.0);
     assert_eq!(lobe(Repair::Published), 0.0);
@@ -125,7 +132,9 @@ fn the_repair_leaves_sound_covariances_alone() {
     let h = narrow(Frame::SURFACE.direction([0.3, 0.05]));
     let lobe = |repair| {
         let options = LobeOptions { repair, specular_power: 1e5, ..LobeOptions::default() };
-        Shading::Lean.surface(&texels, &Packing::IDENTITY, &options).lobe(h, h, &options)
+        Shading::Lean
+            .surface(&texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
+            .lobe(h, h, &options)
     };
     assert_eq!(lobe(Repair::Clamp), lobe(Repair::Published));
 }
@@ -171,7 +180,8 @@ fn a_normal_without_direction_is_flat() {
 fn a_two_channel_normal_gets_its_z_back() {
     let packing = Packing { unit: [2.0, -1.0], ..Packing::IDENTITY };
     let options = LobeOptions::default();
-    let normal = |texel| Shading::Ggx.surface(&[texel, [0.5; 4]], &packing, &options).normal;
+    let normal =
+        |texel| Shading::Ggx.surface(&[texel, [0.5; 4]], &FootprintRatio::WHOLE, &packing, &options).normal;
     let (two, three) = (normal([0.8, 0.5, 0.0, 1.0]), normal([0.8, 0.5, 0.9, 1.0]));
     for (a, b) in two.iter().zip(three) {
         assert!((a - b).abs() < 1e-6, "{two:?} {three:?}");

@@ -1,0 +1,166 @@
+//! Footprint correction: which part of the variance under a texture filter is variance under the pixel.
+//!
+//! A texture filter covers more than the pixel where the texture is magnified, and across the longer axis of a footprint
+//! that a trilinear filter takes for a circle. The difference between neighbouring texels then counts as roughness, and
+//! highlights are too wide. What the filter covers is known, and so is how fast the mean slope changes; together they
+//! tell the excess.
+//!
+//! Along an axis of the footprint with ρ texels of level 0 a pixel, the pixel (a Gaussian with a standard deviation of half
+//! a pixel) has the variance `P = (ρ / 2)²` in texels. The filter has `K`: at level l, `4^l / 6` for the interpolation between
+//! texels and `(4^l - 1) / 12` for the box of texels of level 0 under each. A mean slope that changes linearly by `∂B` a texel
+//! has the variance `|∂B|² K` under the filter and `|∂B|² P` under the pixel. Over both axes:
+//!
+//! - `linear_trace = 1.5 Σ |∂B|² K` is what a linear change of slope can make of the trace of the filtered covariance. Between
+//!   two texels that differ by Δ, linear interpolation leaves `t (1 - t) Δ²`, whose mean is `Δ² / 6` and whose maximum is
+//!   1.5 times that;
+//! - `ratio = Σ |∂B|² min(K, P) / Σ |∂B|² K` is the part of it that the pixel sees;
+//! - the covariance is multiplied by `k = 1 - (1 - ratio) min(1, linear_trace / tr Σ)`. Variance that no linear change can
+//!   make is detail below the texel, and stays.
+//!
+//! Where variance itself is stored ([`super::Shading::Variance`]), interpolation between texels makes none, and K is the box
+//! under each alone.
+
+use super::{FootprintModel, LobeOptions};
+
+/// Standard deviation of the pixel filter, in pixels.
+const PIXEL_DEVIATION: f32 = 0.5;
+/// The largest over the mean variance of linear interpolation between two texels: `1/4` over `1/6`.
+const LARGEST_OVER_MEAN: f32 = 1.5;
+/// Squared lengths of an axis, in texels, below which it counts as this long: a level 0 that is magnified 10⁶ times.
+const LEAST_SQUARED_LENGTH: f32 = 1e-12;
+
+/// The axes of the ellipse that a pixel covers in the texture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FootprintAxes {
+    /// Squared lengths of the longer axis and of the shorter one, in texels of level 0.
+    pub squared_lengths: [f32; 2],
+    /// Weights of the derivatives to the right and down in the derivative along the longer axis, a texel.
+    pub along: [f32; 2],
+    /// The same for the shorter axis.
+    pub across: [f32; 2],
+}
+
+/// The axes of a footprint, given how the position in the texture changes to the next pixel to the right and to the one
+/// below, in texels of level 0: the derivatives of the texture coordinates times the texture's size.
+pub fn footprint_axes(texels_dx: [f32; 2], texels_dy: [f32; 2]) -> FootprintAxes {
+    let ([ax, ay], [bx, by]) = (texels_dx, texels_dy);
+    let (xx, yy, xy) = (ax * ax + bx * bx, ay * ay + by * by, ax * ay + bx * by);
+    let (half_difference, half_trace) = (0.5 * (xx - yy), 0.5 * (xx + yy));
+    let radius = (half_difference * half_difference + xy * xy).sqrt();
+    // The eigenvector of the larger eigenvalue, in the form whose first component does not cancel.
+    let raw =
+        if half_difference >= 0.0 { [half_difference + radius, xy] } else { [xy, radius - half_difference] };
+    let length = (raw[0] * raw[0] + raw[1] * raw[1]).sqrt();
+    let [ux, uy] = if length > 0.0 { [raw[0] / length, raw[1] / length] } else { [1.0, 0.0] };
+    let long = (half_trace + radius).max(LEAST_SQUARED_LENGTH);
+    // The determinant is the product of both lengths: so the shorter keeps its digits beside a much longer one.
+    let area = ax * by - ay * bx;
+    let short = (area * area / long).clamp(LEAST_SQUARED_LENGTH, long);
+    FootprintAxes {
+        squared_lengths: [long, short],
+        along: [(ax * ux + ay * uy) / long, (bx * ux + by * uy) / long],
+        across: [(ay * ux - ax * uy) / short, (by * ux - bx * uy) / short],
+    }
+}
+
+/// Variances of a texture filter along the axes of a footprint, in texels of level 0, squared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FilterVariances {
+    /// For moments: interpolation between texels, and the area under each.
+    pub moments: [f32; 2],
+    /// For stored variances: the area under each texel alone, since a mean of variances has none of the variance between.
+    pub variances: [f32; 2],
+}
+
+/// Variances of trilinear interpolation at a level of detail, 0 or more: those of its two levels, mixed as it mixes them.
+pub fn level_variances(level: f32) -> FilterVariances {
+    let level = level.max(0.0);
+    let finer = level.floor();
+    // 4^l / 6 + (4^l - 1) / 12 is 4^l / 4 - 1 / 12; the coarser level has four times the power of four.
+    let power = (2.0 * finer).exp2() * (1.0 + 3.0 * (level - finer));
+    let (moments, variances) = (power / 4.0 - 1.0 / 12.0, (power - 1.0) / 12.0);
+    FilterVariances { moments: [moments; 2], variances: [variances; 2] }
+}
+
+/// Variances of the filter of graphics hardware: `max_anisotropy` taps at most along the longer axis, 1 for a trilinear
+/// filter, of the level at which the shorter axis (of a trilinear filter: the longer) is a texel long, plus a bias.
+pub fn hardware_variances(axes: &FootprintAxes, max_anisotropy: f32, mip_bias: f32) -> FilterVariances {
+    let [long, short] = axes.squared_lengths.map(f32::sqrt);
+    let most_taps = max_anisotropy.max(1.0);
+    let shorter = short.max(long / most_taps).max(1.0);
+    let taps = (long / shorter).ceil().clamp(1.0, most_taps);
+    let level = level_variances(shorter.log2() + mip_bias);
+    let between_taps = axes.squared_lengths[0] / 12.0 * (1.0 - 1.0 / (taps * taps));
+    let [along, across] = level.moments;
+    FilterVariances { moments: [along + between_taps, across], variances: level.variances }
+}
+
+/// The part of a filtered covariance that is the pixel's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PixelPart {
+    /// The pixel's part of what a linear change of the mean slope makes, 0 to 1.
+    pub ratio: f32,
+    /// The most that a linear change of the mean slope makes of the covariance's trace.
+    pub linear_trace: f32,
+}
+
+impl PixelPart {
+    /// All of it.
+    pub const WHOLE: Self = Self { ratio: 1.0, linear_trace: 0.0 };
+
+    /// By what to multiply a covariance of this trace: 0 to 1.
+    pub fn factor(&self, trace: f32) -> f32 {
+        if trace > 0.0 { 1.0 - (1.0 - self.ratio) * (self.linear_trace / trace).min(1.0) } else { 1.0 }
+    }
+}
+
+/// The pixel's part, given the squared changes of the mean slope a texel along the two axes, the variances of the filter and
+/// those of the pixel along them.
+pub fn pixel_part(changes: [f32; 2], variances: [f32; 2], pixel: [f32; 2]) -> PixelPart {
+    let [along, across] = changes;
+    let covered = along * variances[0] + across * variances[1];
+    if covered <= 0.0 {
+        return PixelPart::WHOLE;
+    }
+    let seen = along * variances[0].min(pixel[0]) + across * variances[1].min(pixel[1]);
+    PixelPart { ratio: seen / covered, linear_trace: LARGEST_OVER_MEAN * covered }
+}
+
+/// What a pixel sees of the variance under a texture filter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FootprintRatio {
+    /// Of filtered moments: LEAN and CLEAN.
+    pub moments: PixelPart,
+    /// Of a filtered variance.
+    pub variances: PixelPart,
+}
+
+impl FootprintRatio {
+    /// All of it: the papers' way.
+    pub const WHOLE: Self = Self { moments: PixelPart::WHOLE, variances: PixelPart::WHOLE };
+}
+
+/// What a pixel sees of the variance under a filter of these variances, where the filtered mean slope changes by `mean_dx` to
+/// the next pixel to the right and by `mean_dy` to the one below. [`FootprintRatio::WHOLE`] for
+/// [`FootprintModel::Published`].
+pub fn footprint_ratio(
+    axes: &FootprintAxes,
+    filter: &FilterVariances,
+    mean_dx: [f32; 2],
+    mean_dy: [f32; 2],
+    options: &LobeOptions,
+) -> FootprintRatio {
+    if options.footprint == FootprintModel::Published {
+        return FootprintRatio::WHOLE;
+    }
+    let squared_change = |[dx, dy]: [f32; 2]| {
+        let [x, y] = [0, 1].map(|i| dx * mean_dx[i] + dy * mean_dy[i]);
+        x * x + y * y
+    };
+    let changes = [squared_change(axes.along), squared_change(axes.across)];
+    let pixel = axes.squared_lengths.map(|squared| PIXEL_DEVIATION * PIXEL_DEVIATION * squared);
+    FootprintRatio {
+        moments: pixel_part(changes, filter.moments, pixel),
+        variances: pixel_part(changes, filter.variances, pixel),
+    }
+}

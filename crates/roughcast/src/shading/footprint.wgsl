@@ -1,0 +1,121 @@
+// Footprint correction: which part of the variance under a texture filter is variance under the pixel.
+//
+// In a fragment shader, with the texture's size in texels and the mean slope as sampled:
+//   let axes = footprint_axes(dpdx(uv) * size, dpdy(uv) * size);
+//   let filtered = hardware_variances(axes, max_anisotropy, mip_bias);
+//   let ratio = footprint_ratio(axes, filtered, dpdx(mean), dpdy(mean), options);
+
+// Standard deviation of the pixel filter, in pixels.
+const PIXEL_DEVIATION: f32 = 0.5;
+
+// The largest over the mean variance of linear interpolation between two texels: 1/4 over 1/6.
+const LARGEST_OVER_MEAN: f32 = 1.5;
+
+// Squared lengths of an axis, in texels, below which it counts as this long.
+const LEAST_SQUARED_LENGTH: f32 = 1e-12;
+
+struct FootprintAxes {
+    squared_lengths: vec2f,     // of the longer axis and of the shorter one, in texels of level 0
+    along: vec2f,               // weights of the derivatives to the right and down in that along the longer axis
+    across: vec2f,              // and along the shorter one
+}
+
+struct FilterVariances {
+    moments: vec2f,     // along the two axes, in texels of level 0, squared: for filtered moments
+    variances: vec2f,   // for filtered variances
+}
+
+struct PixelPart {
+    ratio: f32,         // the pixel's part of what a linear change of the mean slope makes
+    linear_trace: f32,  // the most that it makes of the covariance's trace
+}
+
+struct FootprintRatio {
+    moments: PixelPart,     // of filtered moments
+    variances: PixelPart,   // of a filtered variance
+}
+
+// The axes of a footprint, given how the position in the texture, in texels of level 0, changes to the next pixel to the
+// right and to the one below.
+fn footprint_axes(texels_dx: vec2f, texels_dy: vec2f) -> FootprintAxes {
+    let xx = texels_dx.x * texels_dx.x + texels_dy.x * texels_dy.x;
+    let yy = texels_dx.y * texels_dx.y + texels_dy.y * texels_dy.y;
+    let xy = texels_dx.x * texels_dx.y + texels_dy.x * texels_dy.y;
+    let half_difference = 0.5 * (xx - yy);
+    let radius = sqrt(half_difference * half_difference + xy * xy);
+    // The eigenvector of the larger eigenvalue, in the form whose first component does not cancel.
+    let wide = vec2f(half_difference + radius, xy);
+    let tall = vec2f(xy, radius - half_difference);
+    let raw = select(tall, wide, half_difference >= 0.0);
+    let squared = dot(raw, raw);
+    let u = select(vec2f(1.0, 0.0), raw * inverseSqrt(squared), squared > 0.0);
+    let long = max(0.5 * (xx + yy) + radius, LEAST_SQUARED_LENGTH);
+    // The determinant is the product of both lengths.
+    let area = texels_dx.x * texels_dy.y - texels_dx.y * texels_dy.x;
+    let short = clamp(area * area / long, LEAST_SQUARED_LENGTH, long);
+    let along = vec2f(dot(texels_dx, u), dot(texels_dy, u)) / long;
+    let v = vec2f(-u.y, u.x);
+    let across = vec2f(dot(texels_dx, v), dot(texels_dy, v)) / short;
+    return FootprintAxes(vec2f(long, short), along, across);
+}
+
+// Of trilinear interpolation at a level of detail, 0 or more.
+fn level_variances(detail: f32) -> FilterVariances {
+    let level = max(detail, 0.0);
+    let finer = floor(level);
+    let power = exp2(2.0 * finer) * (1.0 + 3.0 * (level - finer));
+    return FilterVariances(vec2f(power / 4.0 - 1.0 / 12.0), vec2f((power - 1.0) / 12.0));
+}
+
+// Of the filter of graphics hardware: a sampler with this anisotropy, 1 for a trilinear one, and a bias of its levels.
+fn hardware_variances(axes: FootprintAxes, max_anisotropy: f32, mip_bias: f32) -> FilterVariances {
+    let lengths = sqrt(axes.squared_lengths);
+    let most_taps = max(max_anisotropy, 1.0);
+    let shorter = max(max(lengths.y, lengths.x / most_taps), 1.0);
+    let taps = clamp(ceil(lengths.x / shorter), 1.0, most_taps);
+    let level = level_variances(log2(shorter) + mip_bias);
+    let between_taps = vec2f(axes.squared_lengths.x / 12.0 * (1.0 - 1.0 / (taps * taps)), 0.0);
+    return FilterVariances(level.moments + between_taps, level.variances);
+}
+
+// By what to multiply a covariance of this trace.
+fn pixel_factor(part: PixelPart, trace: f32) -> f32 {
+    if trace <= 0.0 {
+        return 1.0;
+    }
+    return 1.0 - (1.0 - part.ratio) * min(part.linear_trace / trace, 1.0);
+}
+
+// Squared changes of the mean slope a texel along the two axes, and the variances of the filter and of the pixel.
+fn pixel_part(changes: vec2f, variances: vec2f, pixel: vec2f) -> PixelPart {
+    let covered = dot(changes, variances);
+    if covered <= 0.0 {
+        return PixelPart(1.0, 0.0);
+    }
+    return PixelPart(dot(changes, min(variances, pixel)) / covered, LARGEST_OVER_MEAN * covered);
+}
+
+// All of the variance: the papers' way.
+fn whole_footprint() -> FootprintRatio {
+    return FootprintRatio(PixelPart(1.0, 0.0), PixelPart(1.0, 0.0));
+}
+
+// What a pixel sees of the variance under a filter, where the filtered mean slope changes by mean_dx to the next pixel to
+// the right and by mean_dy to the one below.
+fn footprint_ratio(
+    axes: FootprintAxes,
+    filtered: FilterVariances,
+    mean_dx: vec2f,
+    mean_dy: vec2f,
+    options: LobeOptions,
+) -> FootprintRatio {
+    if options.footprint == FOOTPRINT_PUBLISHED {
+        return whole_footprint();
+    }
+    let along = axes.along.x * mean_dx + axes.along.y * mean_dy;
+    let across = axes.across.x * mean_dx + axes.across.y * mean_dy;
+    let changes = vec2f(dot(along, along), dot(across, across));
+    let pixel = PIXEL_DEVIATION * PIXEL_DEVIATION * axes.squared_lengths;
+    let moments = pixel_part(changes, filtered.moments, pixel);
+    return FootprintRatio(moments, pixel_part(changes, filtered.variances, pixel));
+}

@@ -1,0 +1,223 @@
+//! Footprint correction: what a pixel sees of the variance under a texture filter.
+
+use roughcast::shading::{
+    FilterVariances, FootprintModel, FootprintRatio, LobeOptions, PixelPart, Shading, SurfaceLobe,
+    footprint_axes, footprint_ratio, hardware_variances, level_variances,
+};
+use roughcast::texture::{Base, Packing};
+use roughcast::{Covariance, Moments, Slope};
+
+/// Single floats, a few operations.
+const ROUNDING: f64 = 1e-5;
+
+fn close(a: f32, b: f64) -> bool {
+    (f64::from(a) - b).abs() <= ROUNDING * b.abs().max(1e-3)
+}
+
+/// The variance about a point of the weights that trilinear interpolation between levels `l` and `l + 1` gives to the texels
+/// of level 0, averaged over the place of the point: by summing up weights.
+fn variance_of_weights(level: i32, blend: f64) -> f64 {
+    const PLACES: u32 = 512;
+    let of_level = |level: i32| {
+        let side = 2.0_f64.powi(level);
+        let mut total = 0.0;
+        for place in 0..PLACES {
+            // From the centre of one texel of the level to that of the next.
+            let t = (f64::from(place) + 0.5) / f64::from(PLACES);
+            for (texel, weight) in [(0.0, 1.0 - t), (1.0, t)] {
+                for fine in 0..side as u32 {
+                    let x = (texel - 0.5) * side + f64::from(fine) + 0.5;
+                    let distance = x - t * side;
+                    total += weight / side * distance * distance;
+                }
+            }
+        }
+        total / f64::from(PLACES)
+    };
+    (1.0 - blend) * of_level(level) + blend * of_level(level + 1)
+}
+
+#[test]
+fn variances_of_levels_are_those_of_their_weights() {
+    /// The midpoint rule over the places, of a parabola.
+    const QUADRATURE: f64 = 1e-5;
+    for level in 0..5 {
+        for blend in [0.0, 0.25, 0.7] {
+            let found = level_variances(level as f32 + blend as f32).moments[0];
+            let wanted = variance_of_weights(level, blend);
+            assert!(
+                (f64::from(found) / wanted - 1.0).abs() < QUADRATURE,
+                "{level} {blend}: {found} {wanted}"
+            );
+        }
+    }
+    // Stored variances lack what lies between texels: 4^l / 6.
+    let FilterVariances { moments, variances } = level_variances(3.0);
+    assert!(close(moments[0] - variances[0], 64.0 / 6.0) && level_variances(0.0).variances == [0.0; 2]);
+    assert_eq!(level_variances(-3.0), level_variances(0.0));
+}
+
+#[test]
+fn taps_of_an_anisotropic_filter_spread_along_the_longer_axis() {
+    let axes = footprint_axes([8.0, 0.0], [0.0, 2.0]);
+    let level = level_variances(1.0).moments[0];
+    let FilterVariances { moments, .. } = hardware_variances(&axes, 16.0, 0.0);
+    // Four taps two texels apart: -3, -1, 1, 3.
+    assert!(close(moments[0] - level, 5.0) && moments[1] == level, "{moments:?}");
+    // A trilinear filter takes the longer axis both ways; two taps at most, a level between.
+    let trilinear = hardware_variances(&axes, 1.0, 0.0);
+    assert_eq!(trilinear, level_variances(3.0));
+    let two = hardware_variances(&axes, 2.0, 0.0).moments;
+    assert!(
+        close(two[1], f64::from(level_variances(2.0).moments[0])) && close(two[0] - two[1], 4.0),
+        "{two:?}"
+    );
+}
+
+#[test]
+fn axes_and_derivatives_along_them_are_found() {
+    // Two slopes that change linearly over the texture.
+    let gradient = [[0.03_f64, -0.01], [0.02, 0.05]];
+    let change = |[x, y]: [f64; 2]| gradient.map(|[gx, gy]| gx * x + gy * y);
+    for (long, short, degrees, turn) in [
+        (8.0, 0.5, 20.0_f64, 0.0_f64),
+        (3.0, 2.9, 100.0, 1.0),
+        (40.0, 1.0, 45.0, 2.0),
+        (1e-3, 1e-4, -70.0, 0.4),
+    ] {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let (along, across) = ([cos, sin], [-sin, cos]);
+        // A rotation of the picture does not change the ellipse.
+        let (s, c) = turn.sin_cos();
+        let dx = [0, 1].map(|i| c * long * along[i] + s * short * across[i]);
+        let dy = [0, 1].map(|i| -s * long * along[i] + c * short * across[i]);
+        let axes = footprint_axes(dx.map(|v| v as f32), dy.map(|v| v as f32));
+        assert!(close(axes.squared_lengths[0], long * long), "{axes:?}");
+        assert!((f64::from(axes.squared_lengths[1]) / (short * short) - 1.0).abs() < 1e-3, "{axes:?}");
+        for (weights, direction) in [(axes.along, along), (axes.across, across)] {
+            let (mean_dx, mean_dy) = (change(dx), change(dy));
+            let found =
+                [0, 1].map(|i| f64::from(weights[0]) * mean_dx[i] + f64::from(weights[1]) * mean_dy[i]);
+            let wanted = change(direction);
+            let squared = |v: [f64; 2]| v[0] * v[0] + v[1] * v[1];
+            assert!((squared(found) / squared(wanted) - 1.0).abs() < 1e-2, "{degrees}: {found:?} {wanted:?}");
+        }
+    }
+}
+
+#[test]
+fn degenerate_footprints_give_ratios() {
+    let odd = [0.0, 1e-20, 1e-9, 1.0, 1e9, -1e9];
+    for ax in odd {
+        for by in odd {
+            for ay in odd {
+                let axes = footprint_axes([ax, ay], [ay, by]);
+                for taps in [1.0, 16.0] {
+                    let filter = hardware_variances(&axes, taps, 0.0);
+                    for mean in [[0.0, 0.0], [0.3, -1e-9], [100.0, 50.0]] {
+                        let options = LobeOptions::default();
+                        let FootprintRatio { moments, variances } =
+                            footprint_ratio(&axes, &filter, mean, [mean[1], mean[0]], &options);
+                        for part in [moments, variances] {
+                            let factor = part.factor(0.3);
+                            let fine = (0.0..=1.0).contains(&part.ratio) && (0.0..=1.0).contains(&factor);
+                            assert!(fine, "{ax} {ay} {by}: {part:?} {factor}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Of the mean over places of the trace that LEAN finds in a ramp of slopes at level 0, corrected.
+fn corrected_trace_of_a_ramp(gradient: [f32; 2], texels: f32, options: &LobeOptions) -> f64 {
+    const PLACES: u32 = 64;
+    let axes = footprint_axes([texels, 0.0], [0.0, texels]);
+    let mean_dx = gradient.map(|g| g * texels);
+    let ratio = footprint_ratio(&axes, &hardware_variances(&axes, 1.0, 0.0), mean_dx, [0.0; 2], options);
+    let mut total = 0.0;
+    for place in 0..PLACES {
+        let t = (place as f32 + 0.5) / PLACES as f32;
+        // Between texels whose slopes differ by the gradient: t (1 - t) times its square.
+        let trace = t * (1.0 - t) * (gradient[0] * gradient[0] + gradient[1] * gradient[1]);
+        total += f64::from(trace * ratio.moments.factor(trace));
+    }
+    total / f64::from(PLACES)
+}
+
+#[test]
+fn the_pixels_variance_is_left_of_a_ramp() {
+    for texels in [0.125_f32, 0.25, 0.5] {
+        for gradient in [[0.1, 0.0], [0.02, -0.3]] {
+            let squared = f64::from(gradient[0] * gradient[0] + gradient[1] * gradient[1]);
+            // The pixel's Gaussian has a standard deviation of half a pixel.
+            let wanted = squared * f64::from(0.5 * texels).powi(2);
+            let found = corrected_trace_of_a_ramp(gradient, texels, &LobeOptions::default());
+            assert!((found / wanted - 1.0).abs() < 1e-3, "{texels}: {found} {wanted}");
+            let published = LobeOptions { footprint: FootprintModel::Published, ..LobeOptions::default() };
+            let found = corrected_trace_of_a_ramp(gradient, texels, &published);
+            assert!((found / (squared / 6.0) - 1.0).abs() < 1e-3 && found > 2.0 * wanted, "{found} {wanted}");
+        }
+    }
+}
+
+#[test]
+fn nothing_changes_where_a_pixel_covers_whole_texels() {
+    for level in 0..6 {
+        let texels = 2.0_f32.powi(level);
+        let axes = footprint_axes([texels, 0.0], [0.0, texels]);
+        let options = LobeOptions::default();
+        let filter = hardware_variances(&axes, 16.0, 0.0);
+        let ratio = footprint_ratio(&axes, &filter, [0.2, 0.1], [-0.1, 0.3], &options);
+        assert_eq!((ratio.moments.ratio, ratio.variances.ratio), (1.0, 1.0), "level {level}");
+    }
+}
+
+#[test]
+fn detail_below_the_texel_stays() {
+    let part = PixelPart { ratio: 0.1, linear_trace: 0.02 };
+    assert!((part.factor(0.02) - 0.1).abs() < 1e-6 && (part.factor(0.01) - 0.1).abs() < 1e-6);
+    // Of a trace of 2 a hundredth may be the ramp's.
+    assert!((part.factor(2.0) - 0.991).abs() < 1e-6);
+    for trace in [0.0, -1.0, f32::NAN] {
+        assert_eq!(part.factor(trace), 1.0);
+    }
+}
+
+/// The covariance that LEAN, CLEAN and stored variances shade.
+fn shaded(shading: Shading, sigma: Covariance, ratio: &FootprintRatio, options: &LobeOptions) -> Covariance {
+    let mean = Slope { x: 0.3, y: -0.2 };
+    let moments = Moments::from_mean_and_covariance(mean, sigma);
+    let texels = match shading {
+        Shading::Lean => vec![[0.0, 0.0, 1.0, moments.xy], [mean.x, mean.y, moments.xx, moments.yy]],
+        Shading::Clean => vec![[mean.x, mean.y, moments.xx + moments.yy, 0.0]],
+        _ => vec![[mean.x, mean.y, sigma.xx, sigma.yy]],
+    };
+    match shading.surface(&texels, ratio, &Packing::IDENTITY, options).lobe {
+        SurfaceLobe::Lean(surface) | SurfaceLobe::Clean(surface) | SurfaceLobe::Variance(surface) => {
+            surface.covariance
+        }
+        other => panic!("{other:?} has no covariance"),
+    }
+}
+
+#[test]
+fn models_of_moments_shade_the_pixels_part_and_the_whole_base() {
+    let sigma = Covariance { xx: 0.04, yy: 0.04, xy: 0.0 };
+    let part = |ratio| PixelPart { ratio, linear_trace: 1.0 };
+    let ratio = FootprintRatio { moments: part(0.25), variances: part(0.5) };
+    let (s, base) = (100.0, 0.01);
+    for (shading, kept) in [(Shading::Lean, 0.25), (Shading::Clean, 0.25), (Shading::Variance, 0.5)] {
+        assert!(shading.mean_input().is_some());
+        let options = LobeOptions { specular_power: s, ..LobeOptions::default() };
+        let found = shaded(shading, sigma, &ratio, &options);
+        assert!(close(found.xx, kept * 0.04 + base) && close(found.yy, kept * 0.04 + base), "{found:?}");
+        let whole = shaded(shading, sigma, &FootprintRatio::WHOLE, &options);
+        assert!(close(whole.xx, 0.04 + base), "{whole:?}");
+        // A base that is in the map is nobody's excess.
+        let baked = LobeOptions { base_in_maps: Base::Baked, ..options };
+        let found = shaded(shading, sigma, &ratio, &baked);
+        assert!(close(found.xx, kept * (0.04 - base) + base), "{shading}: {found:?}");
+    }
+}
