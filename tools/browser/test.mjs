@@ -47,7 +47,16 @@ const LEAN = {
   material: 'lean',
 };
 const CLEAN = { albedo: 0.1, map: 'clean.ktx2', textures: { clean: 'clean.ktx2' }, material: 'clean' };
-const SUBJECTS = { pbr: PBR, 'pbr in blocks': BLOCKS, 'split lean': LEAN, clean: CLEAN };
+// Without the footprint correction, as the papers have it.
+const published = (subject) => ({ ...subject, options: { footprint: 1 }, render: ['--footprint', 'published'] });
+const SUBJECTS = {
+  pbr: PBR,
+  'pbr in blocks': BLOCKS,
+  'split lean': LEAN,
+  clean: CLEAN,
+  'split lean as published': published(LEAN),
+  'clean as published': published(CLEAN),
+};
 
 const folder = mkdtempSync(join(tmpdir(), 'roughcast-browser-'));
 let server;
@@ -73,13 +82,14 @@ after(async () => {
 
 /** What our renderer makes of a subject; each picture is rendered once. */
 function ours(subject, view) {
-  const key = `${subject.map} ${view}`;
+  const { material, albedo, map, render = [] } = subject;
+  const key = [map, view, ...render].join(' ');
   if (!references.has(key)) {
     const output = join(folder, 'ours.exr');
-    const power = subject.material === 'pbr' ? [] : ['--specular-power', SPECULAR_POWER];
-    roughcast(...renderArguments(view, subject.albedo, join(folder, subject.map), output), ...power);
+    const power = material === 'pbr' ? [] : ['--specular-power', SPECULAR_POWER];
+    roughcast(...renderArguments(view, albedo, join(folder, map), output), ...power, ...render);
     const { pixels } = readExr(output);
-    references.set(key, subject.material === 'pbr' ? withFresnelOfThree(pixels) : pixels);
+    references.set(key, material === 'pbr' ? withFresnelOfThree(pixels) : pixels);
   }
   return references.get(key);
 }
@@ -90,16 +100,19 @@ const FRESNEL_RATIOS = fresnelRatios();
 
 /** What three.js is told to draw. */
 function drawing(subject, view, changes = {}) {
-  const { material, albedo, textures } = { ...subject, ...changes };
+  const { material, albedo, textures, options } = { ...subject, ...changes };
   const urls = Object.fromEntries(Object.entries(textures).map(([name, file]) => [name, `/baked/${file}`]));
-  const shader = material === 'pbr' ? {} : shaderInputs(material);
-  return job(view, albedo, { material, ...shader, ...changes, textures: urls });
+  const shader = material === 'pbr' ? {} : shaderInputs(material, options);
+  return job(view, albedo, { ...changes, material, ...shader, textures: urls });
 }
 
-function shaderInputs(model) {
+// LobeOptions by number, as in the exported text.
+const DEFAULT_OPTIONS = { form: 2, base: 0, repair: 0, base_in_maps: 0, roughness_stored: 0, masking: 0, footprint: 0 };
+
+function shaderInputs(model, others) {
   const library = roughcast('shader', model, 'reflectance', '--lang', 'glsl');
   const { packing } = JSON.parse(readFileSync(join(folder, `${model}.json`), 'utf8'));
-  const options = { specular_power: SPECULAR_POWER, form: 0, base: 0, repair: 0, base_in_maps: 0, roughness_stored: 0 };
+  const options = { ...DEFAULT_OPTIONS, specular_power: SPECULAR_POWER, ...others };
   return { library, packing, options };
 }
 

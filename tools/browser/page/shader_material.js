@@ -28,20 +28,34 @@ in vec2 texture_coordinates;
 in vec3 world_position;
 layout(location = 0) out highp vec4 radiance;`;
 
+// Which part of the filtered variance the pixel sees, for a trilinear filter. The texel has the mean slope in its first two channels.
+const FOOTPRINT = `
+const float MAX_ANISOTROPY = 1.0; // texture.anisotropy
+const float MIP_BIAS = 0.0;
+
+FootprintRatio footprint(vec4 texel, vec2 size) {
+  vec2 mean = texel.xy * packing.slope.x + packing.slope.y;
+  FootprintAxes axes = footprint_axes(dFdx(texture_coordinates) * size, dFdy(texture_coordinates) * size);
+  FilterVariances filtered = hardware_variances(axes, MAX_ANISOTROPY, MIP_BIAS);
+  return footprint_ratio(axes, filtered, dFdx(mean), dFdy(mean), options);
+}`;
+
 const SURFACES = {
   lean: {
     textures: ['lean1', 'lean2'],
     code: `
   vec4 texel1 = texture(lean1, texture_coordinates);
   vec4 texel2 = texture(lean2, texture_coordinates);
+  FootprintRatio ratio = footprint(texel2, vec2(textureSize(lean2, 0)));
   vec3 normal = bump_normal(texel1, packing);
-  SlopeGaussian surface = lean_surface(texel1, texel2, packing, options);`,
+  SlopeGaussian surface = lean_surface(texel1, texel2, ratio, packing, options);`,
   },
   clean: {
     textures: ['clean'],
     code: `
   vec4 texel = texture(clean, texture_coordinates);
-  SlopeGaussian surface = clean_surface(texel, packing, options);
+  FootprintRatio ratio = footprint(texel, vec2(textureSize(clean, 0)));
+  SlopeGaussian surface = clean_surface(texel, ratio, packing, options);
   vec3 normal = slope_normal(surface.mean);`,
   },
 };
@@ -53,6 +67,7 @@ ${library}
 ${textures.map((name) => `uniform sampler2D ${name};`).join('\n')}
 ${INPUTS}
 ${FRAME}
+${FOOTPRINT}
 
 void main() {
   vec3 view = normalize((cameraPosition - world_position) * world_from_tangent);
