@@ -28,3 +28,15 @@ export function difference(got, reference) {
 
 /** Whether a difference is within a tolerance `{ rms, worst }`. NaN is not. */
 export const within = (found, tolerance) => found.rms <= tolerance.rms && found.worst <= tolerance.worst;
+
+/** RGBA floats of a picture whose sides are `block` times shorter: the means of its blocks. */
+export function blockMeans(pixels, { width, height }, block) {
+  const [columns, rows] = [width / block, height / block];
+  if (!Number.isInteger(columns) || !Number.isInteger(rows)) throw new Error(`${width}x${height} is not made of blocks of ${block}`);
+  const means = new Float32Array(4 * columns * rows);
+  pixels.forEach((value, i) => {
+    const [x, y] = [Math.floor(i / 4) % width, Math.floor(i / 4 / width)];
+    means[4 * (Math.floor(y / block) * columns + Math.floor(x / block)) + (i % 4)] += value / block ** 2;
+  });
+  return means;
+}
