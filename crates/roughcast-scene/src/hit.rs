@@ -56,3 +56,11 @@ pub struct Footprint {
     /// Downwards.
     pub dy: DVec2,
 }
+
+impl Footprint {
+    /// The footprint in units that are smaller by this factor.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self { dx: self.dx * factor, dy: self.dy * factor }
+    }
+}

@@ -1,6 +1,6 @@
 //! The report as a page: numbers first, then every picture beside its truth and its errors.
 
-use roughcast::shading::Shading;
+use roughcast::shading::{FootprintModel, Shading};
 use roughcast_scene::{Filter, Light, View};
 
 use super::Compared;
@@ -61,6 +61,8 @@ fn how_it_was_made(page: &mut Page, settings: &Settings<'_>, given: &Compared) {
         ("textures of the methods", format!("{} bits", shading.bits.name())),
         ("specular power s", format!("{}", shading.specular_power)),
         ("form of the lobes", shading.form.name().to_owned()),
+        ("masking", shading.masking.name().to_owned()),
+        ("footprint", shading.footprint.name().to_owned()),
         ("base lobe in the surface", shading.base.name().to_owned()),
         ("truth", format!("{} samples a pixel, Gaussian pixel filter, float slopes", settings.samples)),
         ("its surface between texels", settings.reconstruction.name().to_owned()),
@@ -238,10 +240,13 @@ fn limits(page: &mut Page, settings: &Settings<'_>, compared: &[Compared]) {
     let rows: Vec<_> = compared.iter().flat_map(|map| limit_rows(map, settings)).collect();
     page.paragraph(&format!("LEAN with {} filtering in the views:", settings.main_filter()));
     page.table(&["map, view", "misplaced, whole map", "RMSE / truth's brightest", "energy"], &rows);
-    page.paragraph(
-        "Where texels are magnified, as in the near view, LEAN is duller than the truth: between two texels it finds the slopes of \
-         both, and takes them for roughness, while the truth is a surface that bends from the one to the other.",
-    );
+    if settings.shading.footprint == FootprintModel::Published {
+        page.paragraph(
+            "All variance under the texture filter counts as roughness, as in the papers. Where texels are magnified, as in the near \
+             view, LEAN is then duller than the truth: between two texels it finds the slopes of both, while the truth is a \
+             surface that bends from the one to the other.",
+        );
+    }
 }
 
 fn limit_rows(map: &Compared, settings: &Settings<'_>) -> Vec<Vec<String>> {

@@ -12,6 +12,7 @@ mod trilinear;
 mod variances;
 
 pub use summed_area::SummedAreaTable;
+pub(crate) use variances::{Lookup, Quad};
 
 use glam::DVec2;
 use roughcast::Wrap;
@@ -105,10 +106,7 @@ impl Sampler {
                 let side = level.exp2();
                 Footprint { dx: DVec2::new(side, 0.0), dy: DVec2::new(0.0, side) }
             }
-            None => {
-                let scale = self.finite_bias().exp2();
-                Footprint { dx: texels.dx * scale, dy: texels.dy * scale }
-            }
+            None => texels.scaled(self.finite_bias().exp2()),
         }
     }
 }

@@ -10,31 +10,59 @@ use super::footprint::{Ellipse, in_texels, reduced};
 use super::{Filter, Sampler, anisotropic, ewa, summed_area};
 use crate::{Footprint, Mipmap};
 
+/// The place of a pixel among the four whose differences graphics hardware takes for derivatives: the sign of the way to its
+/// neighbour in the row, and in the column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Quad {
+    x: f64,
+    y: f64,
+}
+
+impl Quad {
+    /// Of the pixel in this column and row.
+    pub fn of(x: u32, y: u32) -> Self {
+        let sign = |i: u32| if i % 2 == 0 { 1.0 } else { -1.0 };
+        Self { x: sign(x), y: sign(y) }
+    }
+}
+
+/// Where a pixel looks its textures up.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lookup {
+    /// Texture coordinates.
+    pub uv: DVec2,
+    /// How they change to the next pixels.
+    pub footprint: Footprint,
+    /// Which neighbours the derivatives of texels are taken from.
+    pub quad: Quad,
+}
+
 impl Sampler {
-    /// What the pixel sees of the variance of a texture whose first two channels hold the mean slope over `slope_scale`. `mean`
-    /// is that texture's texel, sampled at the same place; the changes of the mean to the neighbouring pixels are differences
-    /// of samples, as graphics hardware has them.
-    pub fn footprint_ratio(
+    /// What the pixel sees of the variance of a texture whose first two channels hold the mean slope, as `slope` unpacks it.
+    /// `mean` is that texture's texel at this place. Derivatives of the mean are differences of samples, as graphics hardware
+    /// has them.
+    pub(crate) fn footprint_ratio(
         &self,
         texture: &Mipmap,
-        slope_scale: f32,
+        slope: [f32; 2],
         mean: [f32; 4],
-        uv: DVec2,
-        footprint: &Footprint,
+        at: &Lookup,
         options: &LobeOptions,
     ) -> FootprintRatio {
         if options.footprint == FootprintModel::Published || self.filter == Filter::Nearest {
             return FootprintRatio::WHOLE;
         }
-        let texels = in_texels(footprint, texture.size());
+        let texels = in_texels(&at.footprint, texture.size());
         let axes = footprint_axes(texels.dx.as_vec2().to_array(), texels.dy.as_vec2().to_array());
         let variances = self.variances(&axes, &texels);
-        let uv = reduced(uv, self.wrap);
-        let change = |to: DVec2| {
-            let there = self.sample(texture, uv + to, footprint);
-            [0, 1].map(|i| (there[i] - mean[i]) * slope_scale)
+        let uv = reduced(at.uv, self.wrap);
+        let derivative = |to: DVec2, sign: f64| {
+            let there = self.sample(texture, uv + sign * to, &at.footprint);
+            [0, 1].map(|i| (there[i] - mean[i]) * slope[0] * sign as f32)
         };
-        footprint_ratio(&axes, &variances, change(footprint.dx), change(footprint.dy), options)
+        let mean_dx = derivative(at.footprint.dx, at.quad.x);
+        let mean_dy = derivative(at.footprint.dy, at.quad.y);
+        footprint_ratio(&axes, &variances, mean_dx, mean_dy, options)
     }
 
     /// The filter's variances along the axes of a footprint in texels of level 0.

@@ -1,12 +1,13 @@
 //! A shading method as a GPU runs it: one sample a pixel, at its centre, from filtered textures.
 
-use roughcast::shading::{FootprintRatio, LobeOptions, Shading};
+use roughcast::shading::{FootprintRatio, LobeOptions, Shading, Surface};
 use roughcast::texture::{Packing, TextureArray, TextureInfo};
 
 use super::inputs::model_inputs;
 use super::shade::Shaded;
 use super::{Progress, RenderError, render_rows};
-use crate::{Footprint, Hit, Mipmap, Picture, Sampler, Scene};
+use crate::filter::{Lookup, Quad};
+use crate::{Mipmap, Picture, Sampler, Scene};
 
 /// The place of a material's roughness among its textures.
 const ROUGHNESS: usize = 1;
@@ -76,39 +77,25 @@ impl Method<'_> {
         let options = self.options.for_maps(&self.textures.info);
         let rays = scene.camera.pixel_rays(size.0, size.1);
         render_rows(scene, size, progress, |x, y| {
+            let quad = Quad::of(x, y);
             let (x, y) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
             let ray = rays.ray(x, y);
             let Some(hit) = scene.shape.hit(&ray) else { return Shaded::background(scene) };
             let footprint = hit.footprint(&rays.ray(x + 1.0, y), &rays.ray(x, y + 1.0));
-            let surface = self.surface(&hit, &footprint, scene.repeats, &options);
+            let at = Lookup { uv: hit.uv * scene.repeats, footprint: footprint.scaled(scene.repeats), quad };
+            let surface = self.surface(&at, &options);
             Shaded::lit(scene, &ray, &hit, &surface, &options)
         })
     }
 
-    fn surface(
-        &self,
-        hit: &Hit,
-        footprint: &Footprint,
-        repeats: f64,
-        options: &LobeOptions,
-    ) -> roughcast::shading::Surface {
-        let footprint = Footprint { dx: footprint.dx * repeats, dy: footprint.dy * repeats };
-        let mut texels = [[0.0; 4]; MAX_TEXTURES];
-        for (texel, texture) in texels.iter_mut().zip(&self.textures.textures) {
-            *texel = self.sampler.sample(texture, hit.uv * repeats, &footprint);
-        }
+    fn surface(&self, at: &Lookup, options: &LobeOptions) -> Surface {
         let ShadingTextures { shading, textures, packing, .. } = self.textures;
+        let mut texels = [[0.0; 4]; MAX_TEXTURES];
+        for (texel, texture) in texels.iter_mut().zip(textures) {
+            *texel = self.sampler.sample(texture, at.uv, &at.footprint);
+        }
         let ratio = shading.mean_input().map_or(FootprintRatio::WHOLE, |input| {
-            let [slope_scale, _] = packing.slope;
-            let uv = hit.uv * repeats;
-            self.sampler.footprint_ratio(
-                &textures[input],
-                slope_scale,
-                texels[input],
-                uv,
-                &footprint,
-                options,
-            )
+            self.sampler.footprint_ratio(&textures[input], packing.slope, texels[input], at, options)
         });
         shading.surface(&texels[..textures.len()], &ratio, packing, options)
     }
