@@ -9,8 +9,8 @@ const EXECUTABLE = process.env.CHROMIUM ?? '/usr/bin/chromium';
 const EXPECTED = /GPU stall due to ReadPixels/;
 
 /**
- * Opens the page. Resolves to `{ draw, complaints, close }`: `draw(job)` resolves to the RGBA floats of page/draw.js, `complaints()` is what
- * the browser has logged.
+ * Opens the page. Resolves to `{ draw, complaints, close }`: `draw(job)` resolves to the RGBA floats of page/draw.js, `complaints()` is
+ * what the browser has logged.
  */
 export async function openPage(url) {
   if (!existsSync(EXECUTABLE)) throw new Error(`${EXECUTABLE} is missing: apt-get install chromium, or name another in CHROMIUM`);

@@ -1,9 +1,9 @@
 // Compares two pictures of linear radiance.
 
 /**
- * How far `got` is from `reference`, both RGBA floats of the same size; alpha is not looked at. `rms`: root mean square of the difference,
- * over that of the reference. `worst`: the largest difference, over the reference's largest value. `contrast`: standard deviation of the
- * reference over its mean, by which a test knows that it has not compared black with black.
+ * How far `got` is from `reference`, both RGBA floats of the same size; alpha is not looked at. `rms`: root mean square of the
+ * difference, over that of the reference. `worst`: the largest difference, over the reference's largest value. `contrast`: standard
+ * deviation of the reference over its mean, by which a test knows that it has not compared black with black.
  */
 export function difference(got, reference) {
   if (got.length !== reference.length || got.length === 0) throw new Error(`${got.length} numbers against ${reference.length}`);

@@ -1,10 +1,10 @@
 // The scene that both render: three.js from a job, the program from arguments.
 
-/** The two views of the map. `repeats` is how often it repeats over the square: 0.36 texels of the map a pixel, or 18. */
+/** The two views: how often the map repeats over the square. A pixel is 0.2 texels wide and 0.4 long, or 11 and 22. */
 export const VIEWS = { near: { repeats: 0.5 }, far: { repeats: 25 } };
 
-// Low over the ground, turned about the x axis alone: then the footprint of a pixel is a rectangle along the rows and columns of the map but
-// for the perspective, and what this renderer and the hardware each call its size is nearly the same.
+// Low over the ground, turned about the x axis alone: then the footprint of a pixel is a rectangle along the rows and columns of the
+// map but for the perspective, and what this renderer and the hardware each call its size is nearly the same.
 const VIEW = { eye: [0, 0.95, 1.645], target: [0, 0, 0], fov: 20, width: 192, height: 192 };
 // Aside, so that a mirrored picture would show.
 const TOWARDS_LIGHT = [0.35, 0.6, -0.75];

@@ -13,8 +13,8 @@ renderer.debug.onShaderError = (gl, program, vertex, fragment) => {
 const shaderErrors = [];
 loader.detectSupport(renderer);
 
-// The square of `roughcast render --scene plane`: from -1 to 1 on the ground, u to +x and, as in glTF, v down the map, to +z, so that row 0 of a
-// file is at -z. `v` is 'up' for the coordinates that three.js's own geometries have, which textures.js mirrors.
+// The square of `roughcast render --scene plane`: from -1 to 1 on the ground, u to +x and, as in glTF, v down the map, to +z, so that
+// row 0 of a file is at -z. `v` is 'up' for the coordinates that three.js's own geometries have, which textures.js mirrors.
 function square({ repeats, tangents, v = 'down' }) {
   const sign = v === 'up' ? -1 : 1;
   const corners = [[-1, -1], [-1, 1], [1, 1], [1, -1]];
@@ -55,7 +55,8 @@ function packed(floats) {
  * Renders one picture.
  *
  * `job`: `material` (a name in materials.js), `textures` (name: URL), `sampling` and `v` (see textures.js), `view` (eye, target, fov in
- * degrees, width, height), `repeats`, `tangents`, `light` (towards, irradiance), and what the material needs. Returns RGBA floats, row 0 at the bottom, in base64.
+ * degrees, width, height), `repeats`, `tangents`, `light` (towards, irradiance), and what the material needs. Returns RGBA floats, row 0
+ * at the bottom, in base64.
  */
 export async function draw(job) {
   const textures = {};

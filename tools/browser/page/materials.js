@@ -5,8 +5,8 @@ import { shaderMaterial } from './shader_material.js';
 
 const grey = (value) => new THREE.Color(value, value, value);
 
-// three.js derives the tangent frame from the coordinates at which it samples, its y axis along growing v. In the files v grows downwards, as in
-// glTF, and the normal's y points up; so y is negated, as GLTFLoader does. With tangents in the geometry it stays.
+// three.js derives the tangent frame from the coordinates at which it samples, its y axis along growing v. In the files v grows
+// downwards, as in glTF, and the normal's y points up; so y is negated, as GLTFLoader does. With tangents in the geometry it stays.
 function normalScale(job) {
   const up = job.tangents === 'attribute' ? 1 : -1;
   return new THREE.Vector2(1, job.flipGreen ? -up : up);
