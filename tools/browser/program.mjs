@@ -2,11 +2,12 @@
 
 import { execFileSync } from 'node:child_process';
 import { existsSync, readFileSync } from 'node:fs';
+import { resolve } from 'node:path';
 import { FloatType } from 'three';
 import { EXRLoader } from 'three/addons/loaders/EXRLoader.js';
 
 const BUILT = new URL('../../target/debug/roughcast', import.meta.url).pathname;
-const PROGRAM = process.env.ROUGHCAST ?? BUILT;
+const PROGRAM = resolve(process.env.ROUGHCAST ?? BUILT);
 
 /** Runs it with arguments and returns what it writes to standard output. */
 export function roughcast(...args) {
