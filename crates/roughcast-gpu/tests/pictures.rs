@@ -40,11 +40,8 @@ fn own_taps(view: View) -> f64 {
 /// Of the highlight's energy with anisotropic filters, for models that keep it whatever the filter. Largest measured: 0.014.
 const ENERGY: f64 = 0.03;
 
-const FORMS: [(Form, BaseLobe); 3] = [
-    (Form::Paper, BaseLobe::Facet),
-    (Form::Normalised, BaseLobe::Plane),
-    (Form::Physical, BaseLobe::Plane),
-];
+const FORMS: [(Form, BaseLobe); 3] =
+    [(Form::Paper, BaseLobe::Facet), (Form::Normalised, BaseLobe::Plane), (Form::Physical, BaseLobe::Plane)];
 
 fn lobe(form: Form, base: BaseLobe) -> LobeOptions {
     LobeOptions { specular_power: SPECULAR_POWER, form, base, ..LobeOptions::default() }

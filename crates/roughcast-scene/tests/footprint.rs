@@ -12,16 +12,12 @@ use roughcast_scene::{Filter, Picture, Plane, Reconstruction, Sampler, Scene, Sh
 const SIZE: (u32, u32) = (96, 72);
 
 /// Maps with the direction of their green.
-const MAPS: [(&str, Green); 4] = [
-    ("crops/rock020_normal_256.jpg", Green::Down),
-    ("materials/water_bevy/water_normals.png", Green::Up),
-    ("materials/rock020/Rock020_1K_Normal.jpg", Green::Down),
-    ("materials/tiles036/Tiles036_1K_Normal.jpg", Green::Down),
-];
+const MAPS: [(&str, Green); 2] =
+    [("crops/rock020_normal_256.jpg", Green::Down), ("materials/water_bevy/water_normals.png", Green::Up)];
 
-/// Of ordinary bump mapping's error in the near view, the most that LEAN may have. Of these, 0.71 was the most that was measured;
-/// the median over all real materials is lower (benches/materials.py).
-const NEAR: f64 = 0.8;
+/// Of ordinary bump mapping's error in the near view, the most that LEAN and CLEAN may have. Measured: 0.53 and 0.27; with EWA, whose
+/// Gaussian is wider than a bilinear filter, 0.70 and 0.58. benches/materials.py measures all real materials.
+const NEAR: f64 = 0.75;
 /// By how much the correction may change errors where a pixel covers many texels.
 const UNCHANGED: f64 = 0.02;
 
@@ -62,14 +58,16 @@ impl Seen {
         truth.render(&self.scene, SIZE, &unwatched).expect("a picture")
     }
 
-    /// The root mean square error of a model.
-    fn error(&self, shading: Shading, filter: Filter, footprint: FootprintModel) -> f64 {
+    /// Root mean square errors of a model with a filter, corrected and as published.
+    fn errors(&self, shading: Shading, filter: Filter, truth: &Picture) -> [f64; 2] {
         let textures = ShadingTextures::new(shading, &self.maps(shading)).expect("the model's maps");
         let sampler = Sampler { filter, ..Sampler::default() };
-        let options = LobeOptions { footprint, ..LobeOptions::default() };
-        let method = Method { textures: &textures, sampler, options };
-        let picture = method.render(&self.scene, SIZE, &unwatched).expect("a picture");
-        rmse(&picture, &self.truth(shading)).expect("pictures of one size")
+        [FootprintModel::Corrected, FootprintModel::Published].map(|footprint| {
+            let options = LobeOptions { footprint, ..LobeOptions::default() };
+            let method = Method { textures: &textures, sampler, options };
+            let picture = method.render(&self.scene, SIZE, &unwatched).expect("a picture");
+            rmse(&picture, truth).expect("pictures of one size")
+        })
     }
 }
 
@@ -77,12 +75,11 @@ impl Seen {
 fn lean_beats_ordinary_bump_mapping_in_the_near_view() {
     for (name, green) in roughcast_testdata::rows_with_files(MAPS, |row| row.0) {
         let seen = Seen::new(name, green, View::Near);
+        let (own, off_centre) = (seen.truth(Shading::BlinnPhong), seen.truth(Shading::OffCentre));
         for filter in [Filter::Trilinear, Filter::Anisotropic, Filter::Ewa, Filter::SummedArea] {
-            let plain = seen.error(Shading::BlinnPhong, filter, FootprintModel::Corrected);
+            let [plain, _] = seen.errors(Shading::BlinnPhong, filter, &own);
             for shading in [Shading::Lean, Shading::Clean] {
-                let corrected = seen.error(shading, filter, FootprintModel::Corrected);
-                let published = seen.error(shading, filter, FootprintModel::Published);
-                eprintln!("{name} {filter} {shading}: {:.3} published {:.3}", corrected / plain, published / plain);
+                let [corrected, published] = seen.errors(shading, filter, &off_centre);
                 assert!(corrected < NEAR * plain, "{name}, {filter}, {shading}: {corrected} {plain}");
                 // As published it is worse than what it improves on.
                 assert!(published > plain, "{name}, {filter}, {shading}: {published} {plain}");
@@ -96,12 +93,11 @@ fn far_and_grazing_views_stay_as_they_are() {
     for (name, green) in roughcast_testdata::rows_with_files(MAPS, |row| row.0) {
         for view in [View::Far, View::Grazing] {
             let seen = Seen::new(name, green, view);
+            let truth = seen.truth(Shading::OffCentre);
             for shading in [Shading::Lean, Shading::Clean, Shading::Variance] {
-                let error = |footprint| seen.error(shading, Filter::Anisotropic, footprint);
-                let (corrected, published) =
-                    (error(FootprintModel::Corrected), error(FootprintModel::Published));
-                eprintln!("{name} {view} {shading}: {:+.4}", corrected / published - 1.0);
-                assert!(corrected < (1.0 + UNCHANGED) * published, "{name}, {view}, {shading}: {corrected} {published}");
+                let [corrected, published] = seen.errors(shading, Filter::Anisotropic, &truth);
+                let unchanged = (corrected / published - 1.0).abs() < UNCHANGED;
+                assert!(unchanged, "{name}, {view}, {shading}: {corrected} {published}");
             }
         }
     }

@@ -4,7 +4,7 @@ use roughcast::shading::*;
 
 use crate::harness::{Gives, Twin};
 use crate::inputs::{Inputs, gaussian_words};
-use crate::table::{covariance, facet, gaussian, ggx, one, slope, v3};
+use crate::table::{covariance, covariance_words, facet, gaussian, ggx, one, slope, v3};
 
 fn part(a: &[f32]) -> PixelPart {
     PixelPart { ratio: a[0], linear_trace: a[1] }
@@ -15,11 +15,17 @@ fn part_words(part: PixelPart) -> Vec<f32> {
 }
 
 pub fn ratio(a: &[f32]) -> FootprintRatio {
-    FootprintRatio { moments: part(a), variances: part(&a[2..]) }
+    FootprintRatio {
+        moments: part(a),
+        variances: part(&a[2..]),
+        linear: covariance(&a[4..]),
+        magnified: a[7],
+    }
 }
 
 fn ratio_words(ratio: FootprintRatio) -> Vec<f32> {
-    [part_words(ratio.moments), part_words(ratio.variances)].concat()
+    let FootprintRatio { moments, variances, linear, magnified } = ratio;
+    [part_words(moments), part_words(variances), covariance_words(linear), vec![magnified]].concat()
 }
 
 fn variances_words(FilterVariances { moments, variances }: FilterVariances) -> Vec<f32> {
@@ -157,6 +163,16 @@ pub fn footprint_twins() -> Vec<Twin> {
             rust: |a, _, _| one(part(a).factor(a[2])),
         },
         Twin {
+            name: "pixel_covariance",
+            gives: Gives::Numbers,
+            call: "put3(pixel_covariance(ratio(0u), part(2u), f3(8u), f(11u)));",
+            arguments: |inputs| [&inputs.ratio()[..], &inputs.covariance(), &[0.1 * inputs.unit()]].concat(),
+            rust: |a, _, _| {
+                let ratio = ratio(a);
+                covariance_words(ratio.pixel_covariance(ratio.variances, covariance(&a[8..]), a[11]))
+            },
+        },
+        Twin {
             name: "pixel_part",
             gives: Gives::Numbers,
             call: "put_part(pixel_part(f2(0u), f2(2u), f2(4u)));",
@@ -188,10 +204,12 @@ pub fn footprint_twins() -> Vec<Twin> {
         Twin {
             name: "moment_surface",
             gives: Gives::Gaussian,
-            call: "put_gaussian(moment_surface(f2(0u), f3(2u), part(5u), o()));",
-            arguments: |inputs| [&inputs.slope()[..], &inputs.covariance(), &inputs.ratio()[..2]].concat(),
+            call: "put_gaussian(moment_surface(f2(0u), f3(2u), ratio(5u), part(5u), o()));",
+            arguments: |inputs| [&inputs.slope()[..], &inputs.covariance(), &inputs.ratio()].concat(),
             rust: |a, o, _| {
-                gaussian_words(&moment_surface(slope(a), covariance(&a[2..]), part(&a[5..]), o)).to_vec()
+                let ratio = ratio(&a[5..]);
+                let surface = moment_surface(slope(a), covariance(&a[2..]), &ratio, ratio.moments, o);
+                gaussian_words(&surface).to_vec()
             },
         },
     ]

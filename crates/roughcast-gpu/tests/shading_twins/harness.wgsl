@@ -69,6 +69,8 @@ fn put_part(part: PixelPart) {
 fn put_ratio(ratio: FootprintRatio) {
     put_part(ratio.moments);
     put_part(ratio.variances);
+    put3(ratio.linear);
+    put(ratio.magnified);
 }
 
 fn put_variances(filtered: FilterVariances) {
@@ -87,7 +89,7 @@ fn part(i: u32) -> PixelPart {
 }
 
 fn ratio(i: u32) -> FootprintRatio {
-    return FootprintRatio(part(i), part(i + 2u));
+    return FootprintRatio(part(i), part(i + 2u), f3(i + 4u), f(i + 7u));
 }
 
 fn axes(i: u32) -> FootprintAxes {

@@ -168,9 +168,12 @@ impl Inputs {
     }
 
     /// What a pixel sees, of moments and of variances.
-    pub fn ratio(&mut self) -> [f32; 4] {
+    pub fn ratio(&mut self) -> [f32; 8] {
         let trace = |inputs: &mut Self| inputs.of_any_size(1e-4, 2.0).abs();
-        [self.unit(), trace(self), self.unit(), trace(self)]
+        let (xx, yy) = (trace(self), trace(self));
+        let xy = self.between(-0.9, 0.9) * (xx * yy).sqrt();
+        let magnified = [0.0, 1.0, self.unit()][self.below(3)];
+        [self.unit(), trace(self), self.unit(), trace(self), xx, yy, xy, magnified]
     }
 
     /// A facet's words, and a pair of directions whose half vector is near its normal.

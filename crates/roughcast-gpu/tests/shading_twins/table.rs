@@ -24,7 +24,7 @@ pub fn covariance(a: &[f32]) -> Covariance {
     Covariance { xx: a[0], yy: a[1], xy: a[2] }
 }
 
-fn covariance_words(Covariance { xx, yy, xy }: Covariance) -> Vec<f32> {
+pub fn covariance_words(Covariance { xx, yy, xy }: Covariance) -> Vec<f32> {
     vec![xx, yy, xy]
 }
 

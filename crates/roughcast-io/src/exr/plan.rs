@@ -52,7 +52,10 @@ impl<'a> Plan<'a> {
     /// # Errors
     /// [`WriteError::Unsupported`] where the array is not one that a mip-mapped EXR part can hold.
     pub(super) fn new(array: &'a TextureArray) -> Result<Self, WriteError> {
-        let sample_type = array.layers[0].sample_type();
+        let Some(first) = array.layers.first().filter(|layer| !layer.levels.is_empty()) else {
+            return Err(refusal("a texture without texels".to_owned(), "bake at least one level"));
+        };
+        let sample_type = first.sample_type();
         if !sample_type.is_float() {
             let bits = 8 * sample_type.bytes();
             return Err(refusal(

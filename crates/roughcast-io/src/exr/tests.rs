@@ -221,6 +221,11 @@ fn what_exr_cannot_hold_is_refused_with_the_mend() {
         let message = refusal(&array(4, 4, LAYERS[0], sample_type), &plain);
         assert!(message.contains("--bits half"), "{message}");
     }
+    let mut empty = array(4, 4, LAYERS[0], SampleType::F16);
+    empty.layers[0].levels.clear();
+    assert!(refusal(&empty, &plain).contains("without texels"));
+    empty.layers.clear();
+    assert!(refusal(&empty, &plain).contains("without texels"));
     let twice = array(4, 4, &[&["a", "b"], &["a"]], SampleType::F16);
     assert!(refusal(&twice, &plain).contains("two channels called 'a'"));
     let mut cut = array(8, 8, LAYERS[0], SampleType::F16);

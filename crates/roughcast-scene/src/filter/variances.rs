@@ -21,7 +21,7 @@ pub(crate) struct Quad {
 impl Quad {
     /// Of the pixel in this column and row.
     pub fn of(x: u32, y: u32) -> Self {
-        let sign = |i: u32| if i % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = |i: u32| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
         Self { x: sign(x), y: sign(y) }
     }
 }

@@ -25,8 +25,9 @@ pub struct ModelInputs<'a> {
 /// in the second, or packed with occlusion and metalness.
 ///
 /// # Errors
-/// [`RenderError::MissingTexture`] where one is not there.
+/// [`RenderError::MissingTexture`] where one is not there, [`RenderError::Shape`] where one lacks levels.
 pub fn model_inputs(shading: Shading, arrays: &[TextureArray]) -> Result<ModelInputs<'_>, RenderError> {
+    arrays.iter().try_for_each(TextureArray::check)?;
     let lobe = match array(Part::Anisotropy, arrays) {
         Some(_) => Lobe::Anisotropic,
         None => Lobe::Isotropic,

@@ -28,7 +28,7 @@ impl ShadingTextures {
     /// metalness.
     ///
     /// # Errors
-    /// [`RenderError::MissingTexture`] where one is not there.
+    /// [`RenderError::MissingTexture`] where one is not there, [`RenderError::Shape`] where one lacks levels.
     pub fn new(shading: Shading, arrays: &[TextureArray]) -> Result<Self, RenderError> {
         let inputs = model_inputs(shading, arrays)?;
         let mut textures =

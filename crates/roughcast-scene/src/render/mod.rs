@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use rayon::prelude::*;
-use roughcast::texture::Part;
+use roughcast::texture::{DecodeError, Part};
 
 pub use inputs::{ModelInputs, model_inputs};
 pub use method::{Method, ShadingTextures};
@@ -52,6 +52,9 @@ pub enum RenderError {
         /// The layer.
         layer: &'static str,
     },
+    /// Textures are not of one shape.
+    #[error(transparent)]
+    Shape(#[from] DecodeError),
     /// A texture cannot be sampled.
     #[error(transparent)]
     Texture(#[from] MipmapError),

@@ -24,7 +24,7 @@ pub fn clean_surface(
     let squared = f64::from(mean.x) * f64::from(mean.x) + f64::from(mean.y) * f64::from(mean.y);
     let trace = (f64::from(unpack(clean[2], packing.trace)) - squared) as f32;
     let variance = 0.5 * trace.max(0.0);
-    moment_surface(mean, Covariance::isotropic(variance), ratio.moments, options)
+    moment_surface(mean, Covariance::isotropic(variance), ratio, ratio.moments, options)
 }
 
 /// The lobe for unit directions to the viewer and to the light. Normalised about the surface normal.

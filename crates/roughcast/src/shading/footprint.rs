@@ -15,12 +15,16 @@
 //!   1.5 times that;
 //! - `ratio = Σ |∂B|² min(K, P) / Σ |∂B|² K` is the part of it that the pixel sees;
 //! - the covariance is multiplied by `k = 1 - (1 - ratio) min(1, linear_trace / tr Σ)`. Variance that no linear change can
-//!   make is detail below the texel, and stays.
+//!   make is detail below the texel, and stays;
+//! - where level 0 itself is magnified there is no such detail: between its texels the slope changes linearly and nothing else, and
+//!   the covariance under the pixel is `Σ P ∂B ∂Bᵀ` over the axes, whatever the filter has found. `magnified` fades from the one
+//!   to the other.
 //!
 //! Where variance itself is stored ([`super::Shading::Variance`]), interpolation between texels makes none, and K is the box
 //! under each alone.
 
 use super::{FootprintModel, LobeOptions};
+use crate::moments::Covariance;
 
 /// Standard deviation of the pixel filter, in pixels.
 const PIXEL_DEVIATION: f32 = 0.5;
@@ -133,11 +137,34 @@ pub struct FootprintRatio {
     pub moments: PixelPart,
     /// Of a filtered variance.
     pub variances: PixelPart,
+    /// The covariance that the linear change of the mean slope has under the pixel.
+    pub linear: Covariance,
+    /// How far that change is all that there is, 0 to 1: a magnified level 0 has nothing between its texels.
+    pub magnified: f32,
 }
 
 impl FootprintRatio {
     /// All of it: the papers' way.
-    pub const WHOLE: Self = Self { moments: PixelPart::WHOLE, variances: PixelPart::WHOLE };
+    pub const WHOLE: Self = Self {
+        moments: PixelPart::WHOLE,
+        variances: PixelPart::WHOLE,
+        linear: Covariance { xx: 0.0, yy: 0.0, xy: 0.0 },
+        magnified: 0.0,
+    };
+
+    /// The pixel's part of a covariance as a map holds it. `part` is this ratio's for what the map holds. The variance `base` along
+    /// each axis is not the bumps', and stays whole.
+    pub fn pixel_covariance(&self, part: PixelPart, stored: Covariance, base: f32) -> Covariance {
+        let kept = (1.0 - self.magnified) * part.factor(stored.xx + stored.yy - 2.0 * base);
+        // Nothing is subtracted and added again, so that what stays whole keeps its digits.
+        let rest = (1.0 - kept) * base;
+        let Covariance { xx, yy, xy } = self.linear;
+        Covariance {
+            xx: kept * stored.xx + rest + self.magnified * xx,
+            yy: kept * stored.yy + rest + self.magnified * yy,
+            xy: kept * stored.xy + self.magnified * xy,
+        }
+    }
 }
 
 /// What a pixel sees of the variance under a filter of these variances, where the filtered mean slope changes by `mean_dx` to
@@ -153,14 +180,21 @@ pub fn footprint_ratio(
     if options.footprint == FootprintModel::Published {
         return FootprintRatio::WHOLE;
     }
-    let squared_change = |[dx, dy]: [f32; 2]| {
-        let [x, y] = [0, 1].map(|i| dx * mean_dx[i] + dy * mean_dy[i]);
-        x * x + y * y
-    };
-    let changes = [squared_change(axes.along), squared_change(axes.across)];
+    let change = |[dx, dy]: [f32; 2]| [0, 1].map(|i| dx * mean_dx[i] + dy * mean_dy[i]);
+    let [along, across] = [change(axes.along), change(axes.across)];
+    let changes = [along, across].map(|[x, y]| x * x + y * y);
     let pixel = axes.squared_lengths.map(|squared| PIXEL_DEVIATION * PIXEL_DEVIATION * squared);
-    FootprintRatio {
-        moments: pixel_part(changes, filter.moments, pixel),
-        variances: pixel_part(changes, filter.variances, pixel),
-    }
+    let seen = [0, 1].map(|i| pixel[i].min(filter.moments[i]));
+    let linear = Covariance {
+        xx: seen[0] * along[0] * along[0] + seen[1] * across[0] * across[0],
+        yy: seen[0] * along[1] * along[1] + seen[1] * across[1] * across[1],
+        xy: seen[0] * along[0] * along[1] + seen[1] * across[0] * across[1],
+    };
+    let moments = pixel_part(changes, filter.moments, pixel);
+    let variances = pixel_part(changes, filter.variances, pixel);
+    // The area under a texel has no variance on level 0, and a quarter on level 1.
+    let finest = 1.0 - 4.0 * filter.variances[0];
+    let near = (2.0 - axes.squared_lengths[0].sqrt()).clamp(0.0, 1.0);
+    let magnified = finest.clamp(0.0, 1.0) * near * (1.0 - moments.ratio);
+    FootprintRatio { moments, variances, linear, magnified }
 }

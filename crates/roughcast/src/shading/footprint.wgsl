@@ -33,6 +33,8 @@ struct PixelPart {
 struct FootprintRatio {
     moments: PixelPart,     // of filtered moments
     variances: PixelPart,   // of a filtered variance
+    linear: vec3f,          // the covariance (xx, yy, xy) of the linear change of the mean slope under the pixel
+    magnified: f32,         // how far that change is all that there is, 0 to 1
 }
 
 // The axes of a footprint, given how the position in the texture, in texels of level 0, changes to the next pixel to the
@@ -86,6 +88,14 @@ fn pixel_factor(part: PixelPart, trace: f32) -> f32 {
     return 1.0 - (1.0 - part.ratio) * min(part.linear_trace / trace, 1.0);
 }
 
+// The pixel's part of a covariance (xx, yy, xy) as a map holds it; the part is the ratio's for what the map holds. The variance
+// of the base along each axis stays whole.
+fn pixel_covariance(ratio: FootprintRatio, part: PixelPart, stored: vec3f, base: f32) -> vec3f {
+    let kept = (1.0 - ratio.magnified) * pixel_factor(part, stored.x + stored.y - 2.0 * base);
+    let rest = (1.0 - kept) * base;
+    return kept * stored + vec3f(rest, rest, 0.0) + ratio.magnified * ratio.linear;
+}
+
 // Squared changes of the mean slope a texel along the two axes, and the variances of the filter and of the pixel.
 fn pixel_part(changes: vec2f, variances: vec2f, pixel: vec2f) -> PixelPart {
     let covered = dot(changes, variances);
@@ -97,7 +107,7 @@ fn pixel_part(changes: vec2f, variances: vec2f, pixel: vec2f) -> PixelPart {
 
 // All of the variance: the papers' way.
 fn whole_footprint() -> FootprintRatio {
-    return FootprintRatio(PixelPart(1.0, 0.0), PixelPart(1.0, 0.0));
+    return FootprintRatio(PixelPart(1.0, 0.0), PixelPart(1.0, 0.0), vec3f(0.0), 0.0);
 }
 
 // What a pixel sees of the variance under a filter, where the filtered mean slope changes by mean_dx to the next pixel to
@@ -116,6 +126,13 @@ fn footprint_ratio(
     let across = axes.across.x * mean_dx + axes.across.y * mean_dy;
     let changes = vec2f(dot(along, along), dot(across, across));
     let pixel = PIXEL_DEVIATION * PIXEL_DEVIATION * axes.squared_lengths;
+    let seen = min(pixel, filtered.moments);
+    let squares = seen.x * along * along + seen.y * across * across;
+    let linear = vec3f(squares, seen.x * along.x * along.y + seen.y * across.x * across.y);
     let moments = pixel_part(changes, filtered.moments, pixel);
-    return FootprintRatio(moments, pixel_part(changes, filtered.variances, pixel));
+    let variances = pixel_part(changes, filtered.variances, pixel);
+    // The area under a texel has no variance on level 0, and a quarter on level 1.
+    let finest = clamp(1.0 - 4.0 * filtered.variances.x, 0.0, 1.0);
+    let near = clamp(2.0 - sqrt(axes.squared_lengths.x), 0.0, 1.0);
+    return FootprintRatio(moments, variances, linear, finest * near * (1.0 - moments.ratio));
 }

@@ -32,7 +32,7 @@ pub fn lean_surface(
         Repair::Clamp => moments.covariance(),
         Repair::Published => moments.covariance_as_stored(),
     };
-    moment_surface(mean, stored, ratio.moments, options)
+    moment_surface(mean, stored, ratio, ratio.moments, options)
 }
 
 /// The lobe for unit directions to the viewer and to the light. Normalised about the surface normal.

@@ -13,7 +13,7 @@ fn lean_surface(
     // M - B B^T, Eq. 5, rounded once where fma does so.
     let sigma = fma(-mean.xyx, mean.xyy, moments);
     let stored = select(positive_semidefinite(sigma), sigma, options.repair == REPAIR_PUBLISHED);
-    return moment_surface(mean, stored, ratio.moments, options);
+    return moment_surface(mean, stored, ratio, ratio.moments, options);
 }
 
 fn lean_lobe(surface: SlopeGaussian, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {

@@ -21,7 +21,7 @@ pub fn variance_surface(
 ) -> SlopeGaussian {
     let mean = Slope { x: unpack(variance[0], packing.slope), y: unpack(variance[1], packing.slope) };
     let [xx, yy] = [variance[2], variance[3]].map(|stored| unpack(stored, packing.variance).max(0.0));
-    moment_surface(mean, Covariance { xx, yy, xy: 0.0 }, ratio.variances, options)
+    moment_surface(mean, Covariance { xx, yy, xy: 0.0 }, ratio, ratio.variances, options)
 }
 
 /// The lobe for unit directions to the viewer and to the light. Normalised about the surface normal.

@@ -8,7 +8,7 @@ fn variance_surface(
 ) -> SlopeGaussian {
     let mean = variance.xy * packing.slope.x + packing.slope.y;
     let stored = variance.zw * packing.variance.x + packing.variance.y;
-    return moment_surface(mean, vec3f(max(stored, vec2f(0.0)), 0.0), ratio.variances, options);
+    return moment_surface(mean, vec3f(max(stored, vec2f(0.0)), 0.0), ratio, ratio.variances, options);
 }
 
 fn variance_lobe(surface: SlopeGaussian, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {

@@ -23,6 +23,9 @@ pub struct MomentLevel {
 /// Why textures do not decode.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DecodeError {
+    /// There is nothing to decode.
+    #[error("there are no textures: give at least one file of a layout")]
+    NoFiles,
     /// A layout of several files was given without one of them.
     #[error("the layout '{layout}' needs its '{part}' file beside the others, and it is not there")]
     MissingPart {
@@ -70,7 +73,8 @@ pub fn decode(arrays: &[TextureArray]) -> Result<Vec<MomentLevel>, DecodeError> 
     if arrays.iter().any(|array| array.info.layer.is_some()) {
         return decode(&join_layers(arrays.to_vec())?);
     }
-    let first = arrays.first().expect("there is at least one file to decode");
+    let first = arrays.first().ok_or(DecodeError::NoFiles)?;
+    arrays.iter().try_for_each(TextureArray::check)?;
     let parts = Parts::find(arrays, first.info.layout)?;
     let levels = (0..first.level_count()).map(|level| {
         let image = &first.layers[0].levels[level];

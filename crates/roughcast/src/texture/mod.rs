@@ -16,6 +16,7 @@ pub(crate) mod pbr;
 mod pbr_bounds;
 mod schilling;
 mod set_id;
+mod shape;
 mod split;
 mod toksvig;
 mod variance;
@@ -47,6 +48,9 @@ pub struct Texture {
 
 impl Texture {
     /// The storage type of the samples.
+    ///
+    /// # Panics
+    /// Where there is no level.
     pub fn sample_type(&self) -> SampleType {
         self.levels[0].samples().sample_type()
     }
@@ -62,15 +66,15 @@ pub struct TextureArray {
 }
 
 impl TextureArray {
-    /// Width and height of level 0, in texels.
+    /// Width and height of level 0, in texels; zero where there is none.
     pub fn size(&self) -> (usize, usize) {
-        let level = &self.layers[0].levels[0];
-        (level.width(), level.height())
+        let level = self.layers.first().and_then(|layer| layer.levels.first());
+        level.map_or((0, 0), |level| (level.width(), level.height()))
     }
 
-    /// Number of levels.
+    /// Number of levels of the first layer; zero where there is none.
     pub fn level_count(&self) -> usize {
-        self.layers[0].levels.len()
+        self.layers.first().map_or(0, |layer| layer.levels.len())
     }
 }
 

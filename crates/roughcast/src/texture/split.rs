@@ -25,6 +25,7 @@ pub fn split_infos(info: &TextureInfo) -> Vec<TextureInfo> {
 /// [`DecodeError::MissingLayer`] where a layer is missing, [`DecodeError::OtherSet`] and [`DecodeError::Shape`] where layers
 /// do not belong together.
 pub fn join_layers(arrays: Vec<TextureArray>) -> Result<Vec<TextureArray>, DecodeError> {
+    arrays.iter().try_for_each(TextureArray::check)?;
     let (single, mut joined): (Vec<_>, Vec<_>) =
         arrays.into_iter().partition(|array| array.info.layer.is_some());
     let mut parts: Vec<Vec<TextureArray>> = Vec::new();

@@ -116,13 +116,18 @@ fn degenerate_footprints_give_ratios() {
                     let filter = hardware_variances(&axes, taps, 0.0);
                     for mean in [[0.0, 0.0], [0.3, -1e-9], [100.0, 50.0]] {
                         let options = LobeOptions::default();
-                        let FootprintRatio { moments, variances } =
-                            footprint_ratio(&axes, &filter, mean, [mean[1], mean[0]], &options);
-                        for part in [moments, variances] {
+                        let ratio = footprint_ratio(&axes, &filter, mean, [mean[1], mean[0]], &options);
+                        assert!((0.0..=1.0).contains(&ratio.magnified), "{ax} {ay} {by}: {ratio:?}");
+                        for part in [ratio.moments, ratio.variances] {
                             let factor = part.factor(0.3);
                             let fine = (0.0..=1.0).contains(&part.ratio) && (0.0..=1.0).contains(&factor);
                             assert!(fine, "{ax} {ay} {by}: {part:?} {factor}");
                         }
+                        let seen = ratio.pixel_covariance(ratio.moments, Covariance::isotropic(0.1), 0.0);
+                        let determinant =
+                            f64::from(seen.xx) * f64::from(seen.yy) - f64::from(seen.xy).powi(2);
+                        let sound = seen.xx >= 0.0 && seen.yy >= 0.0 && determinant >= -1e-6;
+                        assert!(sound, "{ax} {ay} {by}: {seen:?} of {ratio:?}");
                     }
                 }
             }
@@ -140,8 +145,11 @@ fn corrected_trace_of_a_ramp(gradient: [f32; 2], texels: f32, options: &LobeOpti
     for place in 0..PLACES {
         let t = (place as f32 + 0.5) / PLACES as f32;
         // Between texels whose slopes differ by the gradient: t (1 - t) times its square.
-        let trace = t * (1.0 - t) * (gradient[0] * gradient[0] + gradient[1] * gradient[1]);
-        total += f64::from(trace * ratio.moments.factor(trace));
+        let [x, y] = gradient;
+        let part = t * (1.0 - t);
+        let bumps = Covariance { xx: part * x * x, yy: part * y * y, xy: part * x * y };
+        let seen = ratio.pixel_covariance(ratio.moments, bumps, 0.0);
+        total += f64::from(seen.xx + seen.yy);
     }
     total / f64::from(PLACES)
 }
@@ -185,6 +193,34 @@ fn detail_below_the_texel_stays() {
     }
 }
 
+#[test]
+fn a_magnified_texel_shows_the_linear_change_alone() {
+    // A hundredth of a texel a pixel, and slopes of two directions that change along both axes.
+    let (dx, dy) = ([0.01_f32, 0.0], [0.004, 0.008]);
+    let gradient = [[0.5_f64, -0.2], [0.1, 0.3]];
+    let change = |d: [f32; 2]| gradient.map(|[gx, gy]| (gx * f64::from(d[0]) + gy * f64::from(d[1])) as f32);
+    let axes = footprint_axes(dx, dy);
+    let options = LobeOptions::default();
+    let ratio = footprint_ratio(&axes, &level_variances(0.0), change(dx), change(dy), &options);
+    assert!(ratio.magnified > 0.99, "{ratio:?}");
+    // A quarter of `G J Jᵀ Gᵀ`: the pixel's Gaussian as the slopes have it.
+    let products = |i: usize, j: usize| {
+        f64::from(change(dx)[i]) * f64::from(change(dx)[j])
+            + f64::from(change(dy)[i]) * f64::from(change(dy)[j])
+    };
+    let Covariance { xx, yy, xy } = ratio.linear;
+    for (found, wanted) in [(xx, products(0, 0)), (yy, products(1, 1)), (xy, products(0, 1))] {
+        assert!((f64::from(found) / (0.25 * wanted) - 1.0).abs() < 1e-3, "{found} {wanted}");
+    }
+    // From level 1 on, and where several taps are averaged, there is detail between.
+    for filter in [level_variances(1.0), level_variances(4.0)] {
+        assert_eq!(footprint_ratio(&axes, &filter, change(dx), change(dy), &options).magnified, 0.0);
+    }
+    let long = footprint_axes([3.0, 0.0], [0.0, 0.1]);
+    let taps = hardware_variances(&long, 16.0, 0.0);
+    assert_eq!(footprint_ratio(&long, &taps, [0.3, 0.0], [0.01, 0.0], &options).magnified, 0.0);
+}
+
 /// The covariance that LEAN, CLEAN and stored variances shade.
 fn shaded(shading: Shading, sigma: Covariance, ratio: &FootprintRatio, options: &LobeOptions) -> Covariance {
     let mean = Slope { x: 0.3, y: -0.2 };
@@ -206,7 +242,7 @@ fn shaded(shading: Shading, sigma: Covariance, ratio: &FootprintRatio, options: 
 fn models_of_moments_shade_the_pixels_part_and_the_whole_base() {
     let sigma = Covariance { xx: 0.04, yy: 0.04, xy: 0.0 };
     let part = |ratio| PixelPart { ratio, linear_trace: 1.0 };
-    let ratio = FootprintRatio { moments: part(0.25), variances: part(0.5) };
+    let ratio = FootprintRatio { moments: part(0.25), variances: part(0.5), ..FootprintRatio::WHOLE };
     let (s, base) = (100.0, 0.01);
     for (shading, kept) in [(Shading::Lean, 0.25), (Shading::Clean, 0.25), (Shading::Variance, 0.5)] {
         assert!(shading.mean_input().is_some());

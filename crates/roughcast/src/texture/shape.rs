@@ -1,0 +1,131 @@
+//! Whether textures have the shape that all code relies on.
+
+use super::{DecodeError, Texture, TextureArray};
+use crate::level_sizes;
+
+impl TextureArray {
+    /// Checks that there are layers, that all have the same levels, each `max(1, floor(n / 2))` of the one before, and that the
+    /// levels of a layer have one sample type and one number of channels.
+    ///
+    /// # Errors
+    /// [`DecodeError::Shape`] where they do not.
+    pub fn check(&self) -> Result<(), DecodeError> {
+        match self.fault() {
+            None => Ok(()),
+            Some(fault) => Err(DecodeError::Shape { layout: self.info.layout, fault }),
+        }
+    }
+
+    fn fault(&self) -> Option<String> {
+        let Some(first) = self.layers.first() else { return Some("there are no layers".to_owned()) };
+        let Some(finest) = first.levels.first() else {
+            return Some(format!("'{}' has no levels", first.name));
+        };
+        let sizes = level_sizes(finest.width(), finest.height());
+        for layer in &self.layers {
+            if layer.levels.len() != first.levels.len() {
+                return Some("its layers differ in number of levels".to_owned());
+            }
+            if layer.levels.len() > sizes.len() {
+                return Some(format!("'{}' has levels beyond 1x1", layer.name));
+            }
+            if let Some(fault) = level_fault(layer, &sizes) {
+                return Some(fault);
+            }
+        }
+        None
+    }
+}
+
+/// The first level that has not its size, or not the format of level 0.
+fn level_fault(layer: &Texture, sizes: &[(usize, usize)]) -> Option<String> {
+    let format = (layer.levels[0].samples().sample_type(), layer.levels[0].channels());
+    layer.levels.iter().zip(sizes).enumerate().find_map(|(number, (level, (width, height)))| {
+        let got = (level.width(), level.height());
+        if got != (*width, *height) {
+            let name = layer.name;
+            return Some(format!(
+                "level {number} of '{name}' has {}x{} texels instead of {width}x{height}",
+                got.0, got.1
+            ));
+        }
+        let other = (level.samples().sample_type(), level.channels()) != format;
+        other.then(|| {
+            format!("level {number} of '{}' has another sample type or number of channels", layer.name)
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::texture::{Layout, decode, join_layers, split_layers};
+    use crate::{BakeOptions, Image, Samples, SourceOptions, bake};
+
+    fn baked(layout: Layout) -> Vec<TextureArray> {
+        let codes = (0..8 * 4 * 3).map(|i| if i % 3 == 2 { 250 } else { (i * 37 % 256) as u8 }).collect();
+        let map = Image::new(8, 4, 3, Samples::U8(codes)).expect("whole pixels");
+        let options = BakeOptions { layout, ..BakeOptions::default() };
+        bake(&map, &SourceOptions::default(), None, &options).expect("a map").arrays
+    }
+
+    fn fault_of(arrays: &[TextureArray]) -> String {
+        decode(arrays).expect_err("it is faulty").to_string()
+    }
+
+    #[test]
+    fn nothing_decodes_to_an_error() {
+        assert!(matches!(decode(&[]), Err(DecodeError::NoFiles)));
+        assert_eq!(join_layers(Vec::new()), Ok(Vec::new()));
+    }
+
+    #[test]
+    fn arrays_without_texels_are_refused() {
+        for layout in [Layout::Lean, Layout::Clean, Layout::Pbr] {
+            let mut arrays = baked(layout);
+            arrays[0].layers[0].levels.clear();
+            assert!(fault_of(&arrays).contains("no levels"));
+            assert_eq!((arrays[0].size(), arrays[0].level_count()), ((0, 0), 0));
+            arrays[0].layers.clear();
+            assert!(fault_of(&arrays).contains("no layers"));
+            assert_eq!((arrays[0].size(), arrays[0].level_count()), ((0, 0), 0));
+        }
+    }
+
+    #[test]
+    fn every_level_is_checked() {
+        let damaged = |damage: &dyn Fn(&mut TextureArray)| {
+            let mut arrays = baked(Layout::Lean);
+            damage(&mut arrays[0]);
+            fault_of(&arrays)
+        };
+        let level = |width, height, channels: usize, samples: fn(usize) -> Samples| {
+            Image::new(width, height, channels, samples(width * height * channels)).expect("whole pixels")
+        };
+        let sixteen = |count| Samples::U16(vec![0; count]);
+        let line = damaged(&|array| array.layers[1].levels[1] = level(4, 3, 4, sixteen));
+        assert!(line.contains("level 1 of 'lean2' has 4x3 texels instead of 4x2"), "{line}");
+        let line = damaged(&|array| array.layers[0].levels[2] = level(2, 1, 3, sixteen));
+        assert!(line.contains("level 2 of 'lean1' has another sample type"), "{line}");
+        let line = damaged(&|array| array.layers[0].levels[3] = level(1, 1, 4, |n| Samples::U8(vec![0; n])));
+        assert!(line.contains("level 3 of 'lean1' has another sample type"), "{line}");
+        let line = damaged(&|array| {
+            array.layers[1].levels.pop();
+        });
+        assert!(line.contains("number of levels"), "{line}");
+        let line = damaged(&|array| {
+            let last = array.layers[0].levels[3].clone();
+            array.layers.iter_mut().for_each(|layer| layer.levels.push(last.clone()));
+        });
+        assert!(line.contains("beyond 1x1"), "{line}");
+    }
+
+    #[test]
+    fn layers_with_files_of_their_own_are_checked_as_well() {
+        let mut split = split_layers(baked(Layout::Lean));
+        split[1].layers[0].levels.clear();
+        assert!(fault_of(&split).contains("no levels"));
+        split[1].layers.clear();
+        assert!(join_layers(split).expect_err("a layer is empty").to_string().contains("no layers"));
+    }
+}
