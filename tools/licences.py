@@ -1,14 +1,17 @@
-"""Checks that every crate in the lock file comes under a licence that the project can live with.
+"""Checks that every crate and every npm package in the lock files comes under a licence that the project can live with.
 
-Reads `cargo metadata`: all dependencies, also those of tests and of build scripts, on all platforms. A licence is an SPDX
-expression; it is satisfied if the licences on the list below satisfy it.
+Reads `cargo metadata`: all dependencies, also those of tests and of build scripts, on all platforms; and npm's lock files.
+A licence is an SPDX expression; it is satisfied if the licences on the list below satisfy it.
 """
 
 import collections
+import json
 import re
 import sys
 
-from workspace import cargo_metadata, members, report
+from workspace import REPOSITORY, cargo_metadata, members, report, tracked_files
+
+NPM_LOCK_FILE = "package-lock.json"
 
 ALLOWED = {
     "0BSD",
@@ -106,6 +109,17 @@ def dependencies(metadata):
     return [package for package in metadata["packages"] if package["id"] not in own]
 
 
+def npm_dependencies(lock):
+    """Every package of an npm lock file (version 2 or 3), described as `cargo metadata` describes crates."""
+    found = []
+    for path, package in lock["packages"].items():
+        # The empty path is the project's own package.
+        if path:
+            name = path.rpartition("node_modules/")[2]
+            found.append({"name": name, "version": package.get("version"), "license": package.get("license")})
+    return found
+
+
 def fault_of(package):
     """What is wrong with the licence of a package, or None."""
     name = f"{package['name']} {package['version']}"
@@ -119,17 +133,19 @@ def fault_of(package):
     return f"{name}: '{package['license']}' needs a licence that is not on the list in tools/licences.py"
 
 
-def faults(metadata):
+def faults(packages):
     """Every fault, one line each."""
-    return [fault for fault in map(fault_of, dependencies(metadata)) if fault]
+    return [fault for fault in map(fault_of, packages) if fault]
 
 
 def main():
-    metadata = cargo_metadata()
-    packages = dependencies(metadata)
+    packages = dependencies(cargo_metadata())
+    for path in tracked_files():
+        if path.name == NPM_LOCK_FILE:
+            packages += npm_dependencies(json.loads((REPOSITORY / path).read_text()))
     for licence, count in collections.Counter(package["license"] for package in packages).most_common():
         print(f"{count:4} {licence}")
-    return report(faults(metadata), f"{len(packages)} dependencies, all under licences on the list")
+    return report(faults(packages), f"{len(packages)} dependencies, all under licences on the list")
 
 
 if __name__ == "__main__":

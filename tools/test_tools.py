@@ -107,10 +107,24 @@ class Licences(unittest.TestCase):
     def test_faults_of_dependencies(self):
         own = package("roughcast", licence=None)
         right = [package("a"), package("b", licence="Zlib OR GPL-3.0-only")]
-        self.assertEqual(licences.faults(metadata(own, others=right)), [])
+
+        def faults(*others):
+            return licences.faults(licences.dependencies(metadata(own, others=others)))
+
+        self.assertEqual(faults(*right), [])
         for licence in [None, "", "GPL-3.0-only", "MIT OR"]:
-            wrong = package("c", licence=licence)
-            self.assertEqual(len(licences.faults(metadata(own, others=[*right, wrong]))), 1, licence)
+            self.assertEqual(len(faults(*right, package("c", licence=licence))), 1, licence)
+
+    def test_faults_of_npm_packages(self):
+        def faults(licence):
+            described = {"version": "1.0.0", "license": licence} if licence else {"version": "1.0.0"}
+            packages = {"": {"name": "own"}, "node_modules/a": {"version": "2.0.0", "license": "MIT"}}
+            packages["node_modules/a/node_modules/@scope/b"] = described
+            return licences.faults(licences.npm_dependencies({"lockfileVersion": 3, "packages": packages}))
+
+        self.assertEqual(faults("Apache-2.0"), [])
+        self.assertEqual(faults(None), ["@scope/b 1.0.0: states no licence"])
+        self.assertIn("@scope/b 1.0.0: 'GPL-3.0-only'", faults("GPL-3.0-only")[0])
 
 
 class Hygiene(unittest.TestCase):

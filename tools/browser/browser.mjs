@@ -1,0 +1,39 @@
+// Debian's Chromium without a window, with the page loaded. WebGL 2 runs on SwiftShader, in software.
+
+import { existsSync } from 'node:fs';
+import { chromium } from 'playwright-core';
+
+const EXECUTABLE = process.env.CHROMIUM ?? '/usr/bin/chromium';
+
+// Chromium's remark that reading pixels back waits for them.
+const EXPECTED = /GPU stall due to ReadPixels/;
+
+/**
+ * Opens the page. Resolves to `{ draw, complaints, close }`: `draw(job)` resolves to the RGBA floats of page/draw.js, `complaints()` is
+ * what the browser has logged.
+ */
+export async function openPage(url) {
+  if (!existsSync(EXECUTABLE)) throw new Error(`${EXECUTABLE} is missing: apt-get install chromium, or name another in CHROMIUM`);
+  // Chromium's own sandbox refuses to run as root and in most containers. The page is ours, and it loads nothing from elsewhere.
+  const browser = await chromium.launch({ executablePath: EXECUTABLE, args: ['--no-sandbox', '--enable-unsafe-swiftshader'] });
+  const page = await browser.newPage();
+  const messages = [];
+  page.on('console', (message) => EXPECTED.test(message.text()) || messages.push(message.text()));
+  page.on('pageerror', (error) => messages.push(String(error)));
+  page.on('requestfailed', (request) => messages.push(`${request.url()}: ${request.failure()?.errorText}`));
+  page.on('response', (response) => response.ok() || messages.push(`${response.url()}: ${response.status()}`));
+  await page.goto(url);
+  await page.waitForFunction(() => window.draw, null, { timeout: 20_000 }).catch(() => {
+    throw new Error(`the page did not start:\n${messages.join('\n')}`);
+  });
+  const draw = async (job) => {
+    try {
+      const text = await page.evaluate((job) => window.draw(job), job);
+      const bytes = Buffer.from(text, 'base64');
+      return new Float32Array(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length));
+    } catch (error) {
+      throw new Error(`${error.message}\n${messages.join('\n')}`);
+    }
+  };
+  return { draw, complaints: () => messages, close: () => browser.close() };
+}

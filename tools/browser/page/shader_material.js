@@ -1,0 +1,106 @@
+// A material that shades the layouts `lean` and `clean` with the functions that `roughcast shader MODEL reflectance` exports.
+
+import * as THREE from 'three';
+
+const VERTEX = `
+out vec2 texture_coordinates;
+out vec3 world_position;
+
+void main() {
+  texture_coordinates = uv;
+  vec4 world = modelMatrix * vec4(position, 1.0);
+  world_position = world.xyz;
+  gl_Position = projectionMatrix * viewMatrix * world;
+}`;
+
+// The tangent frame of the square in draw.js: x along growing u, y up the texture, that is against growing v, and the normal.
+const FRAME = `
+const mat3 world_from_tangent = mat3(vec3(1.0, 0.0, 0.0), vec3(0.0, 0.0, -1.0), vec3(0.0, 1.0, 0.0));`;
+
+const INPUTS = `
+uniform Packing packing;
+uniform LobeOptions options;
+uniform vec3 albedo;
+uniform vec3 specular;
+uniform vec3 towards_light;
+uniform vec3 irradiance;
+in vec2 texture_coordinates;
+in vec3 world_position;
+layout(location = 0) out highp vec4 radiance;`;
+
+// Which part of the filtered variance the pixel sees, for a trilinear filter. The texel has the mean slope in its first two channels.
+const FOOTPRINT = `
+const float MAX_ANISOTROPY = 1.0; // texture.anisotropy
+const float MIP_BIAS = 0.0;
+
+FootprintRatio footprint(vec4 texel, vec2 size) {
+  vec2 mean = texel.xy * packing.slope.x + packing.slope.y;
+  FootprintAxes axes = footprint_axes(dFdx(texture_coordinates) * size, dFdy(texture_coordinates) * size);
+  FilterVariances filtered = hardware_variances(axes, MAX_ANISOTROPY, MIP_BIAS);
+  return footprint_ratio(axes, filtered, dFdx(mean), dFdy(mean), options);
+}`;
+
+const SURFACES = {
+  lean: {
+    textures: ['lean1', 'lean2'],
+    code: `
+  vec4 texel1 = texture(lean1, texture_coordinates);
+  vec4 texel2 = texture(lean2, texture_coordinates);
+  FootprintRatio ratio = footprint(texel2, vec2(textureSize(lean2, 0)));
+  vec3 normal = bump_normal(texel1, packing);
+  SlopeGaussian surface = lean_surface(texel1, texel2, ratio, packing, options);`,
+  },
+  clean: {
+    textures: ['clean'],
+    code: `
+  vec4 texel = texture(clean, texture_coordinates);
+  FootprintRatio ratio = footprint(texel, vec2(textureSize(clean, 0)));
+  SlopeGaussian surface = clean_surface(texel, ratio, packing, options);
+  vec3 normal = slope_normal(surface.mean);`,
+  },
+};
+
+function fragmentShader(model, library) {
+  const { textures, code } = SURFACES[model];
+  return `
+${library}
+${textures.map((name) => `uniform sampler2D ${name};`).join('\n')}
+${INPUTS}
+${FRAME}
+${FOOTPRINT}
+
+void main() {
+  vec3 view = normalize((cameraPosition - world_position) * world_from_tangent);
+  vec3 light = normalize(towards_light * world_from_tangent);
+${code}
+  float lobe = ${model}_lobe(surface, view, light, options);
+  radiance = vec4(
+    diffuse_radiance(normal, albedo, light, irradiance)
+      + specular_radiance(lobe, specular, view, light, irradiance, options),
+    1.0);
+}`;
+}
+
+// A struct's members by name; pairs become vectors.
+function struct(members) {
+  const value = (member) => (Array.isArray(member) ? new THREE.Vector2(...member) : member);
+  return { value: Object.fromEntries(Object.entries(members).map(([name, member]) => [name, value(member)])) };
+}
+
+/**
+ * `textures` by the names of the layers; of the job `material` (the model), `library` (what was exported), `packing` (as in the file that
+ * `bake --sidecar` writes), `options` (LobeOptions), `albedo`, `specular`, `light`.
+ */
+export function shaderMaterial(textures, job) {
+  const uniforms = {
+    packing: struct(job.packing),
+    options: struct(job.options),
+    albedo: { value: new THREE.Vector3().setScalar(job.albedo) },
+    specular: { value: new THREE.Vector3().setScalar(job.specular) },
+    towards_light: { value: new THREE.Vector3().fromArray(job.light.towards) },
+    irradiance: { value: new THREE.Vector3().setScalar(job.light.irradiance) },
+  };
+  for (const [name, value] of Object.entries(textures)) uniforms[name] = { value };
+  const fragment = fragmentShader(job.material, job.library);
+  return new THREE.ShaderMaterial({ glslVersion: THREE.GLSL3, uniforms, vertexShader: VERTEX, fragmentShader: fragment });
+}

@@ -1,0 +1,86 @@
+// What is drawn, and how far the pictures of three.js and ours may be apart.
+
+import { within } from './compare.mjs';
+
+export const SPECULAR_POWER = 64;
+export const ROUGHNESS = 0.3;
+
+// How far three.js in SwiftShader, which draws in software, may be from our renderer, as parts of the picture (see compare.mjs): about
+// twice what was measured. Found in all pictures: vertices lie on a grid of 1/16 of a pixel (our own near picture of `lean`, shifted by
+// as much, changes by 0.006 rms and 0.02 at worst), levels of detail come from a logarithm that is interpolated between powers of two,
+// 0.02 levels off at most (a shift of 0.05 levels changes our far picture by 0.007 and 0.05). Beside that:
+const TOLERANCES = {
+  published: { near: { rms: 0.012, worst: 0.05 }, far: { rms: 0.012, worst: 0.06 } },
+  // The footprint correction takes the change of the mean slope from differences within blocks of 2x2 pixels. SwiftShader has one for
+  // the whole block, we have one for each row and column of it: that is noise, which the means of larger blocks do not have (`MEANS`).
+  corrected: { near: { rms: 0.02, worst: 0.13 }, far: { rms: 0.07, worst: 0.9 } },
+  // The smoother the surface, the more a shift changes it. three.js multiplies by 1 + 0.04 (1/E - 1) for light that is reflected more
+  // than once, where E is above 0.75 at these roughnesses: up to 0.013.
+  pbr: { near: { rms: 0.025, worst: 0.08 }, far: { rms: 0.025, worst: 0.08 } },
+  // SwiftShader cuts the values that BC5 interpolates to whole 255ths, by half of one on average: that turns normals by 0.004, a
+  // twentieth of the highlight's width (alpha = 0.09). Far away roughness is larger.
+  blocks: { near: { rms: 0.12, worst: 0.2 }, far: { rms: 0.03, worst: 0.08 } },
+};
+// The same for the means of blocks of so many pixels each way.
+export const BLOCK = 8;
+const MEANS = { near: { rms: 0.005, worst: 0.012 }, far: { rms: 0.012, worst: 0.04 } };
+
+// A wrong picture must not pass by chance or fail by a hair.
+const CLEARLY = 4;
+
+// What was baked: the file for `roughcast render`, and the textures for three.js.
+export const PBR = {
+  albedo: 0,
+  map: 'pbr.normal.ktx2',
+  textures: { normal: 'pbr.normal.ktx2', roughness: 'pbr.roughness.ktx2' },
+  material: 'pbr',
+  tolerances: TOLERANCES.pbr,
+};
+export const BLOCKS = {
+  ...PBR,
+  map: 'blocks.normal.ktx2',
+  textures: { normal: 'blocks.normal.ktx2', roughness: 'blocks.roughness.ktx2' },
+  tolerances: TOLERANCES.blocks,
+};
+export const LEAN = {
+  albedo: 0.1,
+  map: 'lean.lean1.ktx2',
+  textures: { lean1: 'lean.lean1.ktx2', lean2: 'lean.lean2.ktx2' },
+  material: 'lean',
+  tolerances: TOLERANCES.corrected,
+};
+export const CLEAN = {
+  albedo: 0.1,
+  map: 'clean.ktx2',
+  textures: { clean: 'clean.ktx2' },
+  material: 'clean',
+  tolerances: TOLERANCES.corrected,
+};
+// Without the footprint correction, as the papers have it.
+const published = (subject) => ({
+  ...subject,
+  options: { footprint: 1 },
+  render: ['--footprint', 'published'],
+  tolerances: TOLERANCES.published,
+});
+export const SUBJECTS = {
+  pbr: PBR,
+  'pbr in blocks': BLOCKS,
+  'split lean': LEAN,
+  clean: CLEAN,
+  'split lean as published': published(LEAN),
+  'clean as published': published(CLEAN),
+};
+
+const isCorrected = (subject) => subject.tolerances === TOLERANCES.corrected;
+
+/** Whether a difference `{ rms, worst, means }` is one that a right picture may have. */
+export function agrees(found, subject, view) {
+  return within(found, subject.tolerances[view]) && (!isCorrected(subject) || within(found.means, MEANS[view]));
+}
+
+/** Whether it is far from that. */
+export function isWrong(found, subject, view) {
+  const means = isCorrected(subject) && found.means.rms > CLEARLY * MEANS[view].rms;
+  return means || found.rms > CLEARLY * subject.tolerances[view].rms;
+}
