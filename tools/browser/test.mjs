@@ -76,7 +76,7 @@ function drawing(subject, view, changes = {}) {
 const DEFAULT_OPTIONS = { form: 2, base: 0, repair: 0, base_in_maps: 0, roughness_stored: 0, masking: 0, footprint: 0 };
 
 function shaderInputs(model, others) {
-  const library = roughcast('shader', model, 'reflectance', '--lang', 'glsl');
+  const library = roughcast('shader', model, 'reflectance', '--lang', 'glsl-es300');
   const { packing } = JSON.parse(readFileSync(join(folder, `${model}.json`), 'utf8'));
   const options = { ...DEFAULT_OPTIONS, specular_power: SPECULAR_POWER, ...others };
   return { library, packing, options };

@@ -40,15 +40,18 @@ const OTHER_WORDS: &[(&str, &str)] = &[
 
 /// A parser that takes the names of an enum's variants.
 pub fn one_of<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T> {
-    WordParser { words: T::all().iter().map(|variant| variant.name()).collect(), others: OTHER_WORDS }.map(
-        |name| {
-            T::all()
-                .iter()
-                .copied()
-                .find(|variant| variant.name() == name)
-                .expect("the parser lets only names through")
-        },
-    )
+    one_of_or_advice(OTHER_WORDS)
+}
+
+/// A parser that takes the names of an enum's variants, and for other words has the advice of a [`WordParser`].
+pub fn one_of_or_advice<T: Named + Send + Sync>(
+    others: &'static [(&'static str, &'static str)],
+) -> impl TypedValueParser<Value = T> {
+    let words = T::all().iter().map(|variant| variant.name()).collect();
+    WordParser { words, others }.map(|name| {
+        let named = T::all().iter().copied().find(|variant| variant.name() == name);
+        named.expect("the parser lets only names through")
+    })
 }
 
 /// Takes some words, and says what other words are called here.

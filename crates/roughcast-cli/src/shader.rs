@@ -1,8 +1,11 @@
 //! `roughcast shader`: the shading models for other people's renderers.
 
 mod export;
+mod guest;
 mod header;
+mod layout;
 mod names;
+mod prefix;
 mod stage;
 
 use std::io::{IsTerminal, Write};
@@ -16,15 +19,16 @@ use roughcast::shading::wgsl::{MODULES, Module, Role};
 use roughcast_io::AtomicFile;
 use serde_json::{Value, json};
 
-use crate::args::{REPORT, WordParser, one_of};
+use crate::args::{REPORT, WordParser, one_of_or_advice};
 use crate::{UsageError, say, say_json};
 pub use export::parse;
 use export::{Export, Language, export};
+use prefix::Prefix;
 
 /// Export the shading models as shader code, or list them.
 ///
-/// The code has no entry points and no resources (SPIR-V, which has no libraries, has a fragment shader a model). It starts
-/// with its source, its conventions and how to call it; docs/shaders.md has examples for every language.
+/// The code has no entry points and no resources (SPIR-V, which has no libraries, has a fragment shader a model). Its names have a
+/// prefix, and its modules guards against being there twice. It starts with its source, its conventions and how to call it; docs/shaders.md has examples for every language.
 #[derive(clap::Args)]
 pub struct Args {
     /// What to export, or all; without a name, what there is
@@ -32,8 +36,12 @@ pub struct Args {
     names: Vec<String>,
 
     /// The language
-    #[arg(long, value_name = "LANGUAGE", default_value = "wgsl", value_parser = one_of::<Language>())]
+    #[arg(long, value_name = "LANGUAGE", default_value = "wgsl", value_parser = one_of_or_advice::<Language>(OTHER_LANGUAGES))]
     lang: Language,
+
+    /// What the names of functions and structs start with, so that they meet no others; constants have it in capitals
+    #[arg(long, value_name = "WORD", default_value = "rc_")]
+    prefix: Prefix,
 
     /// Where to write it [default: standard output]
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -70,6 +78,20 @@ const OTHER_NAMES: &[(&str, &str)] = &[
     ("blinn", "blinn-phong"),
 ];
 
+/// What users may call a language.
+const OTHER_LANGUAGES: &[(&str, &str)] = &[
+    ("essl", "glsl-es300"),
+    ("webgl", "glsl-es300"),
+    ("webgl2", "glsl-es300"),
+    ("glsl-es", "glsl-es300"),
+    ("gles", "glsl-es300"),
+    ("metal", "msl"),
+    ("spv", "spirv"),
+    ("spir-v", "spirv"),
+    ("dxil", "hlsl"),
+    ("webgpu", "wgsl"),
+];
+
 fn names_parser() -> impl TypedValueParser<Value = String> {
     // A model that exists takes its own name, whatever it was called before.
     WordParser { words: exports().map(|module| module.name).chain([ALL]).collect(), others: OTHER_NAMES }
@@ -88,7 +110,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     } else {
         args.names.iter().map(String::as_str).collect()
     };
-    let export = export(&names, args.lang)?;
+    let export = export(&names, args.lang, &args.prefix)?;
     let bytes = match &export {
         Export::Text(text) => text.as_bytes(),
         Export::Binary(bytes) => bytes,

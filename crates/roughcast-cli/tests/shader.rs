@@ -9,7 +9,7 @@ use std::process::Command;
 use common::run;
 use roughcast::shading::Shading;
 
-const TEXTS: [&str; 4] = ["wgsl", "glsl", "hlsl", "msl"];
+const TEXTS: [&str; 5] = ["wgsl", "glsl", "glsl-es300", "hlsl", "msl"];
 
 /// The names that the program lists.
 fn names() -> Vec<String> {
@@ -56,7 +56,7 @@ fn compile(code: &str, language: &str, name: &str) -> Result<(), String> {
     std::fs::write(&file, code).expect("the shader can be written");
     match language {
         "wgsl" => validate_wgsl(code),
-        "glsl" => tool("glslangValidator", "glslang-tools", &["-S", "frag", path(&file)]),
+        "glsl" | "glsl-es300" => tool("glslangValidator", "glslang-tools", &["-S", "frag", path(&file)]),
         "hlsl" => {
             let spirv = file.with_extension("hlsl.spv");
             let arguments = ["-D", "-V", "-S", "frag", "-e", "shade", "-o", path(&spirv), path(&file)];
@@ -80,6 +80,9 @@ fn for_es(code: &str) -> String {
     assert!(code.starts_with("#version 450"));
     code.replacen("#version 450", start, 1)
 }
+
+/// What a WebGL 2 shader starts with.
+const WEBGL: &str = "#version 300 es\nprecision highp float;\nprecision highp int;";
 
 /// The code of an export, without comments.
 fn code_of(text: &str) -> String {
@@ -108,19 +111,22 @@ fn every_text_starts_with_source_conventions_and_calls() {
             }
             assert!(header.contains(&format!("\n// {name}: ")), "{name}, {language}");
             assert!(header.lines().all(|line| line.chars().count() <= 120), "{name}, {language}\n{header}");
-            let function = format!("{}(", if name == "reflectance" { "schlick" } else { "_lobe" });
+            let function = format!("{}(", if name == "reflectance" { "rc_schlick" } else { "_lobe" });
             assert!(code_of(&text).contains(&function), "{name}, {language}");
         }
     }
 }
 
-/// Identifiers to which naga has added: `view_3`, `lean1_`, padding. Its temporaries, `_e7`, have no name to lose.
+/// Identifiers to which naga has added: `view_3`, `lean1_`, padding. Its temporaries, `_e7` and in HLSL the struct's name in small
+/// letters, have no name to lose.
 fn mangled(code: &str) -> Vec<&str> {
+    let temporaries: Vec<String> = library_names().iter().map(|name| name.to_ascii_lowercase()).collect();
+    let is_temporary = |base: &str| temporaries.iter().any(|name| name == base);
     let words = code.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'));
     let is_mangled = |word: &&str| {
-        let numbered = word
-            .rsplit_once('_')
-            .is_some_and(|(base, number)| !base.is_empty() && number.chars().all(|c| c.is_ascii_digit()));
+        let numbered = word.rsplit_once('_').is_some_and(|(base, number)| {
+            !base.is_empty() && number.chars().all(|c| c.is_ascii_digit()) && !is_temporary(base)
+        });
         numbered || word.contains("pad")
     };
     words.filter(is_mangled).collect()
@@ -155,7 +161,7 @@ const DIALECTS: [Dialect; 2] = [
         language: "glsl",
         vec4: "vec4",
         vec3: "vec3",
-        entry: "layout(std140, binding = 0) uniform Material { Packing packing; LobeOptions options; vec4 given; };
+        entry: "layout(std140, binding = 0) uniform Material { rc_Packing packing; rc_LobeOptions options; vec4 given; };
             layout(location = 0) out vec4 colour;
             void main() {",
         exit: "colour = vec4(lobe * normal, 1.0); }",
@@ -164,7 +170,7 @@ const DIALECTS: [Dialect; 2] = [
         language: "hlsl",
         vec4: "float4",
         vec3: "float3",
-        entry: "cbuffer Material : register(b0) { Packing packing; LobeOptions options; float4 given; };
+        entry: "cbuffer Material : register(b0) { rc_Packing packing; rc_LobeOptions options; float4 given; };
             float4 shade() : SV_Target {",
         exit: "return float4(lobe * normal, 1.0); }",
     },
@@ -176,8 +182,9 @@ fn calls(text: &str) -> (Vec<String>, Vec<String>) {
     let mut lines = header.skip_while(|line| !line.contains(", with the texels "));
     let (_, texels) = lines.next().and_then(|line| line.split_once(", with the texels ")).expect("texels");
     let texels = texels.trim_end_matches(':').split(", ").map(str::to_owned).collect();
-    let statements = lines.take(2).flat_map(|line| line.trim_start_matches("//").trim().split(";  "));
-    (texels, statements.map(|call| call.trim_end_matches(';').to_owned()).collect())
+    let statements =
+        lines.take(3).map(|line| line.trim_start_matches("//").trim().trim_end_matches(';').to_owned());
+    (texels, statements.collect())
 }
 
 /// A shader that makes the calls of the header.
@@ -189,6 +196,9 @@ fn caller(text: &str, dialect: &Dialect) -> String {
         code += &format!("{vec4} {texel} = given;\n");
     }
     code += &format!("{vec3} view = given.xyz; {vec3} light = given.zyx;\n");
+    if text.contains(" rc_whole_footprint()") {
+        code += "rc_FootprintRatio ratio = rc_whole_footprint();\n";
+    }
     assert_eq!(statements.len(), 3, "{statements:?}");
     for statement in statements {
         let (value, call) = statement.split_once(" = ").expect("a call gives a value");
@@ -237,10 +247,79 @@ fn every_export_compiles_on_its_own() {
         compile(&glsl, "glsl", &file).unwrap_or_else(|said| panic!("{name}: {said}"));
         compile(&for_es(&glsl), "glsl", &format!("{file}-es"))
             .unwrap_or_else(|said| panic!("{name}: {said}"));
+        let webgl = format!("{WEBGL}\n{}\nvoid main() {{}}\n", text("glsl-es300"));
+        compile(&webgl, "glsl-es300", &file).unwrap_or_else(|said| panic!("{name}: {said}"));
         let hlsl = format!("{}\nfloat4 shade() : SV_Target {{ return 0.0; }}\n", text("hlsl"));
         compile(&hlsl, "hlsl", &file).unwrap_or_else(|said| panic!("{name}: {said}"));
         let msl = text("msl");
         assert_eq!(msl.matches('{').count(), msl.matches('}').count(), "{name}");
+    }
+}
+
+/// Every global name of the library, as WGSL has it.
+fn library_names() -> Vec<&'static str> {
+    let lines = roughcast::shading::wgsl::MODULES.iter().flat_map(|module| module.source.lines());
+    let names = lines.filter_map(|line| {
+        let after = ["const ", "struct ", "fn "].iter().find_map(|keyword| line.strip_prefix(keyword))?;
+        after.split([':', ' ', '(']).next()
+    });
+    names.collect()
+}
+
+/// A shader of a host that has macros of the library's names, with two exports in it.
+fn as_guests(exports: [&str; 2], language: &str, prefix: &[&str]) -> String {
+    // Members of structs are the library's own affair: a macro of their name would be nobody's.
+    let is_member = |name: &str| ["covariance", "variance", "lobe"].contains(&name);
+    let macros = library_names().into_iter().filter(|name| !is_member(name));
+    let macros: Vec<_> = macros.map(|name| format!("#define {name} ) not a name (\n")).collect();
+    let text =
+        |name| run(&[&["shader", name, "--lang", language][..], prefix].concat()).expect_success().stdout;
+    let texts = exports.map(text).join("\n");
+    match language {
+        "glsl" => format!("#version 450\n{}{texts}\nvoid main() {{}}\n", macros.concat()),
+        "glsl-es300" => format!("{WEBGL}\n{}{texts}\nvoid main() {{}}\n", macros.concat()),
+        _ => format!("{}{texts}\nfloat4 shade() : SV_Target {{ return 0.0; }}\n", macros.concat()),
+    }
+}
+
+#[test]
+fn exports_are_good_guests() {
+    assert!(library_names().contains(&"TWO_PI") && library_names().contains(&"lean_lobe"));
+    for language in ["glsl", "glsl-es300", "hlsl"] {
+        // The second of each pair needs parts that the first has left out, and others that it has.
+        for exports in [["lean", "clean"], ["clean", "ggx"], ["phong", "lean"], ["lean", "lean"]] {
+            let code = as_guests(exports, language, &[]);
+            let name = format!("guests-{}-{}", exports[0], exports[1]);
+            compile(&code, language, &name).unwrap_or_else(|said| panic!("{language}, {exports:?}: {said}"));
+            let code = as_guests(exports, language, &["--prefix", "Bumps"]);
+            compile(&code, language, &name).unwrap_or_else(|said| panic!("{language}, {exports:?}: {said}"));
+        }
+        let unprefixed = as_guests(["lean", "clean"], language, &["--prefix", ""]);
+        assert!(compile(&unprefixed, language, "guests-unprefixed").is_err(), "{language}");
+    }
+}
+
+#[test]
+fn no_constant_is_there_for_nothing() {
+    const CHOICES: [&str; 7] = ["FORM_", "BASE_", "REPAIR_", "MAPS_", "STORED_", "MASKING_", "FOOTPRINT_"];
+    for name in names() {
+        for language in TEXTS {
+            let code = code_of(&exported(&[&name], language));
+            let defined = code.lines().filter(|line| {
+                !line.starts_with(' ')
+                    && ["const ", "static const ", "constant "].iter().any(|start| line.starts_with(start))
+            });
+            for line in defined {
+                let word = line.split_whitespace().find(|word| word.starts_with("RC_")).expect("a constant");
+                let constant = word.trim_end_matches(':');
+                let uses = code.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'));
+                let is_choice = CHOICES.iter().any(|choice| constant["RC_".len()..].starts_with(choice));
+                assert!(
+                    is_choice || uses.filter(|word| *word == constant).count() > 1,
+                    "{name}, {language}: {constant}"
+                );
+            }
+        }
     }
 }
 
@@ -309,6 +388,10 @@ fn the_documents_examples_compile() {
 fn what_makes_no_sense_is_refused_in_a_line() {
     run(["shader", "loan"]).expect_usage_error("loan");
     run(["shader", "lean", "--lang", "cg"]).expect_usage_error("cg");
+    run(["shader", "lean", "--lang", "essl"]).expect_usage_error("glsl-es300");
+    for prefix in ["gl_", "a__", "1x", "a-b"] {
+        run(["shader", "lean", "--prefix", prefix]).expect_usage_error(prefix);
+    }
     run(["shader", "reflectance", "--lang", "spirv"]).expect_usage_error("name a model");
     run(["shader", "-o", "out.wgsl"]).expect_usage_error("name");
 }

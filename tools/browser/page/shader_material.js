@@ -18,8 +18,8 @@ const FRAME = `
 const mat3 world_from_tangent = mat3(vec3(1.0, 0.0, 0.0), vec3(0.0, 0.0, -1.0), vec3(0.0, 1.0, 0.0));`;
 
 const INPUTS = `
-uniform Packing packing;
-uniform LobeOptions options;
+uniform rc_Packing packing;
+uniform rc_LobeOptions options;
 uniform vec3 albedo;
 uniform vec3 specular;
 uniform vec3 towards_light;
@@ -33,11 +33,11 @@ const FOOTPRINT = `
 const float MAX_ANISOTROPY = 1.0; // texture.anisotropy
 const float MIP_BIAS = 0.0;
 
-FootprintRatio footprint(vec4 texel, vec2 size) {
+rc_FootprintRatio footprint(vec4 texel, vec2 size) {
   vec2 mean = texel.xy * packing.slope.x + packing.slope.y;
-  FootprintAxes axes = footprint_axes(dFdx(texture_coordinates) * size, dFdy(texture_coordinates) * size);
-  FilterVariances filtered = hardware_variances(axes, MAX_ANISOTROPY, MIP_BIAS);
-  return footprint_ratio(axes, filtered, dFdx(mean), dFdy(mean), options);
+  rc_FootprintAxes axes = rc_footprint_axes(dFdx(texture_coordinates) * size, dFdy(texture_coordinates) * size);
+  rc_FilterVariances filtered = rc_hardware_variances(axes, MAX_ANISOTROPY, MIP_BIAS);
+  return rc_footprint_ratio(axes, filtered, dFdx(mean), dFdy(mean), options);
 }`;
 
 const SURFACES = {
@@ -46,17 +46,17 @@ const SURFACES = {
     code: `
   vec4 texel1 = texture(lean1, texture_coordinates);
   vec4 texel2 = texture(lean2, texture_coordinates);
-  FootprintRatio ratio = footprint(texel2, vec2(textureSize(lean2, 0)));
-  vec3 normal = bump_normal(texel1, packing);
-  SlopeGaussian surface = lean_surface(texel1, texel2, ratio, packing, options);`,
+  rc_FootprintRatio ratio = footprint(texel2, vec2(textureSize(lean2, 0)));
+  vec3 normal = rc_bump_normal(texel1, packing);
+  rc_SlopeGaussian surface = rc_lean_surface(texel1, texel2, ratio, packing, options);`,
   },
   clean: {
     textures: ['clean'],
     code: `
   vec4 texel = texture(clean, texture_coordinates);
-  FootprintRatio ratio = footprint(texel, vec2(textureSize(clean, 0)));
-  SlopeGaussian surface = clean_surface(texel, ratio, packing, options);
-  vec3 normal = slope_normal(surface.mean);`,
+  rc_FootprintRatio ratio = footprint(texel, vec2(textureSize(clean, 0)));
+  rc_SlopeGaussian surface = rc_clean_surface(texel, ratio, packing, options);
+  vec3 normal = rc_slope_normal(surface.mean);`,
   },
 };
 
@@ -73,10 +73,10 @@ void main() {
   vec3 view = normalize((cameraPosition - world_position) * world_from_tangent);
   vec3 light = normalize(towards_light * world_from_tangent);
 ${code}
-  float lobe = ${model}_lobe(surface, view, light, options);
+  float lobe = rc_${model}_lobe(surface, view, light, options);
   radiance = vec4(
-    diffuse_radiance(normal, albedo, light, irradiance)
-      + specular_radiance(lobe, specular, view, light, irradiance, options),
+    rc_diffuse_radiance(normal, albedo, light, irradiance)
+      + rc_specular_radiance(lobe, specular, view, light, irradiance, options),
     1.0);
 }`;
 }

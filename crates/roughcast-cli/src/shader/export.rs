@@ -8,8 +8,10 @@ use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use roughcast::Named;
 use roughcast::shading::wgsl::{library, modules};
 
+use super::guest::{with_guards, written};
 use super::header::{header, models};
 use super::names::with_plain_names;
+use super::prefix::Prefix;
 use super::stage::fragment_shaders;
 use crate::UsageError;
 
@@ -18,6 +20,7 @@ use crate::UsageError;
 pub enum Language {
     Wgsl,
     Glsl,
+    GlslEs300,
     Hlsl,
     Msl,
     Spirv,
@@ -25,13 +28,14 @@ pub enum Language {
 
 impl Named for Language {
     fn all() -> &'static [Self] {
-        &[Self::Wgsl, Self::Glsl, Self::Hlsl, Self::Msl, Self::Spirv]
+        &[Self::Wgsl, Self::Glsl, Self::GlslEs300, Self::Hlsl, Self::Msl, Self::Spirv]
     }
 
     fn name(self) -> &'static str {
         match self {
             Self::Wgsl => "wgsl",
             Self::Glsl => "glsl",
+            Self::GlslEs300 => "glsl-es300",
             Self::Hlsl => "hlsl",
             Self::Msl => "msl",
             Self::Spirv => "spirv",
@@ -45,18 +49,28 @@ pub enum Export {
     Binary(Vec<u8>),
 }
 
-/// The modules of these names, and what they need, in a language.
-pub fn export(names: &[&str], language: Language) -> Result<Export> {
+/// The modules of these names, and what they need, in a language, with prefixed names. SPIR-V is a whole shader, whose names
+/// nobody else sees: it has none.
+pub fn export(names: &[&str], language: Language, prefix: &Prefix) -> Result<Export> {
     let exported = modules(names)?;
     let source = library(names)?;
+    let guarded = |generated: &str| {
+        with_guards(&with_plain_names(generated), &exported, prefix).map_err(anyhow::Error::msg)
+    };
     let code = match language {
         Language::Wgsl => {
-            parse(&source)?;
-            source
+            let code = written(&exported, prefix);
+            parse(&code)?;
+            code
         }
-        Language::Glsl => with_plain_names(&to_glsl(&source)?),
-        Language::Hlsl => with_plain_names(&to_hlsl(&source)?),
-        Language::Msl => with_plain_names(&to_msl(&source)?),
+        Language::Glsl => {
+            guarded(&to_glsl(&source, glsl::Version::Embedded { version: 310, is_webgl: false })?)?
+        }
+        Language::GlslEs300 => {
+            guarded(&to_glsl(&source, glsl::Version::Embedded { version: 300, is_webgl: true })?)?
+        }
+        Language::Hlsl => guarded(&to_hlsl(&source)?)?,
+        Language::Msl => guarded(&to_msl(&source)?)?,
         Language::Spirv => {
             let models: Vec<_> = models(&exported).collect();
             if models.is_empty() {
@@ -70,7 +84,11 @@ pub fn export(names: &[&str], language: Language) -> Result<Export> {
             ))?));
         }
     };
-    Ok(Export::Text(format!("{}\n{}\n", header(&exported, language), code.trim())))
+    Ok(Export::Text(format!(
+        "{}\n{}\n",
+        header(&exported, &parse(&source)?.0, language, prefix),
+        code.trim()
+    )))
 }
 
 /// Parses WGSL and proves that it is valid.
@@ -87,11 +105,11 @@ pub fn parse(source: &str) -> Result<(naga::Module, ModuleInfo)> {
 
 /// GLSL wants an entry point: it gets an empty one, which is the last function and is cut off again, and its version and
 /// precisions are left to the user.
-fn to_glsl(source: &str) -> Result<String> {
+fn to_glsl(source: &str, version: glsl::Version) -> Result<String> {
     const ENTRY_POINT: &str = "entry_point";
     let (module, info) = parse(&format!("{source}\n@fragment fn {ENTRY_POINT}() {{}}\n"))?;
     let options = glsl::Options {
-        version: glsl::Version::Embedded { version: 310, is_webgl: false },
+        version,
         writer_flags: glsl::WriterFlags::INCLUDE_UNUSED_ITEMS,
         ..Default::default()
     };

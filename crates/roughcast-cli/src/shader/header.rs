@@ -4,6 +4,8 @@ use roughcast::shading::Shading;
 use roughcast::shading::wgsl::{CONVENTIONS, Module, Role};
 
 use super::export::Language;
+use super::layout::{Rule, in_words, layout};
+use super::prefix::Prefix;
 use super::stage::calls;
 
 /// Characters of a line, `// ` included.
@@ -15,8 +17,17 @@ const PACKING: &[&str] = &[
     "  half or float  all (1, 0)",
 ];
 
+/// How the argument `ratio` is made; derivatives are `dpdx` and `dpdy` of WGSL, and called otherwise elsewhere.
+const FOOTPRINT: &[&str] = &[
+    "  ratio is the footprint correction: with the texture's size in texels, the derivatives dpdx, dpdy (GLSL dFdx, dFdy; HLSL ddx, ddy;",
+    "  Metal dfdx, dfdy), mean the slope B of the filtered texel, and the sampler's anisotropy and bias,",
+    "    axes = footprint_axes(dpdx(uv) * size, dpdy(uv) * size);  filtered = hardware_variances(axes, max_anisotropy, mip_bias);",
+    "    ratio = footprint_ratio(axes, filtered, dpdx(mean), dpdy(mean), options);",
+    "  or, without it, ratio = whole_footprint();",
+];
+
 /// The header of an export of these modules, as comment lines.
-pub fn header(modules: &[&Module], language: Language) -> String {
+pub fn header(modules: &[&Module], parsed: &naga::Module, language: Language, prefix: &Prefix) -> String {
     let mut lines =
         vec![format!("Shading models of roughcast {}.", env!("CARGO_PKG_VERSION")), String::new()];
     for module in modules.iter().filter(|module| module.role != Role::Part) {
@@ -28,24 +39,33 @@ pub fn header(modules: &[&Module], language: Language) -> String {
     lines.extend(CONVENTIONS.iter().map(|line| format!("  {line}")));
     lines.push(String::new());
     lines.extend(PACKING.iter().map(|line| (*line).to_owned()));
+    lines.push("In uniform buffers, by every language's rules:".to_owned());
+    for name in ["Packing", "LobeOptions"] {
+        if let Some(layout) = layout(parsed, name, Rule::Std140) {
+            lines.push(format!("  {}", in_words(&prefix.of(name), &layout)));
+        }
+    }
     lines.push(String::new());
     lines.push("How to call them:".to_owned());
     for model in models(modules) {
         let calls = calls(model);
         let texels = calls.texels.join(", ");
-        let values = calls.in_order().map(|(name, call)| format!("{name} = {call};"));
         lines.push(format!("  {model}, with the texels {texels}:"));
-        lines.push(format!("    {}", values.join("  ")));
-        lines.push(format!("    lobe = {};", calls.lobe));
+        for (name, call) in calls.in_order() {
+            lines.push(format!("    {name} = {};", prefix.apply(call)));
+        }
+        lines.push(format!("    lobe = {};", prefix.apply(&calls.lobe)));
     }
     if modules.iter().any(|module| module.name == "reflectance") {
-        lines.push("  radiance = ambient_radiance(albedo, ambient) + diffuse_radiance(normal, albedo, light, irradiance)".to_owned());
-        lines.push(
-            "    + specular_radiance(lobe, specular, view, light, irradiance, options); the last two for every light"
-                .to_owned(),
-        );
+        lines.push(prefix.apply("  radiance = ambient_radiance(albedo, ambient) + diffuse_radiance(normal, albedo, light, irradiance)"));
+        lines.push(prefix.apply(
+            "    + specular_radiance(lobe, specular, view, light, irradiance, options); the last two for every light",
+        ));
     } else if models(modules).any(|model| calls(model).normal.starts_with("slope_normal")) {
         lines.push("  slope_normal is of the module reflectance: normalize((slope, 1)).".to_owned());
+    }
+    if models(modules).any(|model| model.mean_input().is_some()) {
+        lines.extend(FOOTPRINT.iter().map(|line| prefix.apply(line)));
     }
     lines.push(String::new());
     lines.extend(notes(language).iter().map(|line| (*line).to_owned()));
@@ -62,9 +82,14 @@ pub fn models<'a>(modules: &'a [&Module]) -> impl Iterator<Item = Shading> + 'a 
 /// What is to be known of one language.
 fn notes(language: Language) -> &'static [&'static str] {
     match language {
-        Language::Wgsl => &["WGSL, as it was written. No entry points, no resources."],
+        Language::Wgsl => &[
+            "WGSL, as it was written but for prefixes. WGSL has no guards: put each module into a program once. No entry points, no resources.",
+        ],
         Language::Glsl => &[
             "GLSL, for #version 450 and for #version 310 es with `precision highp float;`: put it after those lines.",
+        ],
+        Language::GlslEs300 => &[
+            "GLSL for #version 300 es with `precision highp float;` and `precision highp int;`, which is WebGL 2: put it after those lines.",
         ],
         Language::Hlsl => &["HLSL, shader model 5.1. No entry points, no resources."],
         Language::Msl => &["Metal Shading Language 1.0. No entry points, no resources."],

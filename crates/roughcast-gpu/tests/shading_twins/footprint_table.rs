@@ -18,14 +18,15 @@ pub fn ratio(a: &[f32]) -> FootprintRatio {
     FootprintRatio {
         moments: part(a),
         variances: part(&a[2..]),
-        linear: covariance(&a[4..]),
+        linear_covariance: covariance(&a[4..]),
         magnified: a[7],
     }
 }
 
 fn ratio_words(ratio: FootprintRatio) -> Vec<f32> {
-    let FootprintRatio { moments, variances, linear, magnified } = ratio;
-    [part_words(moments), part_words(variances), covariance_words(linear), vec![magnified]].concat()
+    let FootprintRatio { moments, variances, linear_covariance, magnified } = ratio;
+    [part_words(moments), part_words(variances), covariance_words(linear_covariance), vec![magnified]]
+        .concat()
 }
 
 fn variances_words(FilterVariances { moments, variances }: FilterVariances) -> Vec<f32> {

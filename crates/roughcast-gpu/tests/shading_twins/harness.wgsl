@@ -69,7 +69,7 @@ fn put_part(part: PixelPart) {
 fn put_ratio(ratio: FootprintRatio) {
     put_part(ratio.moments);
     put_part(ratio.variances);
-    put3(ratio.linear);
+    put3(ratio.linear_covariance);
     put(ratio.magnified);
 }
 

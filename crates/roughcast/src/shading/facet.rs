@@ -52,11 +52,15 @@ pub fn cosine_power(axis: Vector, direction: Vector, exponent: f32) -> f32 {
     (-0.5 * exponent * tangent_squared.ln_1p()).exp()
 }
 
-/// `G2 / n·v` about the normal of a facet, whose own roughness masks as the equivalent Gaussian of slopes. Zero where viewer or
-/// light is not above the facet.
+/// The least cosine between the viewer and a bump's normal. Seen from a flat surface some bumps face away from the viewer, whom
+/// geometry would show another instead; they count as seen edge-on, as in most renderers, and are no holes.
+pub const LEAST_VIEW_COSINE: f32 = 1e-4;
+
+/// `G2 / n·v` about the normal of a facet, whose own roughness masks as the equivalent Gaussian of slopes. Zero where the light is
+/// not above the facet.
 pub fn facet_visible_part(surface: &BumpFacet, view: Vector, light: Vector, options: &LobeOptions) -> f32 {
-    let cosines = [view, light].map(|direction| dot(surface.normal, direction));
-    if cosines[0].min(cosines[1]) < LEAST_COSINE {
+    let cosines = [dot(surface.normal, view).max(LEAST_VIEW_COSINE), dot(surface.normal, light)];
+    if cosines[1] < LEAST_COSINE {
         return 0.0;
     }
     let power = match options.masking {

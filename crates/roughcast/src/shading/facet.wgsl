@@ -49,12 +49,15 @@ fn cosine_power(axis: vec3f, direction: vec3f, exponent: f32) -> f32 {
     return exp(-0.5 * exponent * log_one_plus(tangent_squared));
 }
 
-// G2 / n.v about the normal of a facet, whose own roughness masks as the equivalent Gaussian of slopes. Zero where viewer or
-// light is not above the facet.
+// The least cosine between the viewer and a bump's normal: bumps that face away count as seen edge-on.
+const LEAST_VIEW_COSINE: f32 = 1e-4;
+
+// G2 / n.v about the normal of a facet, whose own roughness masks as the equivalent Gaussian of slopes. Zero where the light is
+// not above the facet.
 fn facet_visible_part(surface: BumpFacet, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {
-    let of_view = dot(surface.normal, view);
+    let of_view = max(dot(surface.normal, view), LEAST_VIEW_COSINE);
     let of_light = dot(surface.normal, light);
-    if min(of_view, of_light) < LEAST_COSINE {
+    if of_light < LEAST_COSINE {
         return 0.0;
     }
     let own = select(options.specular_power, surface.specular_power, options.masking == MASKING_FULL);

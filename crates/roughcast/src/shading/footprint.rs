@@ -56,14 +56,14 @@ pub fn footprint_axes(texels_dx: [f32; 2], texels_dy: [f32; 2]) -> FootprintAxes
         if half_difference >= 0.0 { [half_difference + radius, xy] } else { [xy, radius - half_difference] };
     let length = (raw[0] * raw[0] + raw[1] * raw[1]).sqrt();
     let [ux, uy] = if length > 0.0 { [raw[0] / length, raw[1] / length] } else { [1.0, 0.0] };
-    let long = (half_trace + radius).max(LEAST_SQUARED_LENGTH);
+    let major = (half_trace + radius).max(LEAST_SQUARED_LENGTH);
     // The determinant is the product of both lengths: so the shorter keeps its digits beside a much longer one.
     let area = ax * by - ay * bx;
-    let short = (area * area / long).clamp(LEAST_SQUARED_LENGTH, long);
+    let minor = (area * area / major).clamp(LEAST_SQUARED_LENGTH, major);
     FootprintAxes {
-        squared_lengths: [long, short],
-        along: [(ax * ux + ay * uy) / long, (bx * ux + by * uy) / long],
-        across: [(ay * ux - ax * uy) / short, (by * ux - bx * uy) / short],
+        squared_lengths: [major, minor],
+        along: [(ax * ux + ay * uy) / major, (bx * ux + by * uy) / major],
+        across: [(ay * ux - ax * uy) / minor, (by * ux - bx * uy) / minor],
     }
 }
 
@@ -138,7 +138,7 @@ pub struct FootprintRatio {
     /// Of a filtered variance.
     pub variances: PixelPart,
     /// The covariance that the linear change of the mean slope has under the pixel.
-    pub linear: Covariance,
+    pub linear_covariance: Covariance,
     /// How far that change is all that there is, 0 to 1: a magnified level 0 has nothing between its texels.
     pub magnified: f32,
 }
@@ -148,7 +148,7 @@ impl FootprintRatio {
     pub const WHOLE: Self = Self {
         moments: PixelPart::WHOLE,
         variances: PixelPart::WHOLE,
-        linear: Covariance { xx: 0.0, yy: 0.0, xy: 0.0 },
+        linear_covariance: Covariance { xx: 0.0, yy: 0.0, xy: 0.0 },
         magnified: 0.0,
     };
 
@@ -158,7 +158,7 @@ impl FootprintRatio {
         let kept = (1.0 - self.magnified) * part.factor(stored.xx + stored.yy - 2.0 * base);
         // Nothing is subtracted and added again, so that what stays whole keeps its digits.
         let rest = (1.0 - kept) * base;
-        let Covariance { xx, yy, xy } = self.linear;
+        let Covariance { xx, yy, xy } = self.linear_covariance;
         Covariance {
             xx: kept * stored.xx + rest + self.magnified * xx,
             yy: kept * stored.yy + rest + self.magnified * yy,
@@ -185,7 +185,7 @@ pub fn footprint_ratio(
     let changes = [along, across].map(|[x, y]| x * x + y * y);
     let pixel = axes.squared_lengths.map(|squared| PIXEL_DEVIATION * PIXEL_DEVIATION * squared);
     let seen = [0, 1].map(|i| pixel[i].min(filter.moments[i]));
-    let linear = Covariance {
+    let linear_covariance = Covariance {
         xx: seen[0] * along[0] * along[0] + seen[1] * across[0] * across[0],
         yy: seen[0] * along[1] * along[1] + seen[1] * across[1] * across[1],
         xy: seen[0] * along[0] * along[1] + seen[1] * across[0] * across[1],
@@ -196,5 +196,5 @@ pub fn footprint_ratio(
     let finest = 1.0 - 4.0 * filter.variances[0];
     let near = (2.0 - axes.squared_lengths[0].sqrt()).clamp(0.0, 1.0);
     let magnified = finest.clamp(0.0, 1.0) * near * (1.0 - moments.ratio);
-    FootprintRatio { moments, variances, linear, magnified }
+    FootprintRatio { moments, variances, linear_covariance, magnified }
 }

@@ -33,7 +33,7 @@ struct PixelPart {
 struct FootprintRatio {
     moments: PixelPart,     // of filtered moments
     variances: PixelPart,   // of a filtered variance
-    linear: vec3f,          // the covariance (xx, yy, xy) of the linear change of the mean slope under the pixel
+    linear_covariance: vec3f,   // the covariance (xx, yy, xy) of the linear change of the mean slope under the pixel
     magnified: f32,         // how far that change is all that there is, 0 to 1
 }
 
@@ -51,14 +51,14 @@ fn footprint_axes(texels_dx: vec2f, texels_dy: vec2f) -> FootprintAxes {
     let raw = select(tall, wide, half_difference >= 0.0);
     let squared = dot(raw, raw);
     let u = select(vec2f(1.0, 0.0), raw * inverseSqrt(squared), squared > 0.0);
-    let long = max(0.5 * (xx + yy) + radius, LEAST_SQUARED_LENGTH);
+    let major = max(0.5 * (xx + yy) + radius, LEAST_SQUARED_LENGTH);
     // The determinant is the product of both lengths.
     let area = texels_dx.x * texels_dy.y - texels_dx.y * texels_dy.x;
-    let short = clamp(area * area / long, LEAST_SQUARED_LENGTH, long);
-    let along = vec2f(dot(texels_dx, u), dot(texels_dy, u)) / long;
+    let minor = clamp(area * area / major, LEAST_SQUARED_LENGTH, major);
+    let along = vec2f(dot(texels_dx, u), dot(texels_dy, u)) / major;
     let v = vec2f(-u.y, u.x);
-    let across = vec2f(dot(texels_dx, v), dot(texels_dy, v)) / short;
-    return FootprintAxes(vec2f(long, short), along, across);
+    let across = vec2f(dot(texels_dx, v), dot(texels_dy, v)) / minor;
+    return FootprintAxes(vec2f(major, minor), along, across);
 }
 
 // Of trilinear interpolation at a level of detail, 0 or more.
@@ -93,7 +93,7 @@ fn pixel_factor(part: PixelPart, trace: f32) -> f32 {
 fn pixel_covariance(ratio: FootprintRatio, part: PixelPart, stored: vec3f, base: f32) -> vec3f {
     let kept = (1.0 - ratio.magnified) * pixel_factor(part, stored.x + stored.y - 2.0 * base);
     let rest = (1.0 - kept) * base;
-    return kept * stored + vec3f(rest, rest, 0.0) + ratio.magnified * ratio.linear;
+    return kept * stored + vec3f(rest, rest, 0.0) + ratio.magnified * ratio.linear_covariance;
 }
 
 // Squared changes of the mean slope a texel along the two axes, and the variances of the filter and of the pixel.
@@ -128,11 +128,11 @@ fn footprint_ratio(
     let pixel = PIXEL_DEVIATION * PIXEL_DEVIATION * axes.squared_lengths;
     let seen = min(pixel, filtered.moments);
     let squares = seen.x * along * along + seen.y * across * across;
-    let linear = vec3f(squares, seen.x * along.x * along.y + seen.y * across.x * across.y);
+    let linear_covariance = vec3f(squares, seen.x * along.x * along.y + seen.y * across.x * across.y);
     let moments = pixel_part(changes, filtered.moments, pixel);
     let variances = pixel_part(changes, filtered.variances, pixel);
     // The area under a texel has no variance on level 0, and a quarter on level 1.
     let finest = clamp(1.0 - 4.0 * filtered.variances.x, 0.0, 1.0);
     let near = clamp(2.0 - sqrt(axes.squared_lengths.x), 0.0, 1.0);
-    return FootprintRatio(moments, variances, linear, finest * near * (1.0 - moments.ratio));
+    return FootprintRatio(moments, variances, linear_covariance, finest * near * (1.0 - moments.ratio));
 }

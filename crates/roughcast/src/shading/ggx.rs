@@ -6,7 +6,7 @@
 
 use std::f32::consts::{PI, TAU};
 
-use super::facet::{LEAST_COSINE, unit_normal};
+use super::facet::{LEAST_COSINE, LEAST_VIEW_COSINE, unit_normal};
 use super::gaussian::LEAST_VARIANCE;
 use super::masking::visible_part;
 use super::vector::{Vector, cross, dot, half_vector, normalize, scaled, sum};
@@ -105,8 +105,8 @@ pub fn ggx_lobe(surface: &GgxSurface, view: Vector, light: Vector, options: &Lob
 /// `G2 / n·v` about the bump normal. The lobe's own widths mask, whatever [`super::Masking`] says: what part of them is the
 /// base's the textures do not tell.
 pub fn ggx_visible_part(surface: &GgxSurface, view: Vector, light: Vector) -> f32 {
-    let cosines = [view, light].map(|direction| dot(surface.normal, direction));
-    if cosines[0].min(cosines[1]) < LEAST_COSINE {
+    let cosines = [dot(surface.normal, view).max(LEAST_VIEW_COSINE), dot(surface.normal, light)];
+    if cosines[1] < LEAST_COSINE {
         return 0.0;
     }
     let of_view = ggx_lambda(surface, view, cosines[0]);

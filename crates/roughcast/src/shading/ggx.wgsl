@@ -77,11 +77,11 @@ fn ggx_lambda(surface: GgxSurface, direction: vec3f, cosine: f32) -> f32 {
     return 0.5 * (sqrt(1.0 + (x * x + y * y) / (cosine * cosine)) - 1.0);
 }
 
-// G2 / n.v about the bump normal, with the widths of the lobe itself. Zero where viewer or light is not above the facet.
+// G2 / n.v about the bump normal, with the widths of the lobe itself. Zero where the light is not above the facet.
 fn ggx_visible_part(surface: GgxSurface, view: vec3f, light: vec3f) -> f32 {
-    let of_view = dot(surface.normal, view);
+    let of_view = max(dot(surface.normal, view), LEAST_VIEW_COSINE);
     let of_light = dot(surface.normal, light);
-    if min(of_view, of_light) < LEAST_COSINE {
+    if of_light < LEAST_COSINE {
         return 0.0;
     }
     let lambda_of_view = ggx_lambda(surface, view, of_view);

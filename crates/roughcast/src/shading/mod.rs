@@ -42,8 +42,8 @@ pub use beckmann::{beckmann_lobe, beckmann_surface};
 pub use blinn_phong::{blinn_phong_against_beckmann, blinn_phong_lobe, blinn_phong_surface};
 pub use clean::{clean_lobe, clean_surface};
 pub use facet::{
-    BumpFacet, LEAST_COSINE, LEAST_NORMAL_Z, bump_facet, bump_normal, cosine_lobe, cosine_power,
-    facet_visible_part, unit_normal,
+    BumpFacet, LEAST_COSINE, LEAST_NORMAL_Z, LEAST_VIEW_COSINE, bump_facet, bump_normal, cosine_lobe,
+    cosine_power, facet_visible_part, unit_normal,
 };
 pub use footprint::{
     FilterVariances, FootprintAxes, FootprintRatio, PixelPart, footprint_axes, footprint_ratio,

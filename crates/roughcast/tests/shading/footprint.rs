@@ -208,7 +208,7 @@ fn a_magnified_texel_shows_the_linear_change_alone() {
         f64::from(change(dx)[i]) * f64::from(change(dx)[j])
             + f64::from(change(dy)[i]) * f64::from(change(dy)[j])
     };
-    let Covariance { xx, yy, xy } = ratio.linear;
+    let Covariance { xx, yy, xy } = ratio.linear_covariance;
     for (found, wanted) in [(xx, products(0, 0)), (yy, products(1, 1)), (xy, products(0, 1))] {
         assert!((f64::from(found) / (0.25 * wanted) - 1.0).abs() < 1e-3, "{found} {wanted}");
     }

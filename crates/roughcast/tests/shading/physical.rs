@@ -226,6 +226,24 @@ fn viewer_and_light_may_change_places() {
 }
 
 #[test]
+fn bumps_that_face_away_from_the_viewer_are_no_holes() {
+    // Seen from 80 degrees, a bump that is tilted by 20 degrees away; the light is behind it.
+    let direction = |degrees: f64| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        narrow([sin, 0.0, cos])
+    };
+    let (view, light) = (direction(80.0), direction(-60.0));
+    for shading in [Shading::BlinnPhong, Shading::Beckmann, Shading::Toksvig, Shading::Ggx] {
+        let lobe = |degrees: f64| {
+            let slope = Slope { x: degrees.to_radians().tan() as f32, y: 0.0 };
+            shading.surface_of_slope(slope, &options(4.0)).lobe(view, light, &options(4.0))
+        };
+        let (towards, away) = (lobe(-9.0), lobe(-11.0));
+        assert!(away > 0.0 && (towards / away - 1.0).abs() < 0.2, "{shading}: {towards} {away}");
+    }
+}
+
+#[test]
 fn all_slopes_mask_more_than_the_base_does() {
     let moments = Moments::from_mean_and_covariance(Slope::default(), Covariance::isotropic(0.1));
     let texels = [[0.0, 0.0, 1.0, moments.xy], [0.0, 0.0, moments.xx, moments.yy]];

@@ -1,0 +1,130 @@
+//! Exports as guests: the generated text taken apart into its items and put together again by module, so that two exports may
+//! stand in one file and no constant is there for nothing.
+//!
+//! In GLSL, HLSL and Metal's language each module has a guard. A constant that an export does not use is left out of it, so each
+//! has a guard of its own; those of `options` are for the caller, and always there.
+
+use roughcast::shading::wgsl::Module;
+
+use super::prefix::{CONSTRUCT, Prefix, global_names, is_constant};
+
+/// The module whose constants are the choices of `LobeOptions`.
+const OPTIONS: &str = "options";
+
+/// A constant, struct or function of the generated text.
+struct Item<'a> {
+    name: &'a str,
+    text: &'a str,
+}
+
+/// Generated code by module, each with its guard, and every name with its prefix.
+///
+/// # Errors
+/// A line about code that belongs to no module.
+pub fn with_guards(code: &str, modules: &[&Module], prefix: &Prefix) -> Result<String, String> {
+    let (prelude, items) = items(code);
+    let names = global_names();
+    let module_of = |item: &Item<'_>| {
+        let name = item.name.strip_prefix(CONSTRUCT).unwrap_or(item.name);
+        names.get(name).copied().ok_or_else(|| format!("'{}' belongs to no module", item.name))
+    };
+    let owners = items.iter().map(module_of).collect::<Result<Vec<_>, _>>()?;
+    let mut out = prelude;
+    for module in modules {
+        let own =
+            || items.iter().zip(&owners).filter(|(_, owner)| **owner == module.name).map(|(item, _)| item);
+        let (constants, rest): (Vec<_>, Vec<_>) = own().partition(|item| is_constant(item.name));
+        let always = module.name == OPTIONS;
+        for constant in constants.iter().filter(|item| !always && is_used(item, &items)) {
+            guarded(&prefix.guard(constant.name, "CONSTANT"), &[constant], prefix, &mut out);
+        }
+        let whole: Vec<_> = if always { own().collect() } else { rest };
+        if !whole.is_empty() {
+            guarded(&prefix.guard(module.name, "MODULE"), &whole, prefix, &mut out);
+        }
+    }
+    Ok(out)
+}
+
+fn guarded(macro_name: &str, items: &[&Item<'_>], prefix: &Prefix, out: &mut String) {
+    *out += &format!("#ifndef {macro_name}\n#define {macro_name}\n");
+    for (place, item) in items.iter().enumerate() {
+        // Constants stand together; the rest has air between.
+        if place > 0 && !(is_constant(item.name) && is_constant(items[place - 1].name)) {
+            out.push('\n');
+        }
+        *out += prefix.apply(item.text.trim_matches('\n')).as_str();
+        out.push('\n');
+    }
+    *out += "#endif\n\n";
+}
+
+/// Whether another item has the name.
+fn is_used(constant: &Item<'_>, items: &[Item<'_>]) -> bool {
+    items.iter().any(|item| item.name != constant.name && has_word(item.text, constant.name))
+}
+
+fn has_word(code: &str, word: &str) -> bool {
+    code.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).any(|part| part == word)
+}
+
+/// What stands before the first item, such as includes, and the items in their order.
+fn items(code: &str) -> (String, Vec<Item<'_>>) {
+    let (mut prelude, mut items) = (String::new(), Vec::new());
+    let mut start = None;
+    let mut at = 0;
+    for line in code.split_inclusive('\n') {
+        let end = at + line.len();
+        let text = line.trim_end();
+        match start {
+            None if text.is_empty() => {}
+            None if text.starts_with(['#', '/']) || text.starts_with("using ") => prelude += line,
+            None if text.ends_with(';') && !text.starts_with('}') => items.push(item(&code[at..end])),
+            None => start = Some(at),
+            // Items end with a brace in the first column.
+            Some(begin) if text == "}" || text == "};" => {
+                items.push(item(&code[begin..end]));
+                start = None;
+            }
+            Some(_) => {}
+        }
+        at = end;
+    }
+    if !prelude.is_empty() {
+        prelude.push('\n');
+    }
+    (prelude, items)
+}
+
+/// The name of an item: what stands before `=`, `{` or `(`.
+fn item(text: &str) -> Item<'_> {
+    let end = text.find(['=', '{', '(']).unwrap_or(text.len());
+    let name = text[..end].split_whitespace().next_back().unwrap_or_default();
+    Item { name, text }
+}
+
+/// WGSL as it was written, with its prefixes and without constants that nothing uses. WGSL has no guards.
+pub fn written(modules: &[&Module], prefix: &Prefix) -> String {
+    let whole: String = modules.iter().map(|module| module.source).collect::<Vec<_>>().join("\n");
+    let uses = |name: &str| {
+        let code = whole.lines().filter(|line| !line.trim_start().starts_with("//"));
+        code.filter(|line| has_word(line.split("//").next().unwrap_or_default(), name)).count() > 1
+    };
+    let mut sources = Vec::new();
+    for module in modules {
+        let always = module.name == OPTIONS;
+        let is_idle = |line: &str| {
+            let name = line.strip_prefix("const ").and_then(|rest| rest.split(':').next());
+            !always && name.is_some_and(|name| !uses(name))
+        };
+        let paragraphs = module.source.split("\n\n").filter_map(|paragraph| {
+            let kept: Vec<&str> = paragraph.lines().filter(|line| !is_idle(line)).collect();
+            let only_comments = kept.iter().all(|line| line.starts_with("//"));
+            // A comment goes with the constant that it is about.
+            let had_code = paragraph.lines().any(|line| !line.starts_with("//"));
+            (!(only_comments && had_code)).then(|| kept.join("\n"))
+        });
+        sources.push(paragraphs.collect::<Vec<_>>().join("\n\n"));
+    }
+    prefix.apply(&sources.join("\n\n"))
+}

@@ -1,0 +1,132 @@
+//! The prefix that keeps an export's names apart from those of the shader that it is put into.
+
+use std::collections::HashMap;
+use std::str::FromStr;
+
+use roughcast::shading::wgsl::MODULES;
+
+/// What the names of functions and structs start with; constants take it in capitals.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Prefix(String);
+
+impl FromStr for Prefix {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let is_word = text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+        if !is_word || text.starts_with(|c: char| c.is_ascii_digit()) {
+            return Err("names consist of letters, digits and _, and start with no digit".to_owned());
+        }
+        if text.starts_with("gl_") || text.starts_with('_') || text.contains("__") {
+            return Err(
+                "GLSL keeps names that start with gl_ or contain __, and other languages those that start with _"
+                    .to_owned(),
+            );
+        }
+        Ok(Self(text.to_owned()))
+    }
+}
+
+impl Prefix {
+    /// A global name of the library with its prefix.
+    pub fn of(&self, name: &str) -> String {
+        if is_constant(name) {
+            format!("{}{name}", self.0.to_ascii_uppercase())
+        } else {
+            format!("{}{name}", self.0)
+        }
+    }
+
+    /// A macro that says that something is there.
+    pub fn guard(&self, name: &str, kind: &str) -> String {
+        format!("{}{}_{kind}", self.0, name.replace('-', "_")).to_ascii_uppercase()
+    }
+
+    /// Code in which every global name of the library, and what naga has made of one, has its prefix. Members of structs keep theirs.
+    pub fn apply(&self, code: &str) -> String {
+        if self.0.is_empty() {
+            return code.to_owned();
+        }
+        let names = global_names();
+        let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        let (mut out, mut rest) = (String::with_capacity(2 * code.len()), code);
+        while let Some(start) = rest.find(is_part) {
+            let (before, from) = rest.split_at(start);
+            let end = from.find(|c| !is_part(c)).unwrap_or(from.len());
+            let (word, after) = from.split_at(end);
+            out.push_str(before);
+            let known = names.contains_key(word)
+                || word.strip_prefix(CONSTRUCT).is_some_and(|of| names.contains_key(of));
+            // What follows a single dot is a member; what follows `1.` is no word.
+            if known && !before.ends_with('.') && !out.ends_with('.') {
+                out.push_str(&self.of(word));
+            } else {
+                out.push_str(word);
+            }
+            rest = after;
+        }
+        out.push_str(rest);
+        out
+    }
+}
+
+/// How the functions start by which naga makes structs in HLSL.
+pub const CONSTRUCT: &str = "Construct";
+
+/// Constants are in capitals.
+pub fn is_constant(name: &str) -> bool {
+    !name.is_empty() && name.chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_')
+}
+
+/// The module of every constant, struct and function of the library.
+pub fn global_names() -> HashMap<&'static str, &'static str> {
+    let mut names = HashMap::new();
+    for module in MODULES {
+        for line in module.source.lines() {
+            let name = ["const ", "struct ", "fn "].iter().find_map(|keyword| line.strip_prefix(keyword));
+            if let Some(name) = name.and_then(|rest| rest.split([':', ' ', '(']).next()) {
+                names.insert(name, module.name);
+            }
+        }
+    }
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn prefix(text: &str) -> Prefix {
+        text.parse().expect("a prefix")
+    }
+
+    #[test]
+    fn names_get_it_and_members_do_not() {
+        let code = "float x = lean_lobe(surface.variance, TWO_PI) * view.lean_lobe; BumpFacet f = ConstructBumpFacet(n, 1.);";
+        let expected = "float x = rc_lean_lobe(surface.variance, RC_TWO_PI) * view.lean_lobe; rc_BumpFacet f = \
+                        rc_ConstructBumpFacet(n, 1.);";
+        assert_eq!(prefix("rc_").apply(code), expected);
+        assert_eq!(prefix("").apply(code), code);
+    }
+
+    #[test]
+    fn what_is_no_start_of_a_name_is_refused() {
+        for wrong in ["1a", "a-b", "a b", "gl_", "__x", "_x", "a__", "ä"] {
+            assert!(Prefix::from_str(wrong).is_err(), "{wrong}");
+        }
+        for right in ["", "rc_", "Roughcast", "r2_"] {
+            assert!(Prefix::from_str(right).is_ok(), "{right}");
+        }
+    }
+
+    #[test]
+    fn every_module_is_found_by_its_names() {
+        let names = global_names();
+        for module in MODULES {
+            assert!(names.values().any(|of| *of == module.name), "{}", module.name);
+        }
+        assert_eq!(names["lean_lobe"], "lean");
+        assert_eq!(names["SlopeGaussian"], "gaussian");
+        assert_eq!(names["TWO_PI"], "vector");
+    }
+}
