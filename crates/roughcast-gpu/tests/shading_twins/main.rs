@@ -175,7 +175,11 @@ fn wrong_twins_are_caught() {
         ("pixel_part", "min(variances, pixel)", "pixel"),
         ("moment_surface", "stored, base_in_map(options)", "stored, 0.0"),
         ("pixel_covariance", "(1.0 - ratio.magnified) * pixel_factor", "pixel_factor"),
-        ("footprint_ratio", "1.0 - 4.0 * filtered.variances.x", "1.0 - filtered.variances.x"),
+        (
+            "footprint_ratio",
+            "0.5 * log2(1.0 + 12.0 * filtered.variances.x)",
+            "log2(1.0 + 12.0 * filtered.variances.x)",
+        ),
     ];
     for (name, from, to) in mistakes {
         assert_eq!(right.matches(from).count(), 1, "{from}");

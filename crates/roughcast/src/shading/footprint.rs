@@ -18,7 +18,8 @@
 //!   make is detail below the texel, and stays;
 //! - where level 0 itself is magnified there is no such detail: between its texels the slope changes linearly and nothing else, and
 //!   the covariance under the pixel is `Σ P ∂B ∂Bᵀ` over the axes, whatever the filter has found. `magnified` fades from the one
-//!   to the other.
+//!   to the other;
+//! - between levels 1 and 2 the correction fades out.
 //!
 //! Where variance itself is stored ([`super::Shading::Variance`]), interpolation between texels makes none, and K is the box
 //! under each alone.
@@ -30,6 +31,10 @@ use crate::moments::Covariance;
 const PIXEL_DEVIATION: f32 = 0.5;
 /// The largest over the mean variance of linear interpolation between two texels: `1/4` over `1/6`.
 const LARGEST_OVER_MEAN: f32 = 1.5;
+/// The level at which the correction ends; from the one before it fades out. On coarser levels a texel's mean changes with all that
+/// the level has averaged, its differences are mostly noise, and nothing is gained: on real maps mid, far and grazing views are the same
+/// with and without.
+const LAST_LEVEL: f32 = 2.0;
 /// Squared lengths of an axis, in texels, below which it counts as this long: a level 0 that is magnified 10⁶ times.
 const LEAST_SQUARED_LENGTH: f32 = 1e-12;
 
@@ -190,10 +195,14 @@ pub fn footprint_ratio(
         yy: seen[0] * along[1] * along[1] + seen[1] * across[1] * across[1],
         xy: seen[0] * along[0] * along[1] + seen[1] * across[0] * across[1],
     };
-    let moments = pixel_part(changes, filter.moments, pixel);
-    let variances = pixel_part(changes, filter.variances, pixel);
-    // The area under a texel has no variance on level 0, and a quarter on level 1.
-    let finest = 1.0 - 4.0 * filter.variances[0];
+    // The area under a texel of level l has the variance (4^l - 1) / 12.
+    let level = 0.5 * (1.0 + 12.0 * filter.variances[0]).log2();
+    let reach = (LAST_LEVEL - level).clamp(0.0, 1.0);
+    let [moments, variances] = [filter.moments, filter.variances].map(|variances| {
+        let part = pixel_part(changes, variances, pixel);
+        PixelPart { ratio: 1.0 - reach * (1.0 - part.ratio), ..part }
+    });
+    let finest = 1.0 - level;
     let near = (2.0 - axes.squared_lengths[0].sqrt()).clamp(0.0, 1.0);
     let magnified = finest.clamp(0.0, 1.0) * near * (1.0 - moments.ratio);
     FootprintRatio { moments, variances, linear_covariance, magnified }

@@ -11,6 +11,9 @@ const PIXEL_DEVIATION: f32 = 0.5;
 // The largest over the mean variance of linear interpolation between two texels: 1/4 over 1/6.
 const LARGEST_OVER_MEAN: f32 = 1.5;
 
+// The level at which the correction ends; from the one before it fades out.
+const LAST_LEVEL: f32 = 2.0;
+
 // Squared lengths of an axis, in texels, below which it counts as this long.
 const LEAST_SQUARED_LENGTH: f32 = 1e-12;
 
@@ -129,10 +132,14 @@ fn footprint_ratio(
     let seen = min(pixel, filtered.moments);
     let squares = seen.x * along * along + seen.y * across * across;
     let linear_covariance = vec3f(squares, seen.x * along.x * along.y + seen.y * across.x * across.y);
-    let moments = pixel_part(changes, filtered.moments, pixel);
-    let variances = pixel_part(changes, filtered.variances, pixel);
-    // The area under a texel has no variance on level 0, and a quarter on level 1.
-    let finest = clamp(1.0 - 4.0 * filtered.variances.x, 0.0, 1.0);
+    // The area under a texel of level l has the variance (4^l - 1) / 12.
+    let level = 0.5 * log2(1.0 + 12.0 * filtered.variances.x);
+    let reach = clamp(LAST_LEVEL - level, 0.0, 1.0);
+    let all_moments = pixel_part(changes, filtered.moments, pixel);
+    let all_variances = pixel_part(changes, filtered.variances, pixel);
+    let moments = PixelPart(1.0 - reach * (1.0 - all_moments.ratio), all_moments.linear_trace);
+    let variances = PixelPart(1.0 - reach * (1.0 - all_variances.ratio), all_variances.linear_trace);
+    let finest = clamp(1.0 - level, 0.0, 1.0);
     let near = clamp(2.0 - sqrt(axes.squared_lengths.x), 0.0, 1.0);
     return FootprintRatio(moments, variances, linear_covariance, finest * near * (1.0 - moments.ratio));
 }

@@ -183,6 +183,19 @@ fn nothing_changes_where_a_pixel_covers_whole_texels() {
 }
 
 #[test]
+fn the_correction_fades_out_on_coarser_levels() {
+    // A footprint of four to one for a trilinear filter, which covers too much across it.
+    let ratio = |long: f32| {
+        let axes = footprint_axes([long, 0.0], [0.0, 0.25 * long]);
+        let filter = hardware_variances(&axes, 1.0, 0.0);
+        footprint_ratio(&axes, &filter, [0.2, 0.0], [0.1, 0.2], &LobeOptions::default()).moments.ratio
+    };
+    let (level_1, between, level_2) = (ratio(2.0), ratio(3.0), ratio(4.0));
+    assert!(level_1 < 0.6 && level_1 < between && between < 1.0, "{level_1} {between}");
+    assert_eq!((level_2, ratio(64.0)), (1.0, 1.0));
+}
+
+#[test]
 fn detail_below_the_texel_stays() {
     let part = PixelPart { ratio: 0.1, linear_trace: 0.02 };
     assert!((part.factor(0.02) - 0.1).abs() < 1e-6 && (part.factor(0.01) - 0.1).abs() < 1e-6);
