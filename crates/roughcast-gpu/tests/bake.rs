@@ -199,8 +199,13 @@ fn bad_texels_are_mended_and_counted_as_on_the_cpu() {
     let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, -1.0, 1e-30, 1e30];
     let values: Vec<f32> = (0..16 * 16 * 3).map(|i| if i % 5 == 0 { bad[i / 5 % 7] } else { 0.7 }).collect();
     let image = Image::new(16, 16, 3, Samples::F32(values)).expect("as many");
-    let source = SourceOptions { range: NormalRange::Signed, max_slope: 4.0, ..normal_source() };
-    Case::new(&image, source, Layout::Lean, Bits::Half).check(&gpu);
+    for wrap in Wrap::ALL {
+        let source =
+            SourceOptions { range: NormalRange::Signed, max_slope: 4.0, wrap: *wrap, ..normal_source() };
+        for path in PATHS {
+            Case { path, ..Case::new(&image, source, Layout::Lean, Bits::Half) }.check(&gpu);
+        }
+    }
     // Two channels that say nothing at all.
     let image = Image::new(8, 8, 2, Samples::U8(vec![0; 128])).expect("as many");
     let source = SourceOptions { normal_channels: NormalChannels::Xy, ..normal_source() };

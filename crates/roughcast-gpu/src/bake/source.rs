@@ -8,6 +8,8 @@ use roughcast::{
 
 use crate::{Gpu, GpuError};
 
+const NEUTRAL: &str = include_str!("neutral.wgsl");
+
 /// How a texture's texels arrive in a shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Texel {
@@ -98,7 +100,7 @@ impl MapFormat {
         Ok(())
     }
 
-    /// WGSL that declares the map at a binding and defines `map_slope(at)`, the mended slope of a texel of it.
+    /// WGSL that declares the map at a binding and defines `map_slope(at)`, the slope of a texel of it, mended or neutral.
     pub fn wgsl(self, options: &SourceOptions, binding: u32) -> String {
         let component = match self.texel {
             Texel::Code(_) => "u32",
@@ -135,10 +137,10 @@ impl MapFormat {
         };
         format!(
             "fn map_component(stored: f32) -> f32 {{ return {component}; }}\n\
-             fn map_slope(at: vec2u) -> MendedSlope {{\n    \
-                 let texel = map_texel(vec2i(at));\n    \
+             fn slope_unless_broken(at: vec2i) -> MendedSlope {{\n    \
+                 let texel = map_texel(at);\n    \
                  let factors = vec2f(params.normal_factor_x, params.normal_factor_y);\n    \
-                 return {slope}params.max_slope);\n}}\n"
+                 return {slope}params.max_slope);\n}}\n{NEUTRAL}"
         )
     }
 

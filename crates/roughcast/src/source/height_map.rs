@@ -1,23 +1,11 @@
 //! Slopes from height maps.
 
-use super::{count_unusable, load_channel, mend};
+use super::{count_unusable, load_channel, mend, neighbour};
 use crate::Image;
 use crate::options::{Gradient, HeightSense, SourceOptions, Wrap};
 use crate::row::SourceScratch;
-use crate::slope::SourceCounts;
+use crate::slope::{Slope, SourceCounts};
 use crate::vectorised::vectorised;
-
-/// Index of a neighbour that may lie outside `0 .. size`; `offset` is -1, 0 or 1.
-fn neighbour(index: usize, offset: isize, size: usize, wrap: Wrap) -> usize {
-    let moved = index as isize + offset;
-    let last = size as isize - 1;
-    (match wrap {
-        Wrap::Repeat => moved.rem_euclid(size as isize),
-        Wrap::Clamp => moved.clamp(0, last),
-        // Mirrored about the edge itself, so the edge texel comes twice: a step of one stays on it.
-        Wrap::Mirror => moved.clamp(0, last),
-    }) as usize
-}
 
 /// Writes the slopes of a stretch of row `y` that starts at column `x`.
 pub(super) fn fill(
@@ -56,7 +44,7 @@ pub(super) fn fill(
     }
     // The slope before it is repaired as a vector over a z of one: `mended_slope` tells too steep from not finite.
     let (raw_x, raw_y) = (bx.to_vec(), by.to_vec());
-    mend(bx, by, options.max_slope, |i| Some([raw_x[i], raw_y[i], 1.0]))
+    mend(bx, by, options.max_slope, Slope::default(), |i| Some([raw_x[i], raw_y[i], 1.0]))
 }
 
 /// The mean of all heights that are finite: what stands for the others where heights are stored. 0 where none is.

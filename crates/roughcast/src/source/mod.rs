@@ -10,9 +10,9 @@ pub use base::{BaseRoughness, RoughnessMap, stored_from_variance, variance_from_
 pub(crate) use base::{BaseSource, UseOfBase};
 pub(crate) use resize::resized;
 
-use crate::options::{Kind, SourceOptions};
+use crate::options::{Kind, SourceOptions, Wrap};
 use crate::row::{Extra, Row, RowSource, SourceScratch};
-use crate::slope::{SourceCounts, mended_slope};
+use crate::slope::{Slope, SourceCounts, mended_slope};
 use crate::vectorised::vectorised;
 use crate::{Image, Samples};
 
@@ -175,11 +175,13 @@ vectorised! {
     }
 }
 
-/// Mends every texel that the fast loops found unusable. `component` gives a texel's vector.
+/// Mends every texel that the fast loops found unusable, except those that are broken, which become `broken`. `component`
+/// gives a texel's vector.
 fn mend(
     bx: &mut [f32],
     by: &mut [f32],
     max_slope: f32,
+    broken: Slope,
     component: impl Fn(usize) -> Option<[f32; 3]>,
 ) -> SourceCounts {
     let mut counts = SourceCounts::default();
@@ -191,12 +193,25 @@ fn mend(
             Some([x, y, z]) => mended_slope(x, y, z, max_slope, &mut counts),
             None => {
                 counts.invalid += 1;
-                Default::default()
+                None
             }
         };
+        let slope = slope.unwrap_or(broken);
         (bx[index], by[index]) = (slope.x, slope.y);
     }
     counts
+}
+
+/// Index of a neighbour that may lie outside `0 .. size`; `offset` is -1, 0 or 1.
+fn neighbour(index: usize, offset: isize, size: usize, wrap: Wrap) -> usize {
+    let moved = index as isize + offset;
+    let last = size as isize - 1;
+    (match wrap {
+        Wrap::Repeat => moved.rem_euclid(size as isize),
+        Wrap::Clamp => moved.clamp(0, last),
+        // Mirrored about the edge itself, so the edge texel comes twice: a step of one stays on it.
+        Wrap::Mirror => moved.clamp(0, last),
+    }) as usize
 }
 
 /// One comparison that is also false for NaN.
