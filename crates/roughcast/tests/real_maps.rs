@@ -7,7 +7,9 @@ use common::level::{decoded, raw_lean, raw_moments};
 use common::real_files::{self, Entry};
 use common::{baked, float_moments, maps, options, slope_oracle};
 use roughcast::texture::Layout;
-use roughcast::{Bits, Green, Image, Kind, NormalRange, PyramidFilter, Samples, SourceCounts, SourceOptions};
+use roughcast::{
+    Bits, Green, Image, Kind, MaxSlope, NormalRange, PyramidFilter, Samples, SourceCounts, SourceOptions,
+};
 
 /// How many maps there are at least; fewer means that the manifest was not understood.
 const NORMAL_MAPS: usize = 10;
@@ -95,7 +97,8 @@ fn rms_slopes_are_those_of_the_manifest() {
             .flat_map(|i| [component(i, 0), component(i, 1), component(i, 2).max(SMALLEST_Z)])
             .collect();
         let raised = maps::image(image.width(), image.height(), 3, Samples::F32(normals));
-        let source = SourceOptions { range: NormalRange::Signed, ..Default::default() };
+        let max_slope = MaxSlope::Limit(MaxSlope::OF_ANY_MAP);
+        let source = SourceOptions { range: NormalRange::Signed, max_slope, ..Default::default() };
         let got = baked(&raised, &source, &options(Layout::Clean, Bits::Sixteen)).report.rms_slope;
         assert!((got - wanted).abs() <= DECIMALS, "{}: {got} instead of {wanted}", entry.path);
         compared += 1;

@@ -100,7 +100,8 @@ impl MapFormat {
         Ok(())
     }
 
-    /// WGSL that declares the map at a binding and defines `map_slope(at)`, the slope of a texel of it, mended or neutral.
+    /// WGSL that declares the map at a binding and defines `map_slope(at)`, the slope of a texel of it, mended or neutral. Needs
+    /// `slope_limit()`, the largest slope.
     pub fn wgsl(self, options: &SourceOptions, binding: u32) -> String {
         let component = match self.texel {
             Texel::Code(_) => "u32",
@@ -140,7 +141,7 @@ impl MapFormat {
              fn slope_unless_broken(at: vec2i) -> MendedSlope {{\n    \
                  let texel = map_texel(at);\n    \
                  let factors = vec2f(params.normal_factor_x, params.normal_factor_y);\n    \
-                 return {slope}params.max_slope);\n}}\n{NEUTRAL}"
+                 return {slope}slope_limit());\n}}\n{NEUTRAL}"
         )
     }
 
@@ -178,7 +179,7 @@ impl MapFormat {
                  let xs = vec3i(neighbour(at.x - 1, size.x, params.wrap), at.x, neighbour(at.x + 1, size.x, params.wrap));\n    \
                  let above = neighbour(at.y - 1, size.y, params.wrap);\n    \
                  let below = neighbour(at.y + 1, size.y, params.wrap);\n    \
-                 return slope_from_gradient({gradient}, params.max_slope);\n}}\n"
+                 return slope_from_gradient({gradient}, slope_limit());\n}}\n"
         )
     }
 }

@@ -106,7 +106,7 @@ fn slope_of_normal(
 
 /// The slope of a normal, not longer than the options allow; `None` for one that is no surface's.
 fn mended(x: f64, y: f64, z: f64, options: &SourceOptions, counts: &mut SourceCounts) -> Option<[f64; 2]> {
-    let longest = f64::from(options.max_slope);
+    let longest = f64::from(options.max_slope.before_a_look());
     let across = x.hypot(y);
     if !(x.is_finite() && y.is_finite() && z.is_finite()) {
         counts.non_finite += 1;
