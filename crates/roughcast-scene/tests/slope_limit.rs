@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use roughcast::detect::{guess_channels, guess_range};
 use roughcast::shading::{LobeOptions, Material, Shading};
-use roughcast::{BakeOptions, BakeReport, Green, Image, MaxSlope, SourceOptions, bake};
+use roughcast::{BakeOptions, BakeReport, Green, Image, MaxSlope, Samples, SourceOptions, bake};
 use roughcast_scene::metrics::rmse;
 use roughcast_scene::render::{Method, ShadingTextures, Truth, unwatched};
 use roughcast_scene::{Picture, Plane, Reconstruction, Sampler, Scene, Shape, SlopeMap, View};
@@ -27,10 +27,21 @@ const MODELS: [Shading; 2] = [Shading::Lean, Shading::Variance];
 
 impl Far {
     fn new(path: &str, green: Green) -> Self {
+        Self::of(path, green, &[])
+    }
+
+    /// With these texels instead of some of its own.
+    fn of(path: &str, green: Green, texels: &[[u8; 3]]) -> Self {
         let file = roughcast_testdata::find(path);
         let decoded = roughcast_io::read_image_file(&file, &roughcast_io::ReadOptions::default());
         let decoded = decoded.unwrap_or_else(|e| panic!("{path}: {e}"));
-        let (range, image) = (guess_range(&decoded.image), decoded.image);
+        let (range, mut image) = (guess_range(&decoded.image), decoded.image);
+        let channels = image.channels();
+        for (i, texel) in texels.iter().enumerate() {
+            let Samples::U8(samples) = image.samples_mut() else { panic!("{path} has 8 bits") };
+            let at = channels * (9_973 * i + 1_234);
+            samples[at..at + 3].copy_from_slice(texel);
+        }
         let normal_channels = guess_channels(&image, &decoded.info.channels, range);
         let source = SourceOptions { green, range, normal_channels, ..SourceOptions::default() };
         let plane = Arc::new(Shape::Plane(Plane::default()));
@@ -98,4 +109,19 @@ fn lean_is_as_good_as_variance_on_every_real_map() {
         maps >= 10 && (limited > 0 || !roughcast_testdata::is_extended()),
         "{limited} of {maps} maps limited"
     );
+}
+
+/// The counterpart of the test above: a map that needs the limit.
+#[test]
+fn five_steep_texels_spoil_lean_only_without_the_limit() {
+    // z is the least that 8 bits can say above zero.
+    let steep = [[255, 128, 128], [128, 0, 128], [20, 60, 128], [200, 200, 128], [60, 255, 128]];
+    let far = Far::of("crops/rock020_normal_256.jpg", Green::Down, &steep);
+    let (variance, (lean, report)) = (far.error(1, MaxSlope::Auto).0, far.error(0, MaxSlope::Auto));
+    let limit = report.limit.expect("the report says so");
+    let (unlimited, _) = far.error(0, MaxSlope::Limit(MaxSlope::OF_ANY_MAP));
+    eprintln!("lean {lean}, variance {variance}, lean at 128 {unlimited}, {limit:?}");
+    assert!(lean <= LARGEST_RATIO * variance, "{lean} and {variance}");
+    assert!(unlimited > LARGEST_RATIO * variance, "{unlimited} and {variance}");
+    assert!(limit.texels >= 5 && limit.texels <= report.texels / 1000 + 1, "{limit:?}");
 }

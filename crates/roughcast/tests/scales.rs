@@ -261,17 +261,16 @@ fn the_automatic_limit_is_the_slope_that_few_exceed_and_wins_what_it_says() {
             let found = f64::from(limit.max_slope);
             assert!(found >= exceeded && found <= BIN * exceeded, "{layout} {bits}: {found}, not {exceeded}");
             assert_eq!(got.report.max_slope, limit.max_slope);
-            // The result is that of the limit named by hand, but for the last bits of the scale.
+            // The result is that of the limit named by hand, but for the scale, which holds a slope as long in any direction.
             let by_hand = SourceOptions { max_slope: MaxSlope::Limit(limit.max_slope), ..source };
             let wanted = slope_oracle::slopes(&image, &by_hand);
             assert_eq!((got.report.counts, limit.texels), (wanted.counts, wanted.counts.clamped));
             let whole = baked(&image, &by_hand, &options(layout, bits)).report;
             assert_eq!((whole.whole, whole.limit), (got.report.whole, None), "{layout} {bits}");
             assert!(
-                (got.report.scale / whole.scale - 1.0).abs() < 0.02,
-                "{} {}",
-                got.report.scale,
-                whole.scale
+                got.report.scale >= whole.scale && got.report.scale <= limit.max_slope,
+                "{:?}",
+                got.report
             );
             let before =
                 baked(&image, &SourceOptions { max_slope: UNLIMITED, ..source }, &options(layout, bits));
