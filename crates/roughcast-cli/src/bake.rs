@@ -9,7 +9,7 @@ use anyhow::{Context, Result, anyhow};
 use clap::ValueHint;
 use roughcast::texture::{Base, Layout, TextureArray, mark_set};
 use roughcast::{
-    AnisotropyOutput, BakeError, BakeOptions, Baked, Bits, Blocks, NormalRange, PyramidFilter,
+    AnisotropyOutput, BakeError, BakeOptions, BakeReport, Baked, Bits, Blocks, NormalRange, PyramidFilter,
     RoughnessTexture, ScaleChoice, bake, refuse_filter,
 };
 use roughcast_io::material_names::{MaterialRole, role_of};
@@ -111,7 +111,7 @@ pub struct Args {
     #[command(flatten)]
     pub source: SourceArgs,
 
-    /// Refuse maps with NaN or infinite texels instead of replacing these by flat ones
+    /// Refuse maps with broken texels (NaN, infinite, or a normal that points into the surface) instead of mending these
     #[arg(long, help_heading = READING)]
     pub strict: bool,
 
@@ -247,10 +247,8 @@ pub fn bake_file(input: &Path, output: &Path, args: &Args, stages: &mut Stages) 
     let baked = bake(&map.image, &map.options, roughness.as_ref().map(Roughness::base), &options)
         .map_err(usage_where_options)
         .with_context(named)?;
-    if args.strict && baked.report.counts.non_finite > 0 {
-        let count = baked.report.counts.non_finite;
-        return Err(anyhow!("{count} texels are NaN or infinite: mend the map, or leave --strict out"))
-            .with_context(named);
+    if args.strict && baked.report.counts.broken() > 0 {
+        return Err(broken_texels(&baked.report)).with_context(named);
     }
     // The pixels are not needed any more, and what follows needs room.
     let Map { image, info, options: source, green_correlation, mut warnings, .. } = map;
@@ -302,6 +300,19 @@ pub fn bake_file(input: &Path, output: &Path, args: &Args, stages: &mut Stages) 
         warnings,
         times: Vec::new(),
     })
+}
+
+/// What is wrong with a map that is not to be mended.
+fn broken_texels(report: &BakeReport) -> anyhow::Error {
+    let counts = report.counts;
+    let kinds = [
+        (counts.behind, "point into the surface"),
+        (counts.invalid, "have no direction"),
+        (counts.non_finite, "are NaN or infinite"),
+    ];
+    let found = kinds.iter().filter(|(count, _)| *count > 0);
+    let found = found.map(|(count, what)| format!("{count} {what}")).collect::<Vec<_>>().join(", ");
+    anyhow!("of its {} texels {found}: mend the map, or leave --strict out", report.texels)
 }
 
 /// The material's roughness, with a warning where the layout needs one and nobody named it.

@@ -72,8 +72,18 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             steepest_slope(row.bits, args.specular_power),
         ))?;
     }
+    if let Some(limit) = lowered(&rows) {
+        say(&format!("For 8 and 16 bits slopes are limited to {limit:.3} (--max-slope auto)"))?;
+    }
     say(&advice(best, args.specular_power))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// The largest slope that unsigned types allow, where it is lower than that of floats.
+fn lowered(rows: &[Precision]) -> Option<f32> {
+    let limit = |bits| rows.iter().find(|row| row.bits == bits).map(|row| row.max_slope);
+    limit(Bits::Sixteen)
+        .filter(|of_sixteen| limit(Bits::Float).is_some_and(|of_floats| *of_sixteen < of_floats))
 }
 
 fn advice(best: Option<Bits>, power: f32) -> String {
@@ -90,6 +100,7 @@ fn as_json(row: &Precision, power: f32) -> Value {
     json!({
         "bits": row.bits.name(),
         "scale": row.scale,
+        "max_slope": row.max_slope,
         "variance_error_bound": row.bound.variance,
         "variance_error_measured": row.measured_variance,
         "eigenvalue_error_bound": row.bound.eigenvalue,

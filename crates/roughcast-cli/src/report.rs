@@ -139,6 +139,13 @@ impl FileReport {
                 report.texels, counts.clamped, counts.behind, counts.invalid, counts.non_finite
             ));
         }
+        if let Some(limit) = report.limit {
+            lines.push(format!(
+                "  slopes are limited to {:.3}, which {} texels exceed: that wins a factor of {:.1} in specular power \
+                 (--max-slope auto)",
+                limit.max_slope, limit.texels, limit.factor
+            ));
+        }
         if let Some(advice) = report.advice {
             lines.push(format!(
                 "  the steepest 0.1 % of the texels cost a factor of {:.1} in specular power: --max-slope {:.3} wins it \
@@ -220,7 +227,7 @@ impl FileReport {
             "base": self.options.base.name(),
             "filter": self.options.filter.name(),
             "wrap": self.source.wrap.name(),
-            "max_slope": self.source.max_slope,
+            "max_slope": report.max_slope,
             "scale": self.scales()[0],
             "variance_scale": self.scales()[1],
             "texels": report.texels,
@@ -235,6 +242,11 @@ impl FileReport {
             "variance_error": self.bounds().variance,
             "usable_specular_power": self.bounds().usable_specular_power(),
             "usable_specular_power_any_direction": self.bounds().usable_specular_power_any_direction(),
+            "limit": report.limit.map(|limit| json!({
+                "max_slope": limit.max_slope,
+                "texels": limit.texels,
+                "specular_power_factor": limit.factor,
+            })),
             "advice": report.advice.map(|advice| json!({
                 "max_slope": advice.max_slope,
                 "specular_power_factor": advice.factor,

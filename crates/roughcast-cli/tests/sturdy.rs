@@ -81,6 +81,30 @@ fn texels_that_are_no_numbers_are_counted_and_flat_or_refused() {
 }
 
 #[test]
+fn broken_normals_are_mended_and_counted_or_refused() {
+    let folder = scratch();
+    let (input, output) = (folder.path().join("broken.exr"), folder.path().join("out.exr"));
+    // Straight into the surface, to a side of it, and NaN, among normals of slope 1/4.
+    let broken = [(5, [0.0, 0.0, -1.0]), (100, [0.5, 0.5, -0.1]), (200, [f32::NAN, 0.0, 1.0])];
+    let texel =
+        |i: usize| broken.iter().find(|(at, _)| *at == i).map_or([0.25, 0.0, 1.0], |(_, normal)| *normal);
+    let planes = ["x", "y", "z"].iter().enumerate();
+    let planes = planes.map(|(c, name)| Plane { name, values: (0..16 * 16).map(|i| texel(i)[c]).collect() });
+    write_exr((16, 16), planes.collect(), fs::File::create(&input).expect("space")).expect("EXR holds it");
+    let options = ["--as", "moments", "--bits", "float", "--json", "--kind", "normal", "--range", "signed"];
+    let line = bake(&input, &output, &[&options[..], &["--strict"]].concat()).expect_refusal(1, &input);
+    let said = "of its 256 texels 1 point into the surface, 1 have no direction, 1 are NaN or infinite: mend the map";
+    assert!(line.contains(said), "{line}");
+    assert!(!output.exists());
+    let report = bake(&input, &output, &options).expect_success().json();
+    assert_eq!(
+        (&report["behind"], &report["invalid"], &report["non_finite"]),
+        (&1.into(), &1.into(), &1.into())
+    );
+    assert_eq!(report["steepest_slope"], 0.25, "the mean of the neighbours");
+}
+
+#[test]
 fn too_many_pixels_are_refused_before_they_are_decoded() {
     let folder = scratch();
     let output = folder.path().join("out.ktx2");

@@ -8,8 +8,8 @@ use common::{gpu, gpu_of_the_web, gpu_without_features};
 use pollster::block_on;
 use roughcast::texture::{Base, Layout, TextureArray};
 use roughcast::{
-    BakeOptions, BaseRoughness, Bits, Gradient, Green, HeightSense, Image, Kind, NormalChannels, NormalRange,
-    PyramidFilter, Red, SampleType, Samples, ScaleChoice, SourceOptions, Wrap,
+    BakeOptions, BaseRoughness, Bits, Gradient, Green, HeightSense, Image, Kind, MaxSlope, NormalChannels,
+    NormalRange, PyramidFilter, Red, SampleType, Samples, ScaleChoice, SourceOptions, Wrap,
 };
 use roughcast_gpu::bake::{BakePath, GpuBaker};
 use roughcast_gpu::{Gpu, GpuError};
@@ -199,12 +199,61 @@ fn bad_texels_are_mended_and_counted_as_on_the_cpu() {
     let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, -1.0, 1e-30, 1e30];
     let values: Vec<f32> = (0..16 * 16 * 3).map(|i| if i % 5 == 0 { bad[i / 5 % 7] } else { 0.7 }).collect();
     let image = Image::new(16, 16, 3, Samples::F32(values)).expect("as many");
-    let source = SourceOptions { range: NormalRange::Signed, max_slope: 4.0, ..normal_source() };
-    Case::new(&image, source, Layout::Lean, Bits::Half).check(&gpu);
+    for wrap in Wrap::ALL {
+        let source = SourceOptions {
+            range: NormalRange::Signed,
+            max_slope: MaxSlope::Limit(4.0),
+            wrap: *wrap,
+            ..normal_source()
+        };
+        for path in PATHS {
+            Case { path, ..Case::new(&image, source, Layout::Lean, Bits::Half) }.check(&gpu);
+        }
+    }
     // Two channels that say nothing at all.
     let image = Image::new(8, 8, 2, Samples::U8(vec![0; 128])).expect("as many");
     let source = SourceOptions { normal_channels: NormalChannels::Xy, ..normal_source() };
     Case::new(&image, source, Layout::Lean, Bits::Half).check(&gpu);
+}
+
+/// A map whose few steep texels make the automatic limit set in: slopes of up to 2, and of 40 every so many texels.
+fn few_steep(width: usize, height: usize, every: usize) -> Image {
+    let slope = |i: usize| match (i % every, i % 7, i % 11) {
+        (0, ..) => [40.0, -9.0],
+        (_, x, y) => [x as f32 / 3.0 - 1.0, 1.0 - y as f32 / 5.0],
+    };
+    let samples = (0..width * height).flat_map(|i| [slope(i)[0], slope(i)[1], 1.0]).collect();
+    Image::new(width, height, 3, Samples::F32(samples)).expect("as many")
+}
+
+#[test]
+fn the_automatic_limit_of_slopes_is_the_cpus() {
+    let gpu = gpu();
+    let source = SourceOptions { range: NormalRange::Signed, ..normal_source() };
+    let mut limited = 0;
+    for (size, every) in [((64, 64), 1500), ((64, 64), 500), ((127, 33), 1200), ((1400, 1100), 1700)] {
+        let image = few_steep(size.0, size.1, every);
+        for (layout, bits) in [(Layout::Lean, Bits::Sixteen), (Layout::Clean, Bits::Eight)] {
+            for (path, base) in [(BakePath::Compute, Base::None), (BakePath::Raster, Base::Baked)] {
+                let mut case = Case { path, ..Case::new(&image, source, layout, bits) };
+                case.options.base = base;
+                case.roughness = Some(BaseRoughness::Variance(0.04));
+                case.check(&gpu);
+                let report =
+                    roughcast::bake(&image, &source, case.roughness, &case.options).expect("a map").report;
+                let (baker, _) = case.on_gpu(&gpu);
+                let got = block_on(baker.max_slope()).expect("read back");
+                assert!(
+                    (got / report.max_slope - 1.0).abs() <= SCALE_ROUNDING,
+                    "{case}: {got}, {}",
+                    report.max_slope
+                );
+                limited += usize::from(report.limit.is_some());
+                assert_eq!(report.limit.is_some(), every > 1000, "{case}");
+            }
+        }
+    }
+    assert_eq!(limited, 12);
 }
 
 #[test]

@@ -7,7 +7,7 @@ use common::maps::Random;
 use glam::DVec3;
 use half::f16;
 use pollster::block_on;
-use roughcast::{Normal, Slope, SourceCounts};
+use roughcast::{MaxSlope, Normal, Slope, SourceCounts};
 use roughcast_gpu::{Gpu, read_back};
 use roughcast_scene::Light;
 use wgpu::util::DeviceExt;
@@ -146,7 +146,8 @@ fn slopes_are_mended_as_on_the_cpu() {
         "let mended = mended_slope(input.xyz, 3.0);\noutput = vec4f(mended.slope, f32(mended.fault), 0.0);";
     for (input, output) in inputs.iter().zip(run(&gpu(), body, &inputs)) {
         let mut counts = SourceCounts::default();
-        let wanted = roughcast::mended_slope(input[0], input[1], input[2], MAX_SLOPE, &mut counts);
+        let wanted =
+            roughcast::mended_slope(input[0], input[1], input[2], MAX_SLOPE, &mut counts).unwrap_or_default();
         let length = wanted.x.hypot(wanted.y);
         // A slope as long as the largest may fall on either side of it.
         let on_the_edge = (length - MAX_SLOPE).abs() <= MENDED * MAX_SLOPE;
@@ -233,6 +234,44 @@ fn scales_are_the_cpus() {
             assert!((got / wanted - 1.0).abs() <= STORES, "{input:?}: {output:?}, not {expected:?}");
         }
     }
+}
+
+#[test]
+fn bins_hold_the_slopes_that_are_counted_in_them() {
+    /// The square's leading five bits: 3.1 % at most, half of it in the length.
+    const BIN: f32 = 1.0158;
+    let inputs: Vec<[f32; 4]> = inputs(6, -9, 6).into_iter().map(|input| input.map(f32::abs)).collect();
+    let body = "output = vec4f(upper_edge_of_slope_bin(slope_bin(input.x * input.x)), 0.0, 0.0, 0.0);";
+    for (input, output) in inputs.iter().zip(run(&gpu(), body, &inputs)) {
+        let (length, edge) = (input[0], output[0]);
+        let squared = length * length;
+        if squared > 1.0 / 1024.0 / 1024.0 && squared <= MaxSlope::OF_ANY_MAP * MaxSlope::OF_ANY_MAP {
+            assert!(edge >= length * (1.0 - f32::EPSILON) && edge <= BIN * length, "{length}: {edge}");
+        }
+    }
+}
+
+#[test]
+fn the_automatic_limit_is_the_cpus_rule() {
+    let inputs: Vec<[f32; 4]> = inputs(7, -6, 7).into_iter().map(|input| input.map(f32::abs)).collect();
+    let body = "output = vec4f(automatic_limit(input.x, input.y, input.z, 128.0));";
+    let mut limited = 0;
+    for ([exceeded, peak, base, _], output) in inputs.iter().zip(run(&gpu(), body, &inputs)) {
+        let limit = exceeded.max(MaxSlope::LEAST_AUTOMATIC);
+        let square =
+            |component: f32| (f64::from(component).powi(2) + f64::from(*base)).max(2.0_f64.powi(-20));
+        let factor = square(*peak) / square(peak.min(limit));
+        // Where the factor is just four, rounding decides.
+        if (factor / 4.0 - 1.0).abs() > 1e-5 {
+            assert_eq!(
+                output[0],
+                if factor > 4.0 { limit } else { 128.0 },
+                "{exceeded} {peak} {base}: {factor}"
+            );
+        }
+        limited += usize::from(factor > 4.0);
+    }
+    assert!(limited > 100 && limited < inputs.len() - 100, "{limited}");
 }
 
 #[test]

@@ -79,15 +79,17 @@ mod vectorised;
 pub mod wgsl;
 
 pub use bake::{
-    BakeError, BakePlan, BakeReport, Baked, ScaleAdvice, bake, bake_reusing, plan_bake, refuse_filter,
+    BakeError, BakePlan, BakeReport, Baked, ScaleAdvice, SlopeLimit, bake, bake_reusing, plan_bake,
+    refuse_filter,
 };
 pub use image::{Image, ImageError, SampleType, Samples};
 pub use moments::{Covariance, Moments};
 pub use named::{Named, UnknownName};
 pub use options::{
-    AnisotropyOutput, BakeOptions, Bits, Blocks, Gradient, Green, HeightSense, Kind, Lobe, NormalChannels,
-    NormalRange, PyramidFilter, Red, RoughnessTexture, ScaleChoice, SourceOptions, Wrap,
+    AnisotropyOutput, BakeOptions, Bits, Blocks, Gradient, Green, HeightSense, Kind, Lobe, MaxSlope,
+    NormalChannels, NormalRange, PyramidFilter, Red, RoughnessTexture, ScaleChoice, SourceOptions, Wrap,
 };
 pub use pyramid::{LevelStats, level_sizes, levels_of_four};
 pub use slope::{Normal, Slope, SourceCounts, mended_slope, normal_from_slope, slope_from_normal};
 pub use source::{BaseRoughness, RoughnessMap, SourceError, stored_from_variance, variance_from_stored};
+pub use survey::survey_stride;

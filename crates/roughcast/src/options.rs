@@ -152,8 +152,40 @@ pub struct SourceOptions {
     pub gradient: Gradient,
     /// What lies beyond the edge.
     pub wrap: Wrap,
-    /// Largest length of a slope; steeper ones are scaled back to it and counted.
-    pub max_slope: f32,
+    /// Largest length of a slope; steeper ones are scaled back to it, direction kept, and counted.
+    pub max_slope: MaxSlope,
+}
+
+/// The largest length that a slope may have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MaxSlope {
+    /// [`MaxSlope::OF_ANY_MAP`], or less where a few steep texels make the range of unsigned texels much larger than the rest
+    /// needs: where the steepest 0.1 % cost more than a factor of 4 in usable specular power, the limit is the slope that they
+    /// exceed, though at least [`MaxSlope::LEAST_AUTOMATIC`].
+    ///
+    /// It is only lowered where the layout stores slopes or variances over a range that follows from the map. Float texels, and
+    /// layouts that store normals and roughness, have no such range and keep every slope up to [`MaxSlope::OF_ANY_MAP`].
+    Auto,
+    /// This one: above 0, at most [`MaxSlope::LARGEST`].
+    Limit(f32),
+}
+
+impl MaxSlope {
+    /// The largest slope where nothing else is known: 89.55 degrees.
+    pub const OF_ANY_MAP: f32 = 128.0;
+    /// The smallest limit that [`MaxSlope::Auto`] chooses, 45 degrees: steep texels of a gentle map may be few and still be what
+    /// the map is about, such as the screws of a panel. With it 16 bits carry specular powers above 25 000.
+    pub const LEAST_AUTOMATIC: f32 = 1.0;
+    /// The largest limit that can be asked for. The square of a slope has to be a number.
+    pub const LARGEST: f32 = 1e9;
+
+    /// The limit before anything is known of the map.
+    pub fn before_a_look(self) -> f32 {
+        match self {
+            MaxSlope::Auto => Self::OF_ANY_MAP,
+            MaxSlope::Limit(limit) => limit,
+        }
+    }
 }
 
 named_enum! {
@@ -169,8 +201,6 @@ named_enum! {
 impl SourceOptions {
     /// Default height of a full-range height map, as a part of its width.
     pub const DEFAULT_HEIGHT_SCALE: f32 = 0.02;
-    /// Default largest slope: 89.55 degrees.
-    pub const DEFAULT_MAX_SLOPE: f32 = 128.0;
 
     /// What x and y of a normal are multiplied by, as read.
     pub fn normal_factors(&self) -> [f32; 2] {
@@ -194,7 +224,7 @@ impl Default for SourceOptions {
             height_sense: HeightSense::WhiteHigh,
             gradient: Gradient::Sobel,
             wrap: Wrap::Repeat,
-            max_slope: Self::DEFAULT_MAX_SLOPE,
+            max_slope: MaxSlope::Auto,
         }
     }
 }

@@ -5,8 +5,8 @@
 
 use rayon::prelude::*;
 
-use crate::bake::{BakeError, bake};
-use crate::options::{BakeOptions, Bits, SourceOptions};
+use crate::bake::{BakeError, Baked, bake};
+use crate::options::{BakeOptions, Bits, MaxSlope, SourceOptions};
 use crate::texture::{self, Bounds, Layout, Part, Peaks, TextureArray, TextureInfo};
 use crate::{Image, Moments};
 
@@ -17,6 +17,8 @@ pub struct Precision {
     pub bits: Bits,
     /// Range of the stored slopes; 1 for floats.
     pub scale: f32,
+    /// The largest slope allowed. Where it was lowered for this type, errors are those of what is left.
+    pub max_slope: f32,
     /// Largest error that the type can make with this map.
     pub bound: Bounds,
     /// Largest error that it made, over all texels of all levels, of a variance along an axis.
@@ -42,20 +44,29 @@ impl Precision {
 /// # Errors
 /// As [`bake`], for any of the types.
 pub fn measure(image: &Image, source: &SourceOptions) -> Result<Vec<Precision>, BakeError> {
-    // The pyramid's own covariance, of which nothing has been subtracted: a deviation's square is exact to f32.
-    let reference = BakeOptions { layout: Layout::Schilling, bits: Bits::Float, ..BakeOptions::default() };
-    let reference = bake(image, source, None, &reference)?.arrays;
-    Bits::ALL.iter().map(|bits| measure_one(image, source, *bits, &reference[0])).collect()
+    let mut references: Vec<(f32, Vec<TextureArray>)> = Vec::new();
+    let mut measured = Vec::new();
+    for bits in Bits::ALL {
+        let baked = bake(image, source, None, &BakeOptions { bits: *bits, ..BakeOptions::default() })?;
+        let limit = baked.report.max_slope;
+        // A type's own limit of slopes is no error of the type.
+        if !references.iter().any(|(of_limit, _)| *of_limit == limit) {
+            references.push((limit, reference(image, source, limit)?));
+        }
+        let reference = references.iter().find(|(of_limit, _)| *of_limit == limit).expect("made above");
+        measured.push(measure_one(&baked, *bits, &reference.1[0]));
+    }
+    Ok(measured)
 }
 
-fn measure_one(
-    image: &Image,
-    source: &SourceOptions,
-    bits: Bits,
-    reference: &TextureArray,
-) -> Result<Precision, BakeError> {
-    let options = BakeOptions { bits, ..BakeOptions::default() };
-    let baked = bake(image, source, None, &options)?;
+/// The pyramid's own covariance, of which nothing has been subtracted: a deviation's square is exact to f32.
+fn reference(image: &Image, source: &SourceOptions, max_slope: f32) -> Result<Vec<TextureArray>, BakeError> {
+    let source = SourceOptions { max_slope: MaxSlope::Limit(max_slope), ..*source };
+    let options = BakeOptions { layout: Layout::Schilling, bits: Bits::Float, ..BakeOptions::default() };
+    Ok(bake(image, &source, None, &options)?.arrays)
+}
+
+fn measure_one(baked: &Baked, bits: Bits, reference: &TextureArray) -> Precision {
     let stored = &baked.arrays[0];
     let (mut variance, mut eigenvalue) = (0.0_f32, 0.0_f32);
     for level in 0..stored.level_count() {
@@ -69,13 +80,14 @@ fn measure_one(
             .reduce(|| (0.0, 0.0), larger_of_both);
         (variance, eigenvalue) = larger_of_both((variance, eigenvalue), worst);
     }
-    Ok(Precision {
+    Precision {
         bits,
         scale: baked.report.scale,
+        max_slope: baked.report.max_slope,
         bound: baked.report.bounds,
         measured_variance: variance,
         measured_eigenvalue: eigenvalue,
-    })
+    }
 }
 
 fn larger_of_both(a: (f32, f32), b: (f32, f32)) -> (f32, f32) {

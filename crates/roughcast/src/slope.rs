@@ -34,16 +34,20 @@ pub fn normal_from_slope(slope: Slope) -> Normal {
 }
 
 /// What was mended while slopes were read: one bad texel must not poison the chain, and none is mended in silence.
+///
+/// A broken normal is made *neutral*: it gets the mean slope of those of its eight neighbours that are not broken, or a flat
+/// one where all of them are. Beyond an edge lie the texels that the wrap mode says; where the map does not repeat, those of
+/// the edge once more.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SourceCounts {
     /// Texels steeper than the largest slope, scaled back to it, direction kept.
     pub clamped: u64,
-    /// Normals that point into the surface (z <= 0), turned up to the largest slope, direction kept.
+    /// Normals that point into the surface (z <= 0), made neutral.
     pub behind: u64,
-    /// Texels that give no direction at all, replaced by flat: two-channel normals far outside the unit disc,
-    /// zero vectors, normals straight into the surface.
+    /// Texels that give no direction at all, made neutral: two-channel normals far outside the unit disc, zero vectors,
+    /// normals straight into the surface.
     pub invalid: u64,
-    /// NaN or infinite texels, replaced by flat.
+    /// NaN or infinite texels: normals are made neutral, heights flat.
     pub non_finite: u64,
 }
 
@@ -58,36 +62,40 @@ impl SourceCounts {
         }
     }
 
+    /// Texels that say nothing of the surface.
+    pub fn broken(self) -> u64 {
+        self.behind + self.invalid + self.non_finite
+    }
+
     /// All texels that were changed.
     pub fn total(self) -> u64 {
-        self.clamped + self.behind + self.invalid + self.non_finite
+        self.clamped + self.broken()
     }
 }
 
-/// Turns a vector that is no usable normal into the nearest usable slope, and counts what was done.
-///
-/// `max_slope` is the largest length that a slope may have.
-pub fn mended_slope(x: f32, y: f32, z: f32, max_slope: f32, counts: &mut SourceCounts) -> Slope {
+/// The slope of a vector that may be no usable normal, scaled back to `max_slope` where it is longer, direction kept; `None`
+/// where the vector points into the surface or is no number. Counts what was wrong.
+pub fn mended_slope(x: f32, y: f32, z: f32, max_slope: f32, counts: &mut SourceCounts) -> Option<Slope> {
     if !(x.is_finite() && y.is_finite() && z.is_finite()) {
         counts.non_finite += 1;
-        return Slope::default();
+        return None;
     }
     // In f64 the square of any finite f32 is finite and not zero unless the number is.
     let length = (f64::from(x).powi(2) + f64::from(y).powi(2)).sqrt();
-    if z > 0.0 && length <= f64::from(z) * f64::from(max_slope) {
-        return slope_from_normal(Normal { x, y, z });
+    if z <= 0.0 {
+        if length == 0.0 {
+            counts.invalid += 1;
+        } else {
+            counts.behind += 1;
+        }
+        return None;
     }
-    if length == 0.0 {
-        counts.invalid += 1;
-        return Slope::default();
+    if length <= f64::from(z) * f64::from(max_slope) {
+        return Some(slope_from_normal(Normal { x, y, z }));
     }
-    if z > 0.0 {
-        counts.clamped += 1;
-    } else {
-        counts.behind += 1;
-    }
+    counts.clamped += 1;
     let factor = f64::from(max_slope) / length;
-    Slope { x: (f64::from(x) * factor) as f32, y: (f64::from(y) * factor) as f32 }
+    Some(Slope { x: (f64::from(x) * factor) as f32, y: (f64::from(y) * factor) as f32 })
 }
 
 #[cfg(test)]
@@ -96,7 +104,7 @@ mod tests {
 
     const MAX: f32 = 128.0;
 
-    fn mend(x: f32, y: f32, z: f32) -> (Slope, SourceCounts) {
+    fn mend(x: f32, y: f32, z: f32) -> (Option<Slope>, SourceCounts) {
         let mut counts = SourceCounts::default();
         let slope = mended_slope(x, y, z, MAX, &mut counts);
         (slope, counts)
@@ -104,29 +112,29 @@ mod tests {
 
     #[test]
     fn good_normals_pass_uncounted_and_length_does_not_matter() {
-        assert_eq!(mend(0.3, -0.4, 0.5), (Slope { x: 0.6, y: -0.8 }, SourceCounts::default()));
-        assert_eq!(mend(3.0, -4.0, 5.0).0, Slope { x: 0.6, y: -0.8 });
+        assert_eq!(mend(0.3, -0.4, 0.5), (Some(Slope { x: 0.6, y: -0.8 }), SourceCounts::default()));
+        assert_eq!(mend(3.0, -4.0, 5.0).0, Some(Slope { x: 0.6, y: -0.8 }));
     }
 
     #[test]
-    fn bad_normals_are_scaled_back_in_their_direction_and_counted() {
-        let (slope, counts) = mend(0.6, 0.8, 0.0);
-        assert_eq!(slope, Slope { x: 0.6 * MAX, y: 0.8 * MAX });
-        assert_eq!(counts, SourceCounts { behind: 1, ..Default::default() });
+    fn steep_normals_are_scaled_back_in_their_direction_and_counted() {
         let (slope, counts) = mend(-3.0, 4.0, 1e-6);
-        assert_eq!(slope, Slope { x: -0.6 * MAX, y: 0.8 * MAX });
+        assert_eq!(slope, Some(Slope { x: -0.6 * MAX, y: 0.8 * MAX }));
         assert_eq!(counts, SourceCounts { clamped: 1, ..Default::default() });
     }
 
     #[test]
-    fn texels_without_direction_become_flat() {
+    fn broken_normals_have_no_slope_and_are_counted() {
+        for (x, y, z) in [(0.6, 0.8, 0.0), (1e-30, 0.0, -0.0), (0.6, 0.0, -0.8)] {
+            assert_eq!(mend(x, y, z), (None, SourceCounts { behind: 1, ..Default::default() }));
+        }
         for (x, y, z) in [(0.0, 0.0, -1.0), (0.0, 0.0, 0.0)] {
-            assert_eq!(mend(x, y, z), (Slope::default(), SourceCounts { invalid: 1, ..Default::default() }));
+            assert_eq!(mend(x, y, z), (None, SourceCounts { invalid: 1, ..Default::default() }));
         }
         for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
             let counts = SourceCounts { non_finite: 1, ..Default::default() };
-            assert_eq!(mend(bad, 0.0, 1.0), (Slope::default(), counts));
-            assert_eq!(mend(0.0, 0.0, bad), (Slope::default(), counts));
+            assert_eq!(mend(bad, 0.0, 1.0), (None, counts));
+            assert_eq!(mend(0.0, 0.0, bad), (None, counts));
         }
     }
 }

@@ -1,7 +1,7 @@
 // Slopes and normals in the tangent frame: x right, y up, z out of the surface. Twin of slope.rs.
 // Source: LEAN mapping, Eq. 3.
 
-// What was wrong with a texel; the order of SourceCounts.
+// What was wrong with a texel; the order of SourceCounts. From FAULT_BEHIND on it is broken and has no slope.
 const FAULT_NONE: u32 = 0u;
 const FAULT_CLAMPED: u32 = 1u;
 const FAULT_BEHIND: u32 = 2u;
@@ -20,27 +20,25 @@ fn normal_from_slope(slope: vec2f) -> vec3f {
     return vec3f(slope * z, z);
 }
 
-// The nearest usable slope of a vector that may be no usable normal, and what was wrong with it.
+// The slope of a vector that may be no usable normal, not longer than max_slope, and what was wrong with it; zero where it is
+// broken.
 fn mended_slope(vector: vec3f, max_slope: f32) -> MendedSlope {
     if !(is_finite(vector.x) & is_finite(vector.y) & is_finite(vector.z)) {
         return MendedSlope(vec2f(0.0), FAULT_NON_FINITE);
     }
     // The larger component is divided out, so that no square leaves the range of floats.
     let larger = max(abs(vector.x), abs(vector.y));
+    if vector.z <= 0.0 {
+        return MendedSlope(vec2f(0.0), select(FAULT_BEHIND, FAULT_INVALID, larger == 0.0));
+    }
     if larger == 0.0 {
-        if vector.z > 0.0 {
-            return MendedSlope(vec2f(0.0), FAULT_NONE);
-        }
-        return MendedSlope(vec2f(0.0), FAULT_INVALID);
+        return MendedSlope(vec2f(0.0), FAULT_NONE);
     }
     let x = quotient(vector.x, larger);
     let y = quotient(vector.y, larger);
     let length_by_larger = square_root(rounded(x * x) + rounded(y * y));
-    if vector.z > 0.0 {
-        if length_by_larger <= vector.z / larger * max_slope {
-            return MendedSlope(vec2f(quotient(vector.x, vector.z), quotient(vector.y, vector.z)), FAULT_NONE);
-        }
+    if length_by_larger <= vector.z / larger * max_slope {
+        return MendedSlope(vec2f(quotient(vector.x, vector.z), quotient(vector.y, vector.z)), FAULT_NONE);
     }
-    let factor = quotient(max_slope, length_by_larger);
-    return MendedSlope(vec2f(x, y) * factor, select(FAULT_BEHIND, FAULT_CLAMPED, vector.z > 0.0));
+    return MendedSlope(vec2f(x, y) * quotient(max_slope, length_by_larger), FAULT_CLAMPED);
 }

@@ -19,6 +19,9 @@ pub const CODEC: &str = include_str!("texture/codec.wgsl");
 pub const LEAN: &str = include_str!("texture/lean.wgsl");
 /// CLEAN's texels. Needs [`COMBINE`] and [`CODEC`].
 pub const CLEAN: &str = include_str!("texture/clean.wgsl");
+/// The automatic limit of slopes. Needs [`CODEC`].
+pub const LIMIT: &str = include_str!("bake/limit.wgsl");
 
 /// All of them, each after what it needs.
-pub const ALL: [&str; 9] = [EXACT, SLOPE, NORMAL_MAP, HEIGHT_MAP, COMBINE, WEIGHTS, CODEC, LEAN, CLEAN];
+pub const ALL: [&str; 10] =
+    [EXACT, SLOPE, NORMAL_MAP, HEIGHT_MAP, COMBINE, WEIGHTS, CODEC, LEAN, CLEAN, LIMIT];

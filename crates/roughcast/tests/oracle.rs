@@ -6,8 +6,8 @@ use common::compare::{Rounding, compare_rounded, expect};
 use common::maps::{self, Random};
 use common::{baked, float_moments, level, pyramid_oracle, slope_oracle};
 use roughcast::{
-    BakeReport, Gradient, Green, HeightSense, Image, NormalChannels, NormalRange, PyramidFilter, Red,
-    SampleType, Samples, SourceCounts, SourceOptions, Wrap,
+    BakeReport, Gradient, Green, HeightSense, Image, MaxSlope, NormalChannels, NormalRange, PyramidFilter,
+    Red, SampleType, Samples, SourceCounts, SourceOptions, Wrap,
 };
 
 const TYPES: [SampleType; 4] = [SampleType::U8, SampleType::U16, SampleType::F16, SampleType::F32];
@@ -105,7 +105,7 @@ fn random_pixels_are_mended_and_counted_as_the_rules_say() {
     let mut total = SourceCounts::default();
     for sample_type in TYPES {
         for (options, channels) in normal_options(sample_type) {
-            let options = SourceOptions { max_slope: 8.0, ..options };
+            let options = SourceOptions { max_slope: MaxSlope::Limit(8.0), ..options };
             let values: Vec<f64> = (0..61 * 43 * channels).map(|_| random.unit()).collect();
             let image = maps::image(61, 43, channels, maps::samples(&values, sample_type));
             let (_, report) = check(&image, &options, NEAR_THE_RIM);
@@ -227,7 +227,7 @@ fn holes_and_spikes_in_heights_are_mended_and_counted() {
         assert_eq!(report.counts, SourceCounts { non_finite: touched, ..Default::default() }, "{gradient}");
     }
     let (image, options) = maps::height_map(width, height, SampleType::F32, 6);
-    let options = SourceOptions { height_scale: 2.0, max_slope: 3.0, ..options };
+    let options = SourceOptions { height_scale: 2.0, max_slope: MaxSlope::Limit(3.0), ..options };
     let (_, report) = check(&image, &options, Rounding { count: ROUNDINGS, floor: 2.0 * width as f64 });
     assert!(
         report.counts.clamped > 0 && report.counts.clamped == report.counts.total(),

@@ -8,8 +8,8 @@ use common::maps;
 use common::{baked, baked_with, options, pyramid_oracle, slope_oracle};
 use roughcast::texture::{Base, Layout, RoughnessStored};
 use roughcast::{
-    BakeError, BakeOptions, Baked, BaseRoughness, Bits, Blocks, Image, NormalChannels, PyramidFilter,
-    RoughnessMap, SampleType, Samples, ScaleChoice, SourceError, SourceOptions, bake,
+    BakeError, BakeOptions, Baked, BaseRoughness, Bits, Blocks, Image, MaxSlope, NormalChannels,
+    PyramidFilter, RoughnessMap, SampleType, Samples, ScaleChoice, SourceError, SourceOptions, bake,
 };
 
 const UNSIGNED: [Bits; 2] = [Bits::Eight, Bits::Sixteen];
@@ -155,7 +155,7 @@ fn a_fixed_scale_clamps_slopes_and_counts_them() {
             // The base takes its part of the range of the second moments.
             let room =
                 if holds_squares { f64::from(scale).powi(2) - largest } else { f64::from(scale).powi(2) };
-            let limited = SourceOptions { max_slope: room.sqrt() as f32, ..source };
+            let limited = SourceOptions { max_slope: MaxSlope::Limit(room.sqrt() as f32), ..source };
             let slopes = slope_oracle::slopes(&image, &limited);
             assert!(slopes.counts.clamped > 100);
             let wanted = pyramid_oracle::moments(&slopes, &variances, PyramidFilter::Box, source.wrap);
@@ -182,8 +182,13 @@ fn a_fixed_scale_clamps_slopes_and_counts_them() {
 
 /// A gentle map with so many steep texels, in parts of a thousand.
 fn with_steep_texels(thousandths: f64, direction: [f64; 2]) -> (Image, SourceOptions) {
+    steep_texels_among(0.1, thousandths, direction)
+}
+
+/// The same of a map whose slopes are so large.
+fn steep_texels_among(size: f64, thousandths: f64, direction: [f64; 2]) -> (Image, SourceOptions) {
     let (width, height) = (128, 128);
-    let mut slopes = maps::slopes(width, height, 55).map_scale(0.1);
+    let mut slopes = maps::slopes(width, height, 55).map_scale(size);
     let count = (thousandths * 1e-3 * slopes.len() as f64) as usize;
     for i in 0..count {
         slopes[i * 97] = direction;
@@ -198,10 +203,11 @@ fn advice_is_given_where_few_steep_texels_cost_much_and_keeps_its_promise() {
     for layout in [Layout::Lean, Layout::Clean] {
         for bits in UNSIGNED {
             let (image, source) = with_steep_texels(0.5, [9.0, 0.0]);
+            let source = SourceOptions { max_slope: MaxSlope::Limit(MaxSlope::OF_ANY_MAP), ..source };
             let before = baked(&image, &source, &options(layout, bits)).report;
             let advice = before.advice.unwrap_or_else(|| panic!("{layout} {bits}: no advice"));
             assert!(advice.factor > 4.0 && advice.max_slope < 0.2, "{advice:?}");
-            let followed = SourceOptions { max_slope: advice.max_slope, ..source };
+            let followed = SourceOptions { max_slope: MaxSlope::Limit(advice.max_slope), ..source };
             let after = baked(&image, &followed, &options(layout, bits)).report;
             let factor = after.bounds.usable_specular_power() / before.bounds.usable_specular_power();
             assert!(
@@ -230,6 +236,96 @@ fn no_advice_is_given_where_it_would_not_help() {
     assert!(!advised(0.5, steep, Bits::Sixteen, ScaleChoice::Fixed(10.0)), "the scale was chosen by hand");
 }
 
+const UNLIMITED: MaxSlope = MaxSlope::Limit(MaxSlope::OF_ANY_MAP);
+
+/// Every layout of a range that follows from the map.
+const RANGED: [Layout; 5] =
+    [Layout::Lean, Layout::Clean, Layout::Schilling, Layout::SchillingIsotropic, Layout::Variance];
+
+#[test]
+fn the_automatic_limit_is_the_slope_that_few_exceed_and_wins_what_it_says() {
+    /// The quantile is known to a bin of the histogram, 1.6 % above it.
+    const BIN: f64 = 1.017;
+    /// What bounds count beside the ranges: the arithmetic in single floats, and the error of the mean.
+    const WITHIN: f32 = 0.1;
+    let (image, source) = steep_texels_among(2.0, 0.5, [40.0, 9.0]);
+    let mut lengths: Vec<f64> =
+        slope_oracle::slopes(&image, &source).texels.iter().map(|b| b[0].hypot(b[1])).collect();
+    lengths.sort_by(f64::total_cmp);
+    let exceeded = lengths[lengths.len() - 1 - lengths.len() / 1000];
+    assert!(exceeded > 1.0);
+    for layout in RANGED {
+        for bits in UNSIGNED {
+            let got = baked(&image, &source, &options(layout, bits));
+            let limit = got.report.limit.unwrap_or_else(|| panic!("{layout} {bits}: no limit"));
+            let found = f64::from(limit.max_slope);
+            assert!(found >= exceeded && found <= BIN * exceeded, "{layout} {bits}: {found}, not {exceeded}");
+            assert_eq!(got.report.max_slope, limit.max_slope);
+            // The result is that of the limit named by hand, but for the scale, which holds a slope as long in any direction.
+            let by_hand = SourceOptions { max_slope: MaxSlope::Limit(limit.max_slope), ..source };
+            let wanted = slope_oracle::slopes(&image, &by_hand);
+            assert_eq!((got.report.counts, limit.texels), (wanted.counts, wanted.counts.clamped));
+            let whole = baked(&image, &by_hand, &options(layout, bits)).report;
+            assert_eq!((whole.whole, whole.limit), (got.report.whole, None), "{layout} {bits}");
+            assert!(
+                got.report.scale >= whole.scale && got.report.scale <= limit.max_slope,
+                "{:?}",
+                got.report
+            );
+            let before =
+                baked(&image, &SourceOptions { max_slope: UNLIMITED, ..source }, &options(layout, bits));
+            let power = |report: &roughcast::BakeReport| report.bounds.usable_specular_power();
+            let factor = power(&got.report) / power(&before.report);
+            assert!((factor / limit.factor - 1.0).abs() < WITHIN, "{layout} {bits}: {factor} for {limit:?}");
+        }
+    }
+}
+
+/// Rare texels of a gentle map are not flattened: they stay as steep as 45 degrees.
+#[test]
+fn the_automatic_limit_is_never_below_one() {
+    let (image, source) = with_steep_texels(0.5, [9.0, 0.0]);
+    for bits in UNSIGNED {
+        let report = baked(&image, &source, &options(Layout::Lean, bits)).report;
+        let limit = report.limit.expect("81 times the power");
+        assert_eq!((limit.max_slope, limit.texels), (MaxSlope::LEAST_AUTOMATIC, 8));
+        assert!((limit.factor / 81.0 - 1.0).abs() < 0.01, "{limit:?}");
+        // What remains to be won is advised.
+        assert!(report.advice.is_some_and(|advice| advice.max_slope < 0.2));
+    }
+    let (image, source) = with_steep_texels(0.5, [1.5, 0.0]);
+    assert_eq!(baked(&image, &source, &options(Layout::Lean, Bits::Sixteen)).report.limit, None);
+}
+
+#[test]
+fn nothing_is_limited_where_no_range_demands_it() {
+    let limit_of =
+        |thousandths, direction, source: fn(SourceOptions) -> SourceOptions, options: BakeOptions| {
+            let (image, plain) = steep_texels_among(2.0, thousandths, direction);
+            let report = baked(&image, &source(plain), &options).report;
+            (report.limit.is_some(), report.max_slope)
+        };
+    let auto: fn(SourceOptions) -> SourceOptions = |source| source;
+    let (steep, lean) = ([40.0, 0.0], options(Layout::Lean, Bits::Sixteen));
+    assert!(limit_of(0.5, steep, auto, lean).0);
+    let any = (false, MaxSlope::OF_ANY_MAP);
+    assert_eq!(limit_of(0.0, steep, auto, lean), any, "no steep texels");
+    assert_eq!(limit_of(5.0, steep, auto, lean), any, "too many to be cut");
+    for layout in RANGED {
+        for bits in [Bits::Half, Bits::Float] {
+            assert_eq!(limit_of(0.5, steep, auto, options(layout, bits)), any, "floats have no range");
+        }
+    }
+    for bits in UNSIGNED {
+        assert_eq!(limit_of(0.5, steep, auto, options(Layout::Pbr, bits)), any, "normals have no range");
+    }
+    let fixed = BakeOptions { scale: ScaleChoice::Fixed(50.0), ..lean };
+    assert_eq!(limit_of(0.5, steep, auto, fixed), (false, 50.0), "the range was chosen by hand");
+    let by_hand: fn(SourceOptions) -> SourceOptions =
+        |source| SourceOptions { max_slope: MaxSlope::Limit(60.0), ..source };
+    assert_eq!(limit_of(0.5, steep, by_hand, lean), (false, 60.0), "the limit was chosen by hand");
+}
+
 /// Everything that is refused, with a word of its error.
 #[test]
 fn combinations_that_make_no_sense_are_refused() {
@@ -247,7 +343,8 @@ fn combinations_that_make_no_sense_are_refused() {
     let folded = BakeOptions { base: Base::Baked, ..plain };
     let power =
         BakeOptions { roughness_stored: RoughnessStored::SpecularPower, ..with(Layout::Pbr, Bits::Eight) };
-    let steep = SourceOptions { max_slope: 300.0, ..source };
+    let limited = |limit| SourceOptions { max_slope: MaxSlope::Limit(limit), ..source };
+    let steep = limited(300.0);
     type Case<'a> = (&'a str, &'a Image, SourceOptions, Option<BaseRoughness<'a>>, BakeOptions);
     let cases: Vec<Case<'_>> = vec![
         ("holds floats", &image, source, None, with(Layout::Moments, Bits::Sixteen)),
@@ -285,8 +382,14 @@ fn combinations_that_make_no_sense_are_refused() {
             None,
             plain,
         ),
-        ("largest slope", &image, SourceOptions { max_slope: 0.0, ..source }, None, plain),
-        ("largest slope", &image, SourceOptions { max_slope: f32::INFINITY, ..source }, None, plain),
+        ("largest slope", &image, limited(0.0), None, plain),
+        ("largest slope", &image, limited(f32::INFINITY), None, plain),
+        ("largest slope", &image, limited(f32::NAN), None, plain),
+        ("largest slope", &image, limited(f32::NAN), None, fixed(1.0)),
+        ("largest slope", &image, limited(-1.0), None, plain),
+        ("largest slope", &image, limited(1.001e9), None, plain),
+        // Its square is no number, so that infinite slopes would pass.
+        ("at most 1e9", &image, limited(2e19), None, plain),
         ("height scale", &image, SourceOptions { height_scale: f32::NAN, ..source }, None, plain),
     ];
     for (word, image, source, base, options) in cases {
@@ -313,7 +416,7 @@ fn filters_with_lobes_below_zero_are_refused_by_name() {
 #[test]
 fn halves_hold_the_largest_slope_that_they_allow() {
     let (image, source) = maps::slope_map(2, 2, &[[255.0, 0.0], [0.0, 255.0], [-255.0, 0.0], [0.0, -300.0]]);
-    let source = SourceOptions { max_slope: 255.0, ..source };
+    let source = SourceOptions { max_slope: MaxSlope::Limit(255.0), ..source };
     let half: Baked = baked(&image, &source, &options(Layout::Moments, Bits::Half));
     let float = baked(&image, &source, &options(Layout::Moments, Bits::Float));
     assert_eq!(half.report.counts.clamped, 1);

@@ -6,6 +6,7 @@ struct Params {
     zero: u32,
     // 0: what lies beyond the edge is the other side of the map; else the edge goes on.
     wrap: u32,
+    // The largest slope before anything is known of the map; slope_limit() is the one that counts.
     max_slope: f32,
     // What a stored height is multiplied by to give texels.
     height_scale: f32,
@@ -14,13 +15,15 @@ struct Params {
     // What x and y of a normal are multiplied by.
     normal_factor_x: f32,
     normal_factor_y: f32,
+    // Columns between the texels of a row that an automatic limit of slopes samples; zero where the limit is known.
+    survey_stride: u32,
 }
 
-// `Stores` and the scale behind them.
+// `Stores`, the scale and the largest slope behind them.
 struct PackedStores {
     slope_second: vec4f,
     mixed_trace: vec4f,
-    unit_scale: vec4f,
+    unit_scale_limit: vec4f,
 }
 
 fn unpacked_stores(packed: PackedStores) -> Stores {
@@ -29,7 +32,7 @@ fn unpacked_stores(packed: PackedStores) -> Stores {
         packed.slope_second.zw,
         packed.mixed_trace.xy,
         packed.mixed_trace.zw,
-        packed.unit_scale.xy,
+        packed.unit_scale_limit.xy,
     );
 }
 

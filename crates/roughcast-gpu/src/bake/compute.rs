@@ -4,7 +4,7 @@ use super::bindings::{Access, Bindings};
 use super::pipelines::Pipelines;
 use super::plan::{Average, Step, steps};
 use super::target::level_view;
-use super::{Job, LIBRARY};
+use super::{Job, LIBRARY, SLOPE_LIMIT};
 use crate::{Gpu, GpuError, Span};
 
 const COMMON: &str = include_str!("common.wgsl");
@@ -133,7 +133,7 @@ async fn dispatch(
     wgsl += job.target.nearest_wgsl();
     let (kernel, entry_point, groups) = kernel(job, step);
     wgsl += &kernel;
-    let source = [LIBRARY.as_str(), COMMON, bindings.wgsl(), &wgsl].concat();
+    let source = [LIBRARY.as_str(), COMMON, bindings.wgsl(), SLOPE_LIMIT, &wgsl].concat();
     let (pipeline, bindings) = gpu
         .checked("a bake's compute pipeline", |device| {
             let (layout, group) = bindings.make(device);

@@ -17,7 +17,8 @@ use std::sync::LazyLock;
 
 use roughcast::texture::{TextureArray, TextureInfo};
 use roughcast::{
-    BakeOptions, BakePlan, BaseRoughness, Image, ScaleChoice, SourceCounts, SourceOptions, plan_bake,
+    BakeOptions, BakePlan, BaseRoughness, Image, MaxSlope, ScaleChoice, SourceCounts, SourceOptions,
+    plan_bake,
 };
 use wgpu::util::DeviceExt;
 
@@ -33,6 +34,9 @@ use target::{Target, base_variance_of, level_count, level_view};
 
 /// The library's rules in WGSL.
 static LIBRARY: LazyLock<String> = LazyLock::new(|| roughcast::wgsl::ALL.join("\n"));
+
+/// The largest slope, once it is known.
+const SLOPE_LIMIT: &str = "fn slope_limit() -> f32 { return packed_stores.unit_scale_limit.w; }\n";
 
 /// How a map is baked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -75,9 +79,10 @@ struct Job {
     counts: wgpu::Buffer,
 }
 
-/// Bytes of WGSL's `PackedStores`, and the place of the scale in it.
+/// Floats of WGSL's `PackedStores`, and the places of the scale and the largest slope among them.
 const STORES_FLOATS: usize = 12;
 const SCALE_AT: usize = 10;
+const LIMIT_AT: usize = 11;
 
 impl GpuBaker {
     /// For images like this one, which is uploaded as the first. Nothing is baked yet.
@@ -213,7 +218,7 @@ impl GpuBaker {
         }
     }
 
-    /// A buffer of which the eleventh float is the scale, for shaders: see `bake/common.wgsl`, `PackedStores`.
+    /// A buffer of which the eleventh float is the scale, and the twelfth the largest slope, for shaders: see `bake/common.wgsl`, `PackedStores`.
     pub fn scale_buffer(&self) -> &wgpu::Buffer {
         &self.job.stores
     }
@@ -225,11 +230,22 @@ impl GpuBaker {
     pub async fn info(&self) -> Result<TextureInfo, GpuError> {
         let mut info = self.job.plan.info;
         if !self.job.target.is_float() {
-            let floats: Vec<f32> =
-                bytemuck::pod_collect_to_vec(&read_buffer(&self.gpu, &self.job.stores).await?);
-            info.scale = floats[SCALE_AT];
+            info.scale = self.stores().await?[SCALE_AT];
         }
         Ok(info)
+    }
+
+    /// The largest slope of the last bake, read back from the GPU: with [`MaxSlope::Auto`](roughcast::MaxSlope::Auto) it may
+    /// follow from the map.
+    ///
+    /// # Errors
+    /// [`GpuError::ReadBack`] where the device was lost.
+    pub async fn max_slope(&self) -> Result<f32, GpuError> {
+        Ok(self.stores().await?[LIMIT_AT])
+    }
+
+    async fn stores(&self) -> Result<Vec<f32>, GpuError> {
+        Ok(bytemuck::pod_collect_to_vec(&read_buffer(&self.gpu, &self.job.stores).await?))
     }
 
     /// Texels that the last bake had to mend; nothing where it was made by render passes, which do not count.
@@ -296,7 +312,7 @@ impl Job {
             base_variance,
             target,
             textures,
-            stores: stores_buffer(gpu, scale),
+            stores: stores_buffer(gpu, scale, plan.source.max_slope.before_a_look()),
             counts: counts_buffer(gpu).await?,
         })
     }
@@ -312,6 +328,16 @@ impl Job {
     fn texels(&self, level: u32) -> u64 {
         let (width, height) = self.level_size(level);
         u64::from(width) * u64::from(height)
+    }
+
+    /// Zero where the largest slope is known.
+    fn survey_stride(&self) -> u32 {
+        match self.plan.source.max_slope {
+            MaxSlope::Auto => {
+                roughcast::survey_stride(self.size.width as usize, self.size.height as usize) as u32
+            }
+            MaxSlope::Limit(_) => 0,
+        }
     }
 
     /// A view of one level of each texture.
@@ -335,13 +361,13 @@ impl Job {
             height,
             0,
             source::code_of_wrap(source.wrap),
-            source.max_slope.to_bits(),
+            source.max_slope.before_a_look().to_bits(),
             source::texels_from_height(source, self.size.width).to_bits(),
             self.base_variance.to_bits(),
             factor_x.to_bits(),
             factor_y.to_bits(),
+            self.survey_stride(),
             // Up to a multiple of 16 bytes.
-            0,
             0,
             0,
         ];
@@ -353,9 +379,9 @@ impl Job {
     }
 }
 
-/// WGSL's `PackedStores`: for a scale, or for floats and until a scale is found the identity.
-fn stores_buffer(gpu: &Gpu, scale: Option<f32>) -> wgpu::Buffer {
-    let floats: [f32; STORES_FLOATS] = match scale {
+/// WGSL's `PackedStores`: for a scale, or for floats and until a scale is found the identity; and the largest slope.
+fn stores_buffer(gpu: &Gpu, scale: Option<f32>, max_slope: f32) -> wgpu::Buffer {
+    let mut floats: [f32; STORES_FLOATS] = match scale {
         None => [1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0],
         Some(scale) => {
             let square = scale * scale;
@@ -364,6 +390,7 @@ fn stores_buffer(gpu: &Gpu, scale: Option<f32>) -> wgpu::Buffer {
             [slope, 0.5, second, 0.0, mixed, 0.5, trace, 0.0, 0.5, 0.5, scale, 0.0]
         }
     };
+    floats[LIMIT_AT] = max_slope;
     let mut usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_SRC;
     if gpu.has_compute() {
         usage |= wgpu::BufferUsages::STORAGE;

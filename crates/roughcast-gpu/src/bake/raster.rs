@@ -9,7 +9,7 @@ use roughcast::levels_of_four;
 use super::bindings::Bindings;
 use super::pipelines::Pipelines;
 use super::target::level_view;
-use super::{Job, LIBRARY};
+use super::{Job, LIBRARY, SLOPE_LIMIT};
 use crate::{Gpu, GpuError, Span};
 
 const COMMON: &str = include_str!("common.wgsl");
@@ -144,7 +144,7 @@ async fn pass(
     bindings.uniform("params", "Params", &params);
     bindings.uniform("packed_stores", "PackedStores", &job.stores);
     let wgsl = [input_wgsl(job, input, &mut bindings), output_wgsl(job, output)].concat();
-    let source = [LIBRARY.as_str(), COMMON, bindings.wgsl(), &wgsl, RASTER].concat();
+    let source = [LIBRARY.as_str(), COMMON, bindings.wgsl(), SLOPE_LIMIT, &wgsl, RASTER].concat();
     let (size, format) = match output {
         Output::Texels => (job.level_size(input_level), job.target.format),
         Output::AverageOfFour | Output::WeightedAverage => (job.level_size(input_level + 1), STATE_FORMAT),

@@ -1,4 +1,5 @@
-//! The scale of unsigned texels: chosen by the caller, or found on the GPU by one more pass over the map, and kept there.
+//! The scale of unsigned texels, and the largest slope where it follows from the map: chosen by the caller, or found on the GPU
+//! by one more pass over the map, and kept there.
 
 use super::bindings::{Access, Bindings};
 use super::compute::{Dispatch, compute_pipeline};
@@ -11,10 +12,13 @@ const SCALE: &str = include_str!("scale.wgsl");
 /// Texels along each side of what a workgroup looks at.
 const TILE: u32 = 64;
 
+/// Bytes of WGSL's `Survey`: two counts and the bins of a histogram.
+const SURVEY_BYTES: u64 = 4 * (2 + 1089);
+
 /// Finds the smallest scale that holds every slope.
 pub(super) struct AutoScale {
-    peak: wgpu::Buffer,
-    find_peak: Dispatch,
+    survey: wgpu::Buffer,
+    look: Dispatch,
     set_scale: Dispatch,
 }
 
@@ -25,26 +29,26 @@ impl AutoScale {
             return Err(GpuError::Feature { feature: "compute shaders, which find a scale", instead });
         }
         let descriptor = wgpu::BufferDescriptor {
-            label: Some("largest slope"),
-            size: 4,
+            label: Some("survey of slopes"),
+            size: SURVEY_BYTES,
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         };
-        let peak = gpu.create_buffer("the largest slope", &descriptor).await?;
+        let survey = gpu.create_buffer("the survey of slopes", &descriptor).await?;
         let (width, height) = job.level_size(0);
         let groups = (width.div_ceil(TILE), height.div_ceil(TILE));
-        let find_peak = dispatch(gpu, job, &peak, "find_peak", groups).await?;
-        let set_scale = dispatch(gpu, job, &peak, "set_scale", (1, 1)).await?;
-        Ok(Self { peak, find_peak, set_scale })
+        let look = dispatch(gpu, job, &survey, "look", groups).await?;
+        let set_scale = dispatch(gpu, job, &survey, "set_scale", (1, 1)).await?;
+        Ok(Self { survey, look, set_scale })
     }
 
-    /// Forgets the largest slope of the frame before.
+    /// Forgets the slopes of the frame before.
     pub fn encode_reset(&self, encoder: &mut wgpu::CommandEncoder) {
-        encoder.clear_buffer(&self.peak, 0, None);
+        encoder.clear_buffer(&self.survey, 0, None);
     }
 
     pub fn encode(&self, pass: &mut wgpu::ComputePass<'_>) {
-        self.find_peak.encode(pass);
+        self.look.encode(pass);
         self.set_scale.encode(pass);
     }
 }
@@ -52,14 +56,14 @@ impl AutoScale {
 async fn dispatch(
     gpu: &Gpu,
     job: &Job,
-    peak: &wgpu::Buffer,
+    survey: &wgpu::Buffer,
     entry_point: &str,
     groups: (u32, u32),
 ) -> Result<Dispatch, GpuError> {
     let params = job.params(&gpu.device, 0);
     let mut bindings = Bindings::new(wgpu::ShaderStages::COMPUTE);
     bindings.uniform("params", "Params", &params);
-    bindings.storage("peak", "atomic<u32>", Access::ReadWrite, peak);
+    bindings.storage("survey", "Survey", Access::ReadWrite, survey);
     bindings.storage("packed_stores", "PackedStores", Access::ReadWrite, &job.stores);
     job.bind_map(&mut bindings);
     let source = [LIBRARY.as_str(), COMMON, bindings.wgsl(), SCALE].concat();

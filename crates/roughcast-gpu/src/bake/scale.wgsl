@@ -1,37 +1,109 @@
-// The smallest scale that holds every slope of a map: one look at the map, and one thread that draws the conclusion.
+// The smallest scale that holds every slope of a map, and the automatic limit of slopes: one look at the map, and one
+// workgroup that draws the conclusions.
 //
-// Defined elsewhere: params, map_slope(at), and the bindings peak and packed_stores.
+// Defined elsewhere: params, map_slope(at), and the bindings survey and packed_stores.
+
+struct Survey {
+    // The largest component, as bits: floats that are not negative are in the order of their bits.
+    peak: atomic<u32>,
+    sampled: atomic<u32>,
+    histogram: array<atomic<u32>, SLOPE_BINS>,
+}
 
 var<workgroup> group_peak: atomic<u32>;
+var<workgroup> group_histogram: array<atomic<u32>, SLOPE_BINS>;
 
-// Floats that are not negative are in the order of their bits.
+// Of the pass that looks: nothing is known yet.
+fn slope_limit() -> f32 {
+    return params.max_slope;
+}
+
 @compute @workgroup_size(16, 16)
-fn find_peak(
+fn look(
     @builtin(global_invocation_id) id: vec3u,
     @builtin(local_invocation_index) index: u32,
 ) {
     opaque_zero = params.zero;
+    let stride = params.survey_stride;
     var largest = 0.0;
     for (var i = 0u; i < 16u; i++) {
         let at = 4u * id.xy + vec2u(i % 4u, i / 4u);
         if all(at < params.size) {
-            let slope = abs(map_slope(at).slope);
-            largest = max(largest, max(slope.x, slope.y));
+            let slope = map_slope(at).slope;
+            largest = max(largest, max(abs(slope.x), abs(slope.y)));
+            if stride > 0u {
+                if at.x % stride == at.y % stride {
+                    let squares = rounded2(slope * slope);
+                    atomicAdd(&group_histogram[slope_bin(squares.x + squares.y)], 1u);
+                }
+            }
         }
     }
     atomicMax(&group_peak, bitcast<u32>(largest));
     workgroupBarrier();
     if index == 0u {
-        atomicMax(&peak, atomicLoad(&group_peak));
+        atomicMax(&survey.peak, atomicLoad(&group_peak));
+    }
+    if stride > 0u {
+        for (var bin = index; bin < SLOPE_BINS; bin += 256u) {
+            let count = atomicLoad(&group_histogram[bin]);
+            if count > 0u {
+                atomicAdd(&survey.histogram[bin], count);
+                atomicAdd(&survey.sampled, count);
+            }
+        }
     }
 }
 
-@compute @workgroup_size(1)
-fn set_scale() {
+// Bins that a thread adds up; 256 threads for all of them.
+const BINS_A_THREAD: u32 = (SLOPE_BINS + 255u) / 256u;
+
+var<workgroup> counts_of_threads: array<u32, 256>;
+
+// The length that all but the steepest texels stay below.
+fn slope_exceeded() -> f32 {
+    let allowed = atomicLoad(&survey.sampled) / STEEP_ONE_IN;
+    var above = 0u;
+    var thread = 255u;
+    while thread > 0u && above + counts_of_threads[thread] <= allowed {
+        above += counts_of_threads[thread];
+        thread -= 1u;
+    }
+    let first = thread * BINS_A_THREAD;
+    var bin = min(first + BINS_A_THREAD, SLOPE_BINS) - 1u;
+    while bin > first {
+        above += atomicLoad(&survey.histogram[bin]);
+        if above > allowed {
+            break;
+        }
+        bin -= 1u;
+    }
+    return upper_edge_of_slope_bin(bin);
+}
+
+@compute @workgroup_size(256)
+fn set_scale(@builtin(local_invocation_index) index: u32) {
     opaque_zero = params.zero;
-    let scale = smallest_scale(bitcast<f32>(atomicLoad(&peak)), params.base_variance);
+    var sum = 0u;
+    for (var i = 0u; i < BINS_A_THREAD; i++) {
+        let bin = index * BINS_A_THREAD + i;
+        if bin < SLOPE_BINS {
+            sum += atomicLoad(&survey.histogram[bin]);
+        }
+    }
+    counts_of_threads[index] = sum;
+    workgroupBarrier();
+    if index > 0u {
+        return;
+    }
+    let peak = bitcast<f32>(atomicLoad(&survey.peak));
+    var limit = params.max_slope;
+    if params.survey_stride > 0u {
+        limit = automatic_limit(slope_exceeded(), peak, params.base_variance, params.max_slope);
+    }
+    let scale = smallest_scale(min(peak, limit), params.base_variance);
     let stores = unsigned_stores(scale);
     packed_stores.slope_second = vec4f(stores.slope, stores.second);
     packed_stores.mixed_trace = vec4f(stores.mixed, stores.trace);
-    packed_stores.unit_scale = vec4f(stores.unit, scale, 0.0);
+    packed_stores.unit_scale_limit = vec4f(stores.unit, scale, limit);
 }

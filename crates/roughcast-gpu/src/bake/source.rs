@@ -8,6 +8,8 @@ use roughcast::{
 
 use crate::{Gpu, GpuError};
 
+const NEUTRAL: &str = include_str!("neutral.wgsl");
+
 /// How a texture's texels arrive in a shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Texel {
@@ -98,7 +100,8 @@ impl MapFormat {
         Ok(())
     }
 
-    /// WGSL that declares the map at a binding and defines `map_slope(at)`, the mended slope of a texel of it.
+    /// WGSL that declares the map at a binding and defines `map_slope(at)`, the slope of a texel of it, mended or neutral. Needs
+    /// `slope_limit()`, the largest slope.
     pub fn wgsl(self, options: &SourceOptions, binding: u32) -> String {
         let component = match self.texel {
             Texel::Code(_) => "u32",
@@ -135,10 +138,10 @@ impl MapFormat {
         };
         format!(
             "fn map_component(stored: f32) -> f32 {{ return {component}; }}\n\
-             fn map_slope(at: vec2u) -> MendedSlope {{\n    \
-                 let texel = map_texel(vec2i(at));\n    \
+             fn slope_unless_broken(at: vec2i) -> MendedSlope {{\n    \
+                 let texel = map_texel(at);\n    \
                  let factors = vec2f(params.normal_factor_x, params.normal_factor_y);\n    \
-                 return {slope}params.max_slope);\n}}\n"
+                 return {slope}slope_limit());\n}}\n{NEUTRAL}"
         )
     }
 
@@ -176,7 +179,7 @@ impl MapFormat {
                  let xs = vec3i(neighbour(at.x - 1, size.x, params.wrap), at.x, neighbour(at.x + 1, size.x, params.wrap));\n    \
                  let above = neighbour(at.y - 1, size.y, params.wrap);\n    \
                  let below = neighbour(at.y + 1, size.y, params.wrap);\n    \
-                 return slope_from_gradient({gradient}, params.max_slope);\n}}\n"
+                 return slope_from_gradient({gradient}, slope_limit());\n}}\n"
         )
     }
 }

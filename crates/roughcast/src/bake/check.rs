@@ -2,7 +2,7 @@
 
 use super::BakeError;
 use crate::SampleType;
-use crate::options::{BakeOptions, Blocks, PyramidFilter, ScaleChoice, SourceOptions};
+use crate::options::{BakeOptions, Blocks, MaxSlope, PyramidFilter, ScaleChoice, SourceOptions};
 use crate::source::BaseRoughness;
 use crate::texture::{Base, Layout, RoughnessStored};
 
@@ -81,13 +81,11 @@ pub(super) fn limit_slopes(
 ) -> Result<(), BakeError> {
     let stores_squares =
         matches!(options.layout, Layout::Lean | Layout::Clean | Layout::Moments | Layout::BumpSlopes);
-    if options.bits.sample_type() == SampleType::F16
-        && stores_squares
-        && source.max_slope > LARGEST_SLOPE_IN_HALF
-    {
+    let asked = source.max_slope.before_a_look();
+    if options.bits.sample_type() == SampleType::F16 && stores_squares && asked > LARGEST_SLOPE_IN_HALF {
         return Err(BakeError::Options(format!(
             "the square of a slope of {} does not fit into a half float: lower --max-slope to {} or say --bits float",
-            source.max_slope, LARGEST_SLOPE_IN_HALF
+            asked, LARGEST_SLOPE_IN_HALF
         )));
     }
     if let ScaleChoice::Fixed(scale) = options.scale {
@@ -102,9 +100,17 @@ pub(super) fn limit_slopes(
                 "the base roughness alone has a variance of {base}, which a scale of {scale} cannot hold: raise --scale"
             )));
         }
-        source.max_slope = source.max_slope.min(room.sqrt());
+        source.max_slope = MaxSlope::Limit(asked.min(room.sqrt()));
+    } else if !has_range_of_the_map(options) {
+        source.max_slope = MaxSlope::Limit(asked);
     }
     Ok(())
+}
+
+/// Whether texels hold slopes or variances over a range that follows from the map.
+fn has_range_of_the_map(options: &BakeOptions) -> bool {
+    let normals = matches!(options.layout, Layout::Pbr | Layout::Toksvig);
+    !options.bits.sample_type().is_float() && options.scale == ScaleChoice::Auto && !normals
 }
 
 /// Whether a filter may average moments. All that this library has may; this names the reason for the others.

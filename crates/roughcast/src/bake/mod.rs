@@ -2,6 +2,7 @@
 
 mod allocate;
 mod check;
+mod limit;
 mod plan;
 mod scales;
 
@@ -9,7 +10,7 @@ pub use check::refuse_filter;
 pub use plan::{BakePlan, plan_bake};
 
 use crate::moments::Moments;
-use crate::options::{BakeOptions, Blocks, ScaleChoice, SourceOptions};
+use crate::options::{BakeOptions, Blocks, MaxSlope, ScaleChoice, SourceOptions};
 use crate::pyramid::{self, LevelStats, PyramidOptions, level_sizes};
 use crate::source::{BaseRoughness, BaseSource, MapSource, RoughnessMap, SourceError, UseOfBase};
 use crate::survey::survey;
@@ -18,7 +19,8 @@ use crate::texture::orient::orient;
 use crate::texture::{self, Base, Bounds, EncoderShape, Layout, Part, Peaks, RoughnessStored, TextureArray};
 use crate::{Image, SourceCounts};
 use allocate::{allocate, level_outs};
-use scales::{advice, largest_variance, set_scales};
+use limit::limit_steepest;
+use scales::{NeededRange, advice, largest_variance, set_scales};
 
 /// Why a map could not be baked. One line, with the mend.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -40,6 +42,17 @@ pub struct ScaleAdvice {
     pub factor: f32,
 }
 
+/// A largest slope that was lowered because a few steep texels cost much: see [`MaxSlope::Auto`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlopeLimit {
+    /// The largest slope.
+    pub max_slope: f32,
+    /// Texels that were steeper and are scaled back to it.
+    pub texels: u64,
+    /// By how much the usable specular power has grown.
+    pub factor: f32,
+}
+
 /// What was done, in numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BakeReport {
@@ -51,6 +64,10 @@ pub struct BakeReport {
     pub scale: f32,
     /// Range of the stored variances or deviations; 1 where there are none.
     pub variance_scale: f32,
+    /// The largest slope allowed: that of the options, what a fixed scale can hold, or what was found for [`MaxSlope::Auto`].
+    pub max_slope: f32,
+    /// Set where [`MaxSlope::Auto`] has lowered it.
+    pub limit: Option<SlopeLimit>,
     /// Length of the steepest slope.
     pub steepest: f32,
     /// Root mean square length of the slopes, without any base roughness.
@@ -121,17 +138,24 @@ pub fn bake_reusing(
         None => roughness,
     };
     let BakePlan { source: source_options, mut info } = plan_bake(source_options, roughness, options)?;
-    let source = source_of(image, source_options, roughness, options)?;
+    let mut source = source_of(image, source_options, roughness, options)?;
     let pyramid_options = PyramidOptions { filter: options.filter, wrap: source_options.wrap };
     let sample_type = options.bits.sample_type();
     // A scale that is to be found needs a look at every slope first; otherwise one pass does it all.
     let looked_at = (!sample_type.is_float() && options.scale == ScaleChoice::Auto)
         .then(|| survey(&source.slopes_only()));
-    let largest_variance = options
+    let variance = options
         .layout
         .uses_variance_scale()
         .then(|| largest_variance(&source.slopes_only(), pyramid_options));
-    set_scales(&mut info, looked_at.as_ref(), largest_variance, options);
+    let mut needed = NeededRange { peaks: looked_at.as_ref().map(|looked_at| looked_at.peaks), variance };
+    let limit = match (&looked_at, source_options.max_slope) {
+        (Some(looked_at), MaxSlope::Auto) => {
+            limit_steepest(&mut source, &mut needed, looked_at, options.layout, pyramid_options)
+        }
+        _ => None,
+    };
+    set_scales(&mut info, &needed, options);
     let mut arrays = allocate(textures, &info, options, (image.width(), image.height()));
     let shape = EncoderShape {
         anisotropy: options.anisotropy(),
@@ -145,7 +169,7 @@ pub fn bake_reusing(
     let peaks = Peaks {
         component: finest.largest_component,
         slope: finest.steepest,
-        variance: largest_variance.unwrap_or(finest.max_variance),
+        variance: needed.variance.unwrap_or(finest.max_variance),
     };
     let whole = f64::from(built.whole.xx) + f64::from(built.whole.yy);
     // A texel of level 0 is one slope, so that all variance there is the base's.
@@ -155,6 +179,8 @@ pub fn bake_reusing(
         texels: image.width() as u64 * image.height() as u64,
         scale: info.scale,
         variance_scale: info.variance_scale,
+        max_slope: source.max_slope(),
+        limit: limit.map(|limit| SlopeLimit { texels: built.counts.clamped, ..limit }),
         steepest: finest.steepest,
         rms_slope: (whole - base).max(0.0).sqrt(),
         rms_slope_with_base: whole.sqrt(),

@@ -9,7 +9,8 @@ use crate::texture::{Layout, TextureInfo};
 /// Checked options and what follows from them, for those who bake by other means than [`crate::bake`], such as a GPU.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BakePlan {
-    /// How the map is read. The largest slope is lowered to what the texels can hold.
+    /// How the map is read. The largest slope is lowered to what the texels can hold; it is only [`MaxSlope::Auto`](crate::MaxSlope::Auto) where it
+    /// depends on the map.
     pub source: SourceOptions,
     /// What the texels mean. Scales that depend on the map are still 1.
     pub info: TextureInfo,
@@ -26,8 +27,8 @@ pub fn plan_bake(
 ) -> Result<BakePlan, BakeError> {
     check_options(options, roughness.is_some())?;
     let mut source = *source_options;
-    limit_slopes(&mut source, roughness, options)?;
     check_numbers(&source)?;
+    limit_slopes(&mut source, roughness, options)?;
     let info = TextureInfo {
         base: base_of(options, roughness.is_some()),
         base_variance: base_variance(roughness),

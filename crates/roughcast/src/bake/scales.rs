@@ -9,9 +9,10 @@ use crate::source::MapSource;
 use crate::survey::Survey;
 use crate::texture::{self, EncoderShape, Layout, Peaks, TextureInfo};
 
-/// Part of the texels that [`ScaleAdvice`] speaks of, and the loss from which on it speaks.
-const STEEP_PART: f64 = 0.001;
-const STEEP_COST: f32 = 4.0;
+/// One in so many texels is among the steepest that [`ScaleAdvice`] and the automatic limit are about; and the loss of usable
+/// specular power from which on they are.
+pub(super) const STEEP_ONE_IN: u64 = 1000;
+pub(super) const STEEP_COST: f32 = 4.0;
 
 /// A flat map has no slopes to scale by; slopes below this cannot be told from it.
 const SMALLEST_SCALE: f32 = 1.0 / 1024.0;
@@ -23,22 +24,26 @@ pub(super) fn largest_variance(source: &MapSource<'_>, options: PyramidOptions) 
     built.levels.iter().map(|level| level.max_variance).fold(0.0, f32::max)
 }
 
+/// What the ranges of unsigned texels have to hold.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NeededRange {
+    /// Of level 0, where the scale of slopes is to be found.
+    pub peaks: Option<Peaks>,
+    /// The largest variance of any level, where a layout stores variances or deviations.
+    pub variance: Option<f32>,
+}
+
 /// Chooses the scales of unsigned texels.
-pub(super) fn set_scales(
-    info: &mut TextureInfo,
-    looked_at: Option<&Survey>,
-    largest_variance: Option<f32>,
-    options: &BakeOptions,
-) {
+pub(super) fn set_scales(info: &mut TextureInfo, needed: &NeededRange, options: &BakeOptions) {
     if options.bits.sample_type().is_float() {
         return;
     }
-    info.scale = match (options.scale, looked_at) {
+    info.scale = match (options.scale, &needed.peaks) {
         (ScaleChoice::Fixed(scale), _) => scale,
-        (ScaleChoice::Auto, Some(looked_at)) => smallest_scale(options.layout, &looked_at.peaks),
+        (ScaleChoice::Auto, Some(peaks)) => smallest_scale(options.layout, peaks),
         (ScaleChoice::Auto, None) => unreachable!("a scale to be found is looked for"),
     };
-    let variance = largest_variance.unwrap_or(0.0);
+    let variance = needed.variance.unwrap_or(0.0);
     info.variance_scale = match options.layout {
         Layout::Variance => variance.max(SMALLEST_SCALE * SMALLEST_SCALE),
         Layout::Schilling => variance.sqrt().max(SMALLEST_SCALE),
@@ -49,7 +54,7 @@ pub(super) fn set_scales(
 }
 
 /// The smallest scale that holds every slope and, where a layout stores them, every second moment.
-fn smallest_scale(layout: Layout, peaks: &Peaks) -> f32 {
+pub(super) fn smallest_scale(layout: Layout, peaks: &Peaks) -> f32 {
     let needed = if layout.uses_variance_scale() { peaks.component } else { peaks.second().sqrt() };
     needed.max(SMALLEST_SCALE)
 }
@@ -61,7 +66,7 @@ pub(super) fn advice(
     looked_at: &Survey,
     peaks: &Peaks,
 ) -> Option<ScaleAdvice> {
-    let max_slope = looked_at.slope_exceeded_by(STEEP_PART);
+    let max_slope = looked_at.slope_exceeded_by_one_in(STEEP_ONE_IN);
     let limited = Peaks { component: max_slope.min(peaks.component), slope: max_slope, ..*peaks };
     let limited_info = TextureInfo { scale: smallest_scale(info.layout, &limited), ..*info };
     let power = |info: &TextureInfo, peaks: &Peaks| {

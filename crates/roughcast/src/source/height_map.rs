@@ -1,34 +1,22 @@
 //! Slopes from height maps.
 
-use super::{count_unusable, load_channel, mend};
+use super::{Reading, count_unusable, load_channel, mend, neighbour};
 use crate::Image;
-use crate::options::{Gradient, HeightSense, SourceOptions, Wrap};
+use crate::options::{Gradient, HeightSense, Wrap};
 use crate::row::SourceScratch;
-use crate::slope::SourceCounts;
+use crate::slope::{Slope, SourceCounts};
 use crate::vectorised::vectorised;
-
-/// Index of a neighbour that may lie outside `0 .. size`; `offset` is -1, 0 or 1.
-fn neighbour(index: usize, offset: isize, size: usize, wrap: Wrap) -> usize {
-    let moved = index as isize + offset;
-    let last = size as isize - 1;
-    (match wrap {
-        Wrap::Repeat => moved.rem_euclid(size as isize),
-        Wrap::Clamp => moved.clamp(0, last),
-        // Mirrored about the edge itself, so the edge texel comes twice: a step of one stays on it.
-        Wrap::Mirror => moved.clamp(0, last),
-    }) as usize
-}
 
 /// Writes the slopes of a stretch of row `y` that starts at column `x`.
 pub(super) fn fill(
-    image: &Image,
-    options: &SourceOptions,
+    reading: &Reading<'_>,
     x: usize,
     y: usize,
     bx: &mut [f32],
     by: &mut [f32],
     scratch: &mut SourceScratch,
 ) -> SourceCounts {
+    let Reading { image, options, max_slope } = reading;
     let width = bx.len();
     for (plane, offset) in scratch.planes.iter_mut().zip([-1, 0, 1]) {
         plane.resize(width + 2, 0.0);
@@ -51,12 +39,12 @@ pub(super) fn fill(
         let holes = bx.iter_mut().zip(heights).filter(|(_, height)| !height.is_finite());
         holes.for_each(|(slope, _)| *slope = f32::NAN);
     }
-    if count_unusable(bx, by, options.max_slope) == 0 {
+    if count_unusable(bx, by, *max_slope) == 0 {
         return SourceCounts::default();
     }
     // The slope before it is repaired as a vector over a z of one: `mended_slope` tells too steep from not finite.
     let (raw_x, raw_y) = (bx.to_vec(), by.to_vec());
-    mend(bx, by, options.max_slope, |i| Some([raw_x[i], raw_y[i], 1.0]))
+    mend(bx, by, *max_slope, Slope::default(), |i| Some([raw_x[i], raw_y[i], 1.0]))
 }
 
 /// The mean of all heights that are finite: what stands for the others where heights are stored. 0 where none is.

@@ -10,9 +10,9 @@ pub use base::{BaseRoughness, RoughnessMap, stored_from_variance, variance_from_
 pub(crate) use base::{BaseSource, UseOfBase};
 pub(crate) use resize::resized;
 
-use crate::options::{Kind, SourceOptions};
+use crate::options::{Kind, MaxSlope, SourceOptions, Wrap};
 use crate::row::{Extra, Row, RowSource, SourceScratch};
-use crate::slope::{SourceCounts, mended_slope};
+use crate::slope::{Slope, SourceCounts, mended_slope};
 use crate::vectorised::vectorised;
 use crate::{Image, Samples};
 
@@ -36,10 +36,17 @@ pub enum SourceError {
     Option(String),
 }
 
-/// A map with the options by which it is read.
-pub(crate) struct MapSource<'a> {
+/// How the slopes of a map are read.
+#[derive(Clone, Copy)]
+struct Reading<'a> {
     image: &'a Image,
     options: SourceOptions,
+    max_slope: f32,
+}
+
+/// A map with the options by which it is read.
+pub(crate) struct MapSource<'a> {
+    reading: Reading<'a>,
     base: Option<BaseSource<'a>>,
     extras: Vec<Extra>,
     /// The height that is stored where there is none. A fixed one would be a cliff, and draw the averages towards itself.
@@ -67,7 +74,8 @@ impl<'a> MapSource<'a> {
         } else {
             0.0
         };
-        Ok(Self { image, options, base, extras, height_of_holes })
+        let reading = Reading { image, options, max_slope: options.max_slope.before_a_look() };
+        Ok(Self { reading, base, extras, height_of_holes })
     }
 }
 
@@ -76,14 +84,26 @@ impl MapSource<'_> {
     pub fn slopes_only(&self) -> Self {
         Self { extras: Vec::new(), ..*self }
     }
+
+    /// The length that no slope exceeds.
+    pub fn max_slope(&self) -> f32 {
+        self.reading.max_slope
+    }
+
+    /// Scales slopes longer than this back.
+    pub fn limit(&mut self, max_slope: f32) {
+        self.reading.max_slope = max_slope;
+    }
 }
 
 /// Numbers that no map can be read with.
 pub(crate) fn check_numbers(options: &SourceOptions) -> Result<(), SourceError> {
-    if !(options.max_slope.is_finite() && options.max_slope > 0.0) {
+    if let MaxSlope::Limit(limit) = options.max_slope
+        && !(limit > 0.0 && limit <= MaxSlope::LARGEST)
+    {
         return Err(SourceError::Option(format!(
-            "the largest slope must be above zero, not {}",
-            options.max_slope
+            "the largest slope must be above 0 and at most {:e}, not {limit}",
+            MaxSlope::LARGEST
         )));
     }
     if !options.normal_scale.is_finite() {
@@ -103,11 +123,11 @@ pub(crate) fn check_numbers(options: &SourceOptions) -> Result<(), SourceError> 
 
 impl RowSource for MapSource<'_> {
     fn width(&self) -> usize {
-        self.image.width()
+        self.reading.image.width()
     }
 
     fn height(&self) -> usize {
-        self.image.height()
+        self.reading.image.height()
     }
 
     fn extras(&self) -> &[Extra] {
@@ -121,9 +141,9 @@ impl RowSource for MapSource<'_> {
     fn fill(&self, x: usize, y: usize, row: &mut Row, scratch: &mut SourceScratch) -> SourceCounts {
         let (core, extras) = row.planes.split_at_mut(crate::row::CORE_PLANES);
         let [bx, by, xx, yy, xy] = core else { unreachable!("a row has five core planes") };
-        let counts = match self.options.kind {
-            Kind::Normal => normal_map::fill(self.image, &self.options, x, y, bx, by, scratch),
-            Kind::Height => height_map::fill(self.image, &self.options, x, y, bx, by, scratch),
+        let counts = match self.reading.options.kind {
+            Kind::Normal => normal_map::fill(&self.reading, x, y, bx, by, scratch),
+            Kind::Height => height_map::fill(&self.reading, x, y, bx, by, scratch),
         };
         if let Some(base) = self.base.as_ref().filter(|base| base.folds_in()) {
             base.fill_variance(x, y, xx);
@@ -145,9 +165,9 @@ impl MapSource<'_> {
     fn fill_extra(&self, extra: Extra, x: usize, y: usize, plane: &mut [f32]) {
         match extra {
             Extra::NormalX | Extra::NormalY | Extra::NormalZ => {} // all three are made together
-            Extra::Height => match self.options.kind {
+            Extra::Height => match self.reading.options.kind {
                 Kind::Height => {
-                    load_channel(self.image, 0, x, y, plane);
+                    load_channel(self.reading.image, 0, x, y, plane);
                     plane.iter_mut().filter(|v| !v.is_finite()).for_each(|v| *v = self.height_of_holes);
                 }
                 // What maketx writes where there is no height.
@@ -175,11 +195,13 @@ vectorised! {
     }
 }
 
-/// Mends every texel that the fast loops found unusable. `component` gives a texel's vector.
+/// Mends every texel that the fast loops found unusable, except those that are broken, which become `broken`. `component`
+/// gives a texel's vector.
 fn mend(
     bx: &mut [f32],
     by: &mut [f32],
     max_slope: f32,
+    broken: Slope,
     component: impl Fn(usize) -> Option<[f32; 3]>,
 ) -> SourceCounts {
     let mut counts = SourceCounts::default();
@@ -191,12 +213,25 @@ fn mend(
             Some([x, y, z]) => mended_slope(x, y, z, max_slope, &mut counts),
             None => {
                 counts.invalid += 1;
-                Default::default()
+                None
             }
         };
+        let slope = slope.unwrap_or(broken);
         (bx[index], by[index]) = (slope.x, slope.y);
     }
     counts
+}
+
+/// Index of a neighbour that may lie outside `0 .. size`; `offset` is -1, 0 or 1.
+fn neighbour(index: usize, offset: isize, size: usize, wrap: Wrap) -> usize {
+    let moved = index as isize + offset;
+    let last = size as isize - 1;
+    (match wrap {
+        Wrap::Repeat => moved.rem_euclid(size as isize),
+        Wrap::Clamp => moved.clamp(0, last),
+        // Mirrored about the edge itself, so the edge texel comes twice: a step of one stays on it.
+        Wrap::Mirror => moved.clamp(0, last),
+    }) as usize
 }
 
 /// One comparison that is also false for NaN.

@@ -2,28 +2,47 @@
 
 use half::f16;
 
-use super::{count_unusable, mend};
+use super::{Reading, count_unusable, mend, neighbour};
 use crate::options::{NormalChannels, SourceOptions};
 use crate::row::SourceScratch;
-use crate::slope::SourceCounts;
+use crate::slope::{Slope, SourceCounts};
 use crate::vectorised::vectorised;
 use crate::{Image, Samples};
 
 /// Two-channel normals may lie a little outside the unit disc, through quantisation and block compression; their z
 /// is then zero. Further out than this (squared) they are no normals at all but an empty background, such as (0, 0)
-/// stored as unorm = (-1, -1), and become flat.
+/// stored as unorm = (-1, -1).
 const INVALID_XY_SQUARED: f32 = 1.2;
+
+/// What stands for a broken texel until it is made neutral.
+const BROKEN: Slope = Slope { x: f32::NAN, y: f32::NAN };
 
 /// Writes the slopes of a stretch of row `y` that starts at column `x`.
 pub(super) fn fill(
-    image: &Image,
-    options: &SourceOptions,
+    reading: &Reading<'_>,
     x: usize,
     y: usize,
     bx: &mut [f32],
     by: &mut [f32],
     scratch: &mut SourceScratch,
 ) -> SourceCounts {
+    let counts = fill_unless_broken(reading, x, y, bx, by, scratch);
+    if counts.broken() > 0 {
+        make_neutral(reading, x, y, bx, by, scratch);
+    }
+    counts
+}
+
+/// The same, with [`BROKEN`] for texels that are.
+fn fill_unless_broken(
+    reading: &Reading<'_>,
+    x: usize,
+    y: usize,
+    bx: &mut [f32],
+    by: &mut [f32],
+    scratch: &mut SourceScratch,
+) -> SourceCounts {
+    let Reading { image, options, max_slope } = reading;
     let width = bx.len();
     for plane in &mut scratch.planes {
         plane.resize(width, 0.0);
@@ -44,15 +63,60 @@ pub(super) fn fill(
     }
     let invalid_squared = INVALID_XY_SQUARED * options.normal_scale * options.normal_scale;
     divide_by_z(nx, ny, nz, bx, by);
-    if count_unusable(bx, by, options.max_slope) == 0 {
+    if count_unusable(bx, by, *max_slope) == 0 {
         return SourceCounts::default();
     }
-    mend(bx, by, options.max_slope, |i| {
+    mend(bx, by, *max_slope, BROKEN, |i| {
         // An infinite component is no empty background: `mended_slope` counts it as what it is.
         let finite = nx[i].is_finite() && ny[i].is_finite();
         let outside = z_from_xy && finite && nx[i] * nx[i] + ny[i] * ny[i] > invalid_squared;
         (!outside).then_some([nx[i], ny[i], nz[i]])
     })
+}
+
+/// Gives the broken texels of a stretch the mean slope of those of their eight neighbours that are not; flat where all are.
+fn make_neutral(
+    reading: &Reading<'_>,
+    x: usize,
+    y: usize,
+    bx: &mut [f32],
+    by: &mut [f32],
+    scratch: &mut SourceScratch,
+) {
+    let Reading { image, options, .. } = reading;
+    let rows = [-1, 0, 1].map(|offset| {
+        let row = neighbour(y, offset, image.height(), options.wrap);
+        widened_stretch(reading, x, row, bx.len(), scratch)
+    });
+    let broken = (0..bx.len()).filter(|i| bx[*i].is_nan()).collect::<Vec<_>>();
+    for i in broken {
+        // Columns i .. i + 3 of the widened rows. The texel itself is not among those that count: it is broken.
+        let around = rows.iter().flat_map(|[xs, ys]| xs[i..i + 3].iter().zip(&ys[i..i + 3]));
+        let valid = around.filter(|(x, _)| !x.is_nan());
+        let (sum_x, sum_y, count) = valid
+            .fold((0.0, 0.0, 0.0_f32), |(sum_x, sum_y, count), (x, y)| (sum_x + x, sum_y + y, count + 1.0));
+        let count = count.max(1.0);
+        (bx[i], by[i]) = (sum_x / count, sum_y / count);
+    }
+}
+
+/// The slopes of a stretch of a row, x and y, with a texel on either side and [`BROKEN`] for those that are.
+fn widened_stretch(
+    reading: &Reading<'_>,
+    x: usize,
+    y: usize,
+    width: usize,
+    scratch: &mut SourceScratch,
+) -> [Vec<f32>; 2] {
+    let Reading { image, options, .. } = reading;
+    let mut slopes = [vec![0.0; width + 2], vec![0.0; width + 2]];
+    let left = neighbour(x, -1, image.width(), options.wrap);
+    let right = neighbour(x + width - 1, 1, image.width(), options.wrap);
+    let [bx, by] = &mut slopes;
+    for (x, range) in [(left, 0..1), (x, 1..width + 1), (right, width + 1..width + 2)] {
+        fill_unless_broken(reading, x, y, &mut bx[range.clone()], &mut by[range], scratch);
+    }
+    slopes
 }
 
 vectorised! {

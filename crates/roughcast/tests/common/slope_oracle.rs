@@ -27,16 +27,42 @@ pub fn sample(image: &Image, x: usize, y: usize, channel: usize) -> f64 {
 
 pub fn slopes(image: &Image, options: &SourceOptions) -> Slopes {
     let mut counts = SourceCounts::default();
-    let mut texels = Vec::new();
+    let mut read = Vec::new();
     for y in 0..image.height() {
         for x in 0..image.width() {
-            texels.push(match options.kind {
+            read.push(match options.kind {
                 Kind::Normal => slope_of_normal(image, options, x, y, &mut counts),
                 Kind::Height => slope_of_height(image, options, x, y, &mut counts),
             });
         }
     }
-    Slopes { width: image.width(), height: image.height(), texels, counts }
+    let (width, height) = (image.width(), image.height());
+    let texel = |i: usize| match (read[i], options.kind) {
+        (Some(slope), _) => slope,
+        (None, Kind::Normal) => mean_around(&read, (width, height), i, options.wrap),
+        (None, Kind::Height) => [0.0, 0.0],
+    };
+    Slopes { width, height, texels: (0..read.len()).map(texel).collect(), counts }
+}
+
+/// The mean of those of a texel's eight neighbours that have a slope.
+fn mean_around(
+    slopes: &[Option<[f64; 2]>],
+    (width, height): (usize, usize),
+    index: usize,
+    wrap: Wrap,
+) -> [f64; 2] {
+    let (x, y) = ((index % width) as i64, (index / width) as i64);
+    let mut found = Vec::new();
+    for row in y - 1..=y + 1 {
+        for column in x - 1..=x + 1 {
+            if (column, row) != (x, y) {
+                found.extend(slopes[inside(row, height, wrap) * width + inside(column, width, wrap)]);
+            }
+        }
+    }
+    let mean = |axis: usize| found.iter().map(|slope| slope[axis]).sum::<f64>() / found.len().max(1) as f64;
+    [mean(0), mean(1)]
 }
 
 fn slope_of_normal(
@@ -45,7 +71,7 @@ fn slope_of_normal(
     x: usize,
     y: usize,
     counts: &mut SourceCounts,
-) -> [f64; 2] {
+) -> Option<[f64; 2]> {
     let is_unsigned = matches!(image.samples(), Samples::U8(_) | Samples::U16(_));
     let component = |channel: usize| {
         let value = sample(image, x, y, channel);
@@ -63,12 +89,12 @@ fn slope_of_normal(
     } else {
         if !(nx.is_finite() && ny.is_finite()) {
             counts.non_finite += 1;
-            return [0.0, 0.0];
+            return None;
         }
         // Further outside the unit disc than rounding and compression bring a normal: an empty background.
         if nx * nx + ny * ny > 1.2 {
             counts.invalid += 1;
-            return [0.0, 0.0];
+            return None;
         }
         (1.0 - nx * nx - ny * ny).max(0.0).sqrt()
     };
@@ -78,24 +104,25 @@ fn slope_of_normal(
     mended(right * nx, up * ny, nz, options, counts)
 }
 
-fn mended(x: f64, y: f64, z: f64, options: &SourceOptions, counts: &mut SourceCounts) -> [f64; 2] {
-    let longest = f64::from(options.max_slope);
+/// The slope of a normal, not longer than the options allow; `None` for one that is no surface's.
+fn mended(x: f64, y: f64, z: f64, options: &SourceOptions, counts: &mut SourceCounts) -> Option<[f64; 2]> {
+    let longest = f64::from(options.max_slope.before_a_look());
     let across = x.hypot(y);
     if !(x.is_finite() && y.is_finite() && z.is_finite()) {
         counts.non_finite += 1;
-        [0.0, 0.0]
-    } else if z > 0.0 && across / z <= longest {
-        [x / z, y / z]
-    } else if across == 0.0 {
-        counts.invalid += 1;
-        [0.0, 0.0]
-    } else {
-        if z > 0.0 {
-            counts.clamped += 1;
+        None
+    } else if z <= 0.0 {
+        if across == 0.0 {
+            counts.invalid += 1;
         } else {
             counts.behind += 1;
         }
-        [x / across * longest, y / across * longest]
+        None
+    } else if across / z <= longest {
+        Some([x / z, y / z])
+    } else {
+        counts.clamped += 1;
+        Some([x / across * longest, y / across * longest])
     }
 }
 
@@ -120,7 +147,7 @@ fn slope_of_height(
     x: usize,
     y: usize,
     counts: &mut SourceCounts,
-) -> [f64; 2] {
+) -> Option<[f64; 2]> {
     let sense = if options.height_sense == HeightSense::WhiteDeep { -1.0 } else { 1.0 };
     let unit = sense * f64::from(options.height_scale) * image.width() as f64;
     // Columns to the right, rows up.

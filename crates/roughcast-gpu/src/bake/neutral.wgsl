@@ -1,0 +1,28 @@
+// Broken texels of a normal map: they get the mean slope of those of their eight neighbours that are not broken.
+//
+// Defined elsewhere: params, slope_unless_broken(at).
+
+fn neutral_slope(at: vec2i) -> vec2f {
+    let size = vec2i(params.size);
+    var sum = vec2f(0.0);
+    var count = 0.0;
+    for (var i = 0; i < 9; i++) {
+        let x = neighbour(at.x + i % 3 - 1, size.x, params.wrap);
+        let y = neighbour(at.y + i / 3 - 1, size.y, params.wrap);
+        let mended = slope_unless_broken(vec2i(x, y));
+        if mended.fault < FAULT_BEHIND {
+            sum += rounded2(mended.slope);
+            count += 1.0;
+        }
+    }
+    let valid = max(count, 1.0);
+    return vec2f(quotient(sum.x, valid), quotient(sum.y, valid));
+}
+
+fn map_slope(at: vec2u) -> MendedSlope {
+    let mended = slope_unless_broken(vec2i(at));
+    if mended.fault < FAULT_BEHIND {
+        return mended;
+    }
+    return MendedSlope(neutral_slope(vec2i(at)), mended.fault);
+}

@@ -1,0 +1,56 @@
+//! The automatic limit of slopes: where a few steep texels ruin the range for all others, they are scaled back.
+//!
+//! The usable specular power of unsigned texels falls with the square of their range of slopes, or with their range of variances.
+
+use super::SlopeLimit;
+use super::scales::{NeededRange, STEEP_COST, STEEP_ONE_IN, largest_variance, smallest_scale};
+use crate::options::MaxSlope;
+use crate::pyramid::PyramidOptions;
+use crate::source::MapSource;
+use crate::survey::Survey;
+use crate::texture::{Layout, Peaks};
+
+/// Lowers the largest slope of a source and what the ranges have to hold, where that wins more than [`STEEP_COST`]; says so.
+pub(super) fn limit_steepest(
+    source: &mut MapSource<'_>,
+    needed: &mut NeededRange,
+    looked_at: &Survey,
+    layout: Layout,
+    pyramid_options: PyramidOptions,
+) -> Option<SlopeLimit> {
+    let peaks = &looked_at.peaks;
+    let max_slope = looked_at.slope_exceeded_by_one_in(STEEP_ONE_IN).max(MaxSlope::LEAST_AUTOMATIC);
+    let limited = Peaks {
+        component: peaks.component.min(max_slope),
+        slope: peaks.slope.min(max_slope),
+        variance: peaks.variance,
+    };
+    if max_slope >= peaks.slope {
+        return None;
+    }
+    let before = source.max_slope();
+    source.limit(max_slope);
+    let limited = match needed.variance {
+        None => NeededRange { peaks: Some(limited), variance: None },
+        Some(_) => {
+            let variance = largest_variance(&source.slopes_only(), pyramid_options);
+            NeededRange { peaks: Some(limited), variance: Some(variance) }
+        }
+    };
+    let factor = power_won(layout, peaks, needed.variance, &limited);
+    if factor > STEEP_COST {
+        *needed = limited;
+        return Some(SlopeLimit { max_slope, texels: 0, factor });
+    }
+    source.limit(before);
+    None
+}
+
+/// The factor by which the usable specular power grows.
+fn power_won(layout: Layout, peaks: &Peaks, variance: Option<f32>, limited: &NeededRange) -> f32 {
+    match (variance, limited.variance, &limited.peaks) {
+        (Some(before), Some(after), _) => before / after,
+        (_, _, Some(after)) => (smallest_scale(layout, peaks) / smallest_scale(layout, after)).powi(2),
+        (_, _, None) => 1.0,
+    }
+}
