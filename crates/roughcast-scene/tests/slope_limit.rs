@@ -105,10 +105,7 @@ fn lean_is_as_good_as_variance_on_every_real_map() {
         }
     }
     assert!(missed.is_empty(), "{missed:#?}");
-    assert!(
-        maps >= 10 && (limited > 0 || !roughcast_testdata::is_extended()),
-        "{limited} of {maps} maps limited"
-    );
+    assert!(maps >= 10 && limited > 0, "{limited} of {maps} maps limited");
 }
 
 /// The counterpart of the test above: a map that needs the limit.

@@ -35,6 +35,20 @@ fn threads_make_no_difference() {
     }
 }
 
+/// The automatic limit of slopes follows from counts of all of them.
+#[test]
+fn threads_make_no_difference_to_a_limit() {
+    let (width, height) = (514, 258);
+    let mut slopes = maps::slopes(width, height, 64);
+    slopes.iter_mut().step_by(1501).for_each(|slope| *slope = [40.0, -9.0]);
+    let (image, source) = maps::slope_map(width, height, &slopes);
+    for layout in [Layout::Lean, Layout::Variance] {
+        let options = options(layout, Bits::Sixteen);
+        assert!(baked_with(&image, &source, None, &options).report.limit.is_some());
+        check(&image, &source, &options);
+    }
+}
+
 #[test]
 fn threads_make_no_difference_to_any_layout() {
     let (normals, source) = maps::plain_normal_map(514, 258, 63);
