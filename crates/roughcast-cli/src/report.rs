@@ -65,7 +65,10 @@ impl CompressionError {
 impl FileReport {
     /// What the files give back, the blocks' error included.
     fn bounds(&self) -> Bounds {
-        let stored = self.report.bounds;
+        self.with_blocks(self.report.bounds)
+    }
+
+    fn with_blocks(&self, stored: Bounds) -> Bounds {
         match self.compression {
             None => stored,
             Some(blocks) => Bounds {
@@ -116,13 +119,14 @@ impl FileReport {
                 texels_in_words(self.options.bits),
             ),
             format!(
-                "  slopes: rms {:.4}{}, steepest {:.3}{}; specular power up to {:.0} ({:.0} in any direction)",
+                "  slopes: rms {:.4}{}, steepest {:.3}{}; specular power up to {:.0} ({:.0} in any direction){}",
                 report.rms_slope,
                 self.with_base_in_words(),
                 report.steepest,
                 self.scales_in_words(),
                 self.bounds().usable_specular_power(),
                 self.bounds().usable_specular_power_any_direction(),
+                self.power_of_most_in_words(),
             ),
         ];
         if let Some((width, height)) = report.roughness_resampled_from {
@@ -163,6 +167,22 @@ impl FileReport {
             ));
         }
         lines
+    }
+
+    /// What the texels give back but for the steepest 0.1 %, the blocks' error included.
+    fn bounds_of_most(&self) -> Bounds {
+        self.with_blocks(self.report.bounds_of_most)
+    }
+
+    /// The specular power without the steepest texels, where it is clearly another.
+    fn power_of_most_in_words(&self) -> String {
+        const CLEARLY: f32 = 1.5;
+        let power = self.bounds_of_most().usable_specular_power();
+        if power > CLEARLY * self.bounds().usable_specular_power() {
+            format!(", {power:.0} on 99.9 % of the texels")
+        } else {
+            String::new()
+        }
     }
 
     /// The root mean square with the base roughness, where it is another.
@@ -247,6 +267,7 @@ impl FileReport {
                 "texels": limit.texels,
                 "specular_power_factor": limit.factor,
             })),
+            "usable_specular_power_of_most": self.bounds_of_most().usable_specular_power(),
             "advice": report.advice.map(|advice| json!({
                 "max_slope": advice.max_slope,
                 "specular_power_factor": advice.factor,

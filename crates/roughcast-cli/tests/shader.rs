@@ -273,7 +273,7 @@ fn as_guests(exports: [&str; 2], language: &str, prefix: &[&str]) -> String {
     let macros = library_names().into_iter().filter(|name| !is_member(name));
     let macros: Vec<_> = macros.map(|name| format!("#define {name} ) not a name (\n")).collect();
     let text =
-        |name| run(&[&["shader", name, "--lang", language][..], prefix].concat()).expect_success().stdout;
+        |name| run([&["shader", name, "--lang", language][..], prefix].concat()).expect_success().stdout;
     let texts = exports.map(text).join("\n");
     match language {
         "glsl" => format!("#version 450\n{}{texts}\nvoid main() {{}}\n", macros.concat()),

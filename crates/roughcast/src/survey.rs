@@ -76,6 +76,19 @@ pub(crate) fn survey(source: &dyn RowSource) -> Survey {
     whole
 }
 
+/// Rows of a sample of level 0.
+const SAMPLED_ROWS: usize = 64;
+
+/// Looks at some rows of level 0 alone, spread over all of it: enough for the histogram, not for the peaks.
+pub(crate) fn survey_of_some_rows(source: &dyn RowSource) -> Survey {
+    let step = source.height().div_ceil(SAMPLED_ROWS);
+    let rows: Vec<usize> = (0..source.height()).skip(step / 2).step_by(step).collect();
+    let sampled: Vec<Survey> = rows.into_par_iter().map(|row| survey_band(source, 1, row..row + 1)).collect();
+    let mut whole = Survey::empty();
+    sampled.iter().for_each(|band| whole.add(band));
+    whole
+}
+
 fn survey_band(source: &dyn RowSource, stride: usize, rows: std::ops::Range<usize>) -> Survey {
     let width = source.width();
     let mut row = Row::new(width, source.extras().len());

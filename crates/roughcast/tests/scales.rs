@@ -221,6 +221,20 @@ fn advice_is_given_where_few_steep_texels_cost_much_and_keeps_its_promise() {
 }
 
 #[test]
+fn few_steep_texels_do_not_hide_what_half_floats_carry() {
+    let (image, source) = with_steep_texels(0.5, [120.0, 0.0]);
+    let options = BakeOptions { layout: Layout::Lean, bits: Bits::Half, ..BakeOptions::default() };
+    let report = baked(&image, &source, &options).report;
+    let (worst, most) =
+        (report.bounds.usable_specular_power(), report.bounds_of_most.usable_specular_power());
+    assert!(worst < 1.0 && most > 1000.0, "{worst} {most}");
+    let advice = report.advice.expect("half floats are coarse on steep slopes");
+    let followed = SourceOptions { max_slope: MaxSlope::Limit(advice.max_slope), ..source };
+    let kept = baked(&image, &followed, &options).report.bounds.usable_specular_power();
+    assert!((kept / (advice.factor * worst) - 1.0).abs() < 0.05, "{kept} {advice:?} {worst}");
+}
+
+#[test]
 fn no_advice_is_given_where_it_would_not_help() {
     let advised = |thousandths, direction, bits, scale| {
         let (image, source) = with_steep_texels(thousandths, direction);
@@ -232,7 +246,8 @@ fn no_advice_is_given_where_it_would_not_help() {
     assert!(!advised(0.0, steep, Bits::Sixteen, ScaleChoice::Auto), "no steep texels");
     assert!(!advised(5.0, steep, Bits::Sixteen, ScaleChoice::Auto), "too many to be cut");
     assert!(!advised(0.5, [0.2, 0.0], Bits::Sixteen, ScaleChoice::Auto), "not steep enough to cost much");
-    assert!(!advised(0.5, steep, Bits::Half, ScaleChoice::Auto), "floats need no scale");
+    assert!(advised(0.5, steep, Bits::Half, ScaleChoice::Auto), "half floats are coarse on steep slopes");
+    assert!(!advised(0.5, steep, Bits::Float, ScaleChoice::Auto), "single floats are fine enough on any");
     assert!(!advised(0.5, steep, Bits::Sixteen, ScaleChoice::Fixed(10.0)), "the scale was chosen by hand");
 }
 

@@ -4,7 +4,7 @@ use roughcast::shading::Shading;
 use roughcast::shading::wgsl::{CONVENTIONS, Module, Role};
 
 use super::export::Language;
-use super::layout::{Rule, in_words, layout};
+use super::layout::{Rule, in_words, layout, structs};
 use super::prefix::Prefix;
 use super::stage::calls;
 
@@ -39,10 +39,10 @@ pub fn header(modules: &[&Module], parsed: &naga::Module, language: Language, pr
     lines.extend(CONVENTIONS.iter().map(|line| format!("  {line}")));
     lines.push(String::new());
     lines.extend(PACKING.iter().map(|line| (*line).to_owned()));
-    lines.push("In uniform buffers, by every language's rules:".to_owned());
-    for name in ["Packing", "LobeOptions"] {
-        if let Some(layout) = layout(parsed, name, Rule::Std140) {
-            lines.push(format!("  {}", in_words(&prefix.of(name), &layout)));
+    lines.push(format!("Structs in buffers, bytes by the rules of {}:", rule_in_words(language)));
+    for name in structs(parsed) {
+        if let Some(layout) = layout(parsed, &name, rule(language)) {
+            lines.push(format!("  {}", in_words(&prefix.of(&name), &layout)));
         }
     }
     lines.push(String::new());
@@ -77,6 +77,25 @@ pub fn header(modules: &[&Module], parsed: &naga::Module, language: Language, pr
 pub fn models<'a>(modules: &'a [&Module]) -> impl Iterator<Item = Shading> + 'a {
     let is_exported = |model: &Shading| modules.iter().any(|module| module.name == model.name());
     Shading::ALL.iter().copied().filter(is_exported)
+}
+
+/// The rule by which a language places members in buffers.
+fn rule(language: Language) -> Rule {
+    match language {
+        Language::Wgsl | Language::Msl | Language::Spirv => Rule::Natural,
+        Language::Glsl | Language::GlslEs300 => Rule::Std140,
+        Language::Hlsl => Rule::Cbuffer,
+    }
+}
+
+fn rule_in_words(language: Language) -> &'static str {
+    match language {
+        Language::Wgsl => "WGSL",
+        Language::Msl => "Metal",
+        Language::Spirv => "SPIR-V",
+        Language::Glsl | Language::GlslEs300 => "std140",
+        Language::Hlsl => "a cbuffer",
+    }
 }
 
 /// What is to be known of one language.

@@ -67,8 +67,7 @@ fn size_and_align(module: &Module, of: &Type, rule: Rule) -> (u32, u32) {
 }
 
 /// The names of all structs, in the order of the library.
-#[cfg(test)]
-fn structs(module: &Module) -> Vec<String> {
+pub fn structs(module: &Module) -> Vec<String> {
     let is_struct = |of: &Type| matches!(of.inner, TypeInner::Struct { .. });
     module.types.iter().filter(|(_, of)| is_struct(of)).filter_map(|(_, of)| of.name.clone()).collect()
 }

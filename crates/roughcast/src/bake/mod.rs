@@ -13,14 +13,14 @@ use crate::moments::Moments;
 use crate::options::{BakeOptions, Blocks, MaxSlope, ScaleChoice, SourceOptions};
 use crate::pyramid::{self, LevelStats, PyramidOptions, level_sizes};
 use crate::source::{BaseRoughness, BaseSource, MapSource, RoughnessMap, SourceError, UseOfBase};
-use crate::survey::survey;
+use crate::survey::{survey, survey_of_some_rows};
 use crate::texture::codec::Units;
 use crate::texture::orient::orient;
 use crate::texture::{self, Base, Bounds, EncoderShape, Layout, Part, Peaks, RoughnessStored, TextureArray};
-use crate::{Image, SourceCounts};
+use crate::{Image, SampleType, SourceCounts};
 use allocate::{allocate, level_outs};
 use limit::limit_steepest;
-use scales::{NeededRange, advice, largest_variance, set_scales};
+use scales::{NeededRange, advice, largest_variance, peaks_of_most, set_scales};
 
 /// Why a map could not be baked. One line, with the mend.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -78,6 +78,8 @@ pub struct BakeReport {
     pub whole: Moments,
     /// Largest errors of what the textures give back.
     pub bounds: Bounds,
+    /// The same for all texels but the steepest 0.1 %, about: of maps with very many rows from a sample.
+    pub bounds_of_most: Bounds,
     /// Set where the steepest 0.1 % of the texels cost more than a factor of four.
     pub advice: Option<ScaleAdvice>,
     /// Each level's size and what it holds.
@@ -171,6 +173,14 @@ pub fn bake_reusing(
         slope: finest.steepest,
         variance: needed.variance.unwrap_or(finest.max_variance),
     };
+    // A scale that was given is nobody's to advise on, and single floats are fine enough on any slope.
+    let is_open = match sample_type {
+        SampleType::U8 | SampleType::U16 => options.scale == ScaleChoice::Auto,
+        SampleType::F16 => true,
+        SampleType::F32 => false,
+    };
+    // Where no scale was to be found, a few rows tell how the slopes are distributed.
+    let looked_at = looked_at.unwrap_or_else(|| survey_of_some_rows(&source.slopes_only()));
     let whole = f64::from(built.whole.xx) + f64::from(built.whole.yy);
     // A texel of level 0 is one slope, so that all variance there is the base's.
     let base = finest.mean_variance_x + finest.mean_variance_y;
@@ -186,7 +196,13 @@ pub fn bake_reusing(
         rms_slope_with_base: whole.sqrt(),
         whole: built.whole,
         bounds: texture::bounds_of_shape(&info, sample_type, shape, &peaks),
-        advice: looked_at.and_then(|looked_at| advice(&info, sample_type, shape, &looked_at, &peaks)),
+        bounds_of_most: texture::bounds_of_shape(
+            &info,
+            sample_type,
+            shape,
+            &peaks_of_most(&looked_at, &peaks),
+        ),
+        advice: is_open.then(|| advice(&info, sample_type, shape, &looked_at, &peaks)).flatten(),
         levels: level_sizes(image.width(), image.height()).into_iter().zip(built.levels).collect(),
         roughness_resampled_from,
     };

@@ -59,6 +59,12 @@ pub(super) fn smallest_scale(layout: Layout, peaks: &Peaks) -> f32 {
     needed.max(SMALLEST_SCALE)
 }
 
+/// The peaks without the steepest texels of which [`ScaleAdvice`] speaks.
+pub(super) fn peaks_of_most(looked_at: &Survey, peaks: &Peaks) -> Peaks {
+    let slope = looked_at.slope_exceeded_by_one_in(STEEP_ONE_IN).min(peaks.slope);
+    Peaks { component: slope.min(peaks.component), slope, ..*peaks }
+}
+
 pub(super) fn advice(
     info: &TextureInfo,
     sample_type: SampleType,
@@ -66,9 +72,10 @@ pub(super) fn advice(
     looked_at: &Survey,
     peaks: &Peaks,
 ) -> Option<ScaleAdvice> {
-    let max_slope = looked_at.slope_exceeded_by_one_in(STEEP_ONE_IN);
-    let limited = Peaks { component: max_slope.min(peaks.component), slope: max_slope, ..*peaks };
-    let limited_info = TextureInfo { scale: smallest_scale(info.layout, &limited), ..*info };
+    let limited = peaks_of_most(looked_at, peaks);
+    let max_slope = limited.slope;
+    let scale = if sample_type.is_float() { info.scale } else { smallest_scale(info.layout, &limited) };
+    let limited_info = TextureInfo { scale, ..*info };
     let power = |info: &TextureInfo, peaks: &Peaks| {
         texture::bounds_of_shape(info, sample_type, shape, peaks).usable_specular_power()
     };
