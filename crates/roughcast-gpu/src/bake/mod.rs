@@ -235,7 +235,7 @@ impl GpuBaker {
         Ok(info)
     }
 
-    /// The largest slope of the last bake, read back from the GPU: with [`MaxSlope::Auto`](roughcast::MaxSlope::Auto) it may
+    /// The largest slope of the last bake, read back from the GPU: with [`MaxSlope::Auto`] it may
     /// follow from the map.
     ///
     /// # Errors
