@@ -133,7 +133,7 @@ pub fn footprint_twins() -> Vec<Twin> {
     vec![
         Twin {
             name: "footprint_axes",
-            gives: Gives::Numbers,
+            gives: Gives::Axes,
             call: "put_axes(footprint_axes(f2(0u), f2(2u)));",
             arguments: |inputs| inputs.footprint().to_vec(),
             rust: |a, _, _| axes_words(footprint_axes(pair(a), pair(&a[2..]))),
@@ -190,7 +190,7 @@ pub fn footprint_twins() -> Vec<Twin> {
         },
         Twin {
             name: "footprint_ratio",
-            gives: Gives::Numbers,
+            gives: Gives::Ratio,
             call: "put_ratio(footprint_ratio(axes(0u), FilterVariances(f2(6u), f2(8u)), f2(10u), f2(12u), o()));",
             arguments: |inputs| {
                 let words = axes_of(inputs);

@@ -36,6 +36,10 @@ pub enum Gives {
     Numbers,
     /// The six words of a Gaussian, whose determinant is a small difference of products.
     Gaussian,
+    /// The six words of a footprint's axes, of which the shorter is a small difference of products where the footprint is long.
+    Axes,
+    /// The eight words of a footprint's ratio: parts, and what they leave of one.
+    Ratio,
     /// The eight words of a facet of GGX, whose tangent is a small difference of vectors.
     Ggx,
 }
@@ -183,6 +187,9 @@ fn cancellation(gives: Gives, wanted: &[f32]) -> Vec<f32> {
             let variance = determinant / (xx + yy).abs().max(f32::MIN_POSITIVE);
             (left[2], left[3], left[5]) = (variance, variance, 2.0 * determinant);
         }
+        // The part of the derivatives that is along the shorter axis.
+        Gives::Axes => left[4..6].fill(unit * wanted[0].sqrt() / wanted[1]),
+        Gives::Ratio => [0, 2, 7].iter().for_each(|place| left[*place] = unit),
         // The part of a direction in the surface's plane that is across the normal is no shorter than the normal's z.
         Gives::Ggx => left[4..7].fill(unit / wanted[2]),
     }

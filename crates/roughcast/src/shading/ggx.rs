@@ -117,5 +117,7 @@ pub fn ggx_visible_part(surface: &GgxSurface, view: Vector, light: Vector) -> f3
 pub fn ggx_lambda(surface: &GgxSurface, direction: Vector, cosine: f32) -> f32 {
     let x = dot(surface.tangent, direction) * surface.alpha_along;
     let y = dot(cross(surface.normal, surface.tangent), direction) * surface.alpha_across;
-    0.5 * ((1.0 + (x * x + y * y) / (cosine * cosine)).sqrt() - 1.0)
+    let squared = (x * x + y * y) / (cosine * cosine);
+    // Half of sqrt(1 + t) - 1, without the difference, of which small t leave no digits.
+    0.5 * squared / ((1.0 + squared).sqrt() + 1.0)
 }
