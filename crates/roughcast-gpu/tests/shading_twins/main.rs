@@ -95,7 +95,8 @@ fn far_results_allowed(name: &str) -> f64 {
         "moment_surface" => 0.0015,
         // Footprints that are nearly circles have no longer axis.
         "footprint_axes" => 1e-3,
-        "footprint_ratio" => 2e-4,
+        // What is magnified by next to nothing.
+        "footprint_ratio" => 0.02,
         // Stored normals whose value is the small difference of code and offset.
         "bump_normal" | "toksvig_normal" | "toksvig_surface" => 0.004,
         // Flanks of the narrowest lobes: their exponents multiply what half vectors are rounded by.
