@@ -38,6 +38,10 @@ fn folder(name: &str) -> PathBuf {
     std::fs::create_dir_all(&examples).expect("the folder can be made");
     for entry in std::fs::read_dir(root().join("examples")).expect("the repository has examples") {
         let path = entry.expect("the folder can be listed").path();
+        // The maps, and not the folders of whole pages.
+        if path.is_dir() {
+            continue;
+        }
         let name = path.file_name().expect("an entry has a name");
         std::fs::copy(&path, examples.join(name)).expect("an example can be copied");
     }
