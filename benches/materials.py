@@ -34,13 +34,16 @@ def errors(program: Path, image: Path, options: list[str]) -> dict[tuple[str, st
         command = [program, "compare", image, "-o", f"{folder}/report", "--frames", "0", "--filters", "anisotropic"]
         done = subprocess.run([*command, *options], capture_output=True, text=True)
         if done.returncode != 0:
-            print(f"{image.name}: {done.stderr.strip().splitlines()[-1]}", file=sys.stderr)
+            print(f"{image.name}: {(done.stderr.strip().splitlines() or ["it was stopped without a word"])[-1]}", file=sys.stderr)
             return {}
         results = json.loads(Path(folder, "report", "results.json").read_text())
     return {(row["view"], row["method"]): row["rmse"] for row in results if row["map"] == image.name}
 
 
 def main() -> int:
+    if len(sys.argv) < 3:
+        print("usage: materials.py FOLDER_OF_MATERIALS PROGRAM [OPTIONS OF compare]", file=sys.stderr)
+        return 2
     materials, program, options = Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[3:]
     columns = [(view, model) for view in VIEWS for model in MODELS]
     ratios = {column: [] for column in columns}

@@ -35,10 +35,18 @@ export async function openBrowser() {
  */
 export async function openPage(url) {
   const browser = await openBrowser();
-  const { page, complaints } = await browser.open(url);
-  await page.waitForFunction(() => window.draw, null, { timeout: 20_000 }).catch(() => {
-    throw new Error(`the page did not start:\n${complaints().join('\n')}`);
-  });
+  let page;
+  let complaints;
+  try {
+    ({ page, complaints } = await browser.open(url));
+    await page.waitForFunction(() => window.draw, null, { timeout: 20_000 }).catch(() => {
+      throw new Error(`the page did not start:\n${complaints().join('\n')}`);
+    });
+  } catch (error) {
+    // A browser that nobody closes would keep the process alive.
+    await browser.close();
+    throw error;
+  }
   const draw = async (job) => {
     try {
       const text = await page.evaluate((job) => window.draw(job), job);

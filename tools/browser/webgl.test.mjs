@@ -115,6 +115,12 @@ void main() {
   rc_LobeOptions options;
   options.specular_power = s;
   options.form = RC_FORM_PHYSICAL;
+  options.base = RC_BASE_PLANE;
+  options.repair = RC_REPAIR_CLAMP;
+  options.base_in_maps = RC_MAPS_WITHOUT_BASE;
+  options.roughness_stored = RC_STORED_PERCEPTUAL;
+  options.masking = RC_MASKING_BASE;
+  options.footprint = RC_FOOTPRINT_CORRECTED;
   rc_Packing packing = rc_Packing(vec2(2.0 * sc, -sc), vec2(sc * sc, 0.0), vec2(2.0 * sc * sc, -sc * sc), vec2(2.0 * sc * sc, 0.0),
     vec2(vs, 0.0), vec2(2.0, -1.0));
   float exported = ${lobe}(${surface}, v, l, options);

@@ -204,7 +204,7 @@ pub struct SourceArgs {
     #[arg(long, default_value = "repeat", value_parser = one_of::<Wrap>())]
     pub wrap: Wrap,
 
-    /// Steepest slope (tangent of the angle; 1 is 45 degrees); steeper texels are scaled back to it and counted. auto: 128, or, for
+    /// Maximum slope (tangent of the angle; 1 is 45 degrees); steeper texels are scaled back to it and counted. auto: 128, or, for
     /// 8 and 16 bits, less where the steepest 0.1 % of the texels cost much precision
     #[arg(long, value_name = "auto|X", default_value = "auto", value_parser = max_slope)]
     pub max_slope: MaxSlope,

@@ -111,7 +111,7 @@ pub struct Args {
     #[command(flatten)]
     pub source: SourceArgs,
 
-    /// Refuse maps with broken texels (NaN, infinite, or a normal that points into the surface) instead of mending these
+    /// Refuse maps with broken texels (NaN, infinite, or a normal that points into the surface) instead of repairing them
     #[arg(long, help_heading = READING)]
     pub strict: bool,
 
@@ -312,7 +312,7 @@ fn broken_texels(report: &BakeReport) -> anyhow::Error {
     ];
     let found = kinds.iter().filter(|(count, _)| *count > 0);
     let found = found.map(|(count, what)| format!("{count} {what}")).collect::<Vec<_>>().join(", ");
-    anyhow!("of its {} texels {found}: mend the map, or leave --strict out", report.texels)
+    anyhow!("of its {} texels {found}: repair the map, or omit --strict", report.texels)
 }
 
 /// The material's roughness, with a warning where the layout needs one and nobody named it.

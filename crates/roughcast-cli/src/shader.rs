@@ -27,8 +27,8 @@ use prefix::Prefix;
 
 /// Export the shading models as shader code, or list them.
 ///
-/// The code has no entry points and no resources (SPIR-V, which has no libraries, has a fragment shader a model). Its names have a
-/// prefix, and its modules guards against being there twice. It starts with its source, its conventions and how to call it; docs/shaders.md has examples for every language.
+/// The code has no entry points and no resources (SPIR-V, which has no libraries, has a fragment shader a model). Names have a
+/// prefix, and in GLSL, HLSL and Metal's language each module has an include guard. Each text starts with its source, its conventions and how to call it; docs/shaders.md has examples for every language.
 #[derive(clap::Args)]
 pub struct Args {
     /// What to export, or all; without a name, what there is

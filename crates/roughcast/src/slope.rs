@@ -33,10 +33,10 @@ pub fn normal_from_slope(slope: Slope) -> Normal {
     Normal { x: slope.x * z, y: slope.y * z, z }
 }
 
-/// What was mended while slopes were read: one bad texel must not poison the chain, and none is mended in silence.
+/// What was repaired while slopes were read: one bad texel must not poison the chain, and none is repaired silently.
 ///
 /// A broken normal is made *neutral*: it gets the mean slope of those of its eight neighbours that are not broken, or a flat
-/// one where all of them are. Beyond an edge lie the texels that the wrap mode says; where the map does not repeat, those of
+/// one where all of them are. Beyond an edge lie the texels that the wrap mode specifies; where the map does not repeat, those of
 /// the edge once more.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SourceCounts {

@@ -110,3 +110,14 @@ fn survey_band(source: &dyn RowSource, stride: usize, rows: std::ops::Range<usiz
     band.peaks.slope = longest_squared.sqrt();
     band
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_gpus_histogram_has_bins_of_the_same_width() {
+        let written = format!("const SLOPE_BIN_SHIFT: u32 = {BIN_SHIFT}u;");
+        assert!(crate::wgsl::LIMIT.contains(&written), "limit.wgsl lacks '{written}'");
+    }
+}

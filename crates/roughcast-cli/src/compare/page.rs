@@ -243,7 +243,7 @@ fn limits(page: &mut Page, settings: &Settings<'_>, compared: &[Compared]) {
     if settings.shading.footprint == FootprintModel::Published {
         page.paragraph(
             "All variance under the texture filter counts as roughness, as in the papers. Where texels are magnified, as in the near \
-             view, LEAN is then duller than the truth: between two texels it finds the slopes of both, while the truth is a \
+             view, LEAN is then duller than the ground truth: between two texels it finds the slopes of both, while the ground truth is a \
              surface that bends from the one to the other.",
         );
     }

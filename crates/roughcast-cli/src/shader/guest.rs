@@ -34,13 +34,15 @@ pub fn with_guards(code: &str, modules: &[&Module], prefix: &Prefix) -> Result<S
         let own =
             || items.iter().zip(&owners).filter(|(_, owner)| **owner == module.name).map(|(item, _)| item);
         let (constants, rest): (Vec<_>, Vec<_>) = own().partition(|item| is_constant(item.name));
-        let always = module.name == OPTIONS;
-        for constant in constants.iter().filter(|item| !always && is_used(item, &items)) {
-            guarded(&prefix.guard(constant.name, "CONSTANT"), &[constant], prefix, &mut out);
+        if module.name == OPTIONS {
+            guarded(&prefix.constant_guard(module.name), &constants, prefix, &mut out);
+        } else {
+            for constant in constants.into_iter().filter(|item| is_used(item, &items)) {
+                guarded(&prefix.constant_guard(constant.name), &[constant], prefix, &mut out);
+            }
         }
-        let whole: Vec<_> = if always { own().collect() } else { rest };
-        if !whole.is_empty() {
-            guarded(&prefix.guard(module.name, "MODULE"), &whole, prefix, &mut out);
+        if !rest.is_empty() {
+            guarded(&prefix.module_guard(module.name), &rest, prefix, &mut out);
         }
     }
     Ok(out)

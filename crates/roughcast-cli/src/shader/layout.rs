@@ -38,9 +38,11 @@ pub fn layout(module: &Module, name: &str, rule: Rule) -> Option<Layout> {
         places.push((member.name.clone().unwrap_or_default(), at));
         at += size;
     }
+    // A cbuffer's next member may begin right after the last one.
     let end = match rule {
         Rule::Natural => largest,
-        Rule::Std140 | Rule::Cbuffer => 16,
+        Rule::Std140 => 16,
+        Rule::Cbuffer => 4,
     };
     Some(Layout { members: places, size: at.next_multiple_of(end) })
 }

@@ -37,9 +37,14 @@ impl Prefix {
         }
     }
 
-    /// A macro that says that something is there.
-    pub fn guard(&self, name: &str, kind: &str) -> String {
-        format!("{}{}_{kind}", self.0, name.replace('-', "_")).to_ascii_uppercase()
+    /// The macro that says that a module is there. It keeps the prefix as it is: `rc_` and `RC_` are two.
+    pub fn module_guard(&self, module: &str) -> String {
+        format!("{}{}_MODULE", self.0, module.replace('-', "_").to_ascii_uppercase())
+    }
+
+    /// The macro that says that constants are there, whose names have the prefix in capitals.
+    pub fn constant_guard(&self, name: &str) -> String {
+        format!("{}{}_CONSTANT", self.0, name).to_ascii_uppercase()
     }
 
     /// Code in which every global name of the library, and what naga has made of one, has its prefix. Members of structs keep theirs.

@@ -116,7 +116,7 @@ pub fn fragment_shaders(models: &[Shading]) -> String {
     code
 }
 
-/// What the pixel sees of the variance under the sampler, which tells nobody its anisotropy.
+/// What the pixel sees of the variance under the sampler, whose anisotropy a shader cannot query.
 fn pixel_ratio(mean: &str, texture: &Texture) -> String {
     format!(
         "    let mean = {mean}.xy * packing.slope.x + packing.slope.y;

@@ -13,7 +13,9 @@ const SCALE: &str = include_str!("scale.wgsl");
 const TILE: u32 = 64;
 
 /// Bytes of WGSL's `Survey`: two counts and the bins of a histogram.
-const SURVEY_BYTES: u64 = 4 * (2 + 1089);
+const SURVEY_BYTES: u64 = 4 * (2 + SLOPE_BINS);
+/// Of the histogram, as in limit.wgsl.
+const SLOPE_BINS: u64 = 1089;
 
 /// Finds the smallest scale that holds every slope.
 pub(super) struct AutoScale {
@@ -74,4 +76,15 @@ async fn dispatch(
         })
         .await?;
     Ok(Dispatch { pipeline, bindings, groups })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_survey_has_room_for_the_shaders_histogram() {
+        let written = format!("const SLOPE_BINS: u32 = {SLOPE_BINS}u;");
+        assert!(roughcast::wgsl::LIMIT.contains(&written), "limit.wgsl lacks '{written}'");
+    }
 }

@@ -164,7 +164,7 @@ fn wrong_twins_are_caught() {
         ("gaussian_lambda", "sqrt(2.0 * variance)", "sqrt(variance)"),
         ("gaussian_visible_part", "projected_variance(sigma, light)", "projected_variance(sigma, view)"),
         ("facet_visible_part", "1.0 - of_light * of_light", "1.0 - of_light"),
-        ("ggx_lambda", "(x * x + y * y) / (cosine * cosine)", "(x * x + y * y) / cosine"),
+        ("ggx_lambda", "sqrt(cosine * cosine + squared)", "sqrt(cosine + squared)"),
         (
             "visible_part",
             "1.0 + lambda_of_view + lambda_of_light",

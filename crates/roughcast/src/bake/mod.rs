@@ -78,7 +78,8 @@ pub struct BakeReport {
     pub whole: Moments,
     /// Largest errors of what the textures give back.
     pub bounds: Bounds,
-    /// The same for all texels but the steepest 0.1 %, about: of maps with very many rows from a sample.
+    /// The same without the steepest 0.1 % of the texels, estimated from a sample: of about a million texels where the scale is
+    /// automatic, else of at most 64 rows.
     pub bounds_of_most: Bounds,
     /// Set where the steepest 0.1 % of the texels cost more than a factor of four.
     pub advice: Option<ScaleAdvice>,
@@ -173,7 +174,7 @@ pub fn bake_reusing(
         slope: finest.steepest,
         variance: needed.variance.unwrap_or(finest.max_variance),
     };
-    // A scale that was given is nobody's to advise on, and single floats are fine enough on any slope.
+    // No advice is given on a scale that the caller chose, and single floats are fine enough on any slope.
     let is_open = match sample_type {
         SampleType::U8 | SampleType::U16 => options.scale == ScaleChoice::Auto,
         SampleType::F16 => true,

@@ -52,8 +52,8 @@ pub fn cosine_power(axis: Vector, direction: Vector, exponent: f32) -> f32 {
     (-0.5 * exponent * tangent_squared.ln_1p()).exp()
 }
 
-/// The least cosine between the viewer and a bump's normal. Seen from a flat surface some bumps face away from the viewer, whom
-/// geometry would show another instead; they count as seen edge-on, as in most renderers, and are no holes.
+/// The least cosine between the viewer and a bump's normal. On a flat surface some bumps face away from the viewer; real geometry
+/// would hide them. They are shaded as if seen edge-on, as in most renderers, so that they leave no black holes.
 pub const LEAST_VIEW_COSINE: f32 = 1e-4;
 
 /// `G2 / n·v` about the normal of a facet, whose own roughness masks as the equivalent Gaussian of slopes. Zero where the light is

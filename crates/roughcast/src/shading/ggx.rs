@@ -102,8 +102,8 @@ pub fn ggx_lobe(surface: &GgxSurface, view: Vector, light: Vector, options: &Lob
     }
 }
 
-/// `G2 / n·v` about the bump normal. The lobe's own widths mask, whatever [`super::Masking`] says: what part of them is the
-/// base's the textures do not tell.
+/// `G2 / n·v` about the bump normal. The lobe's own widths mask, whatever [`super::Masking`] says: the textures do not tell which part
+/// of them is the base's.
 pub fn ggx_visible_part(surface: &GgxSurface, view: Vector, light: Vector) -> f32 {
     let cosines = [dot(surface.normal, view).max(LEAST_VIEW_COSINE), dot(surface.normal, light)];
     if cosines[1] < LEAST_COSINE {
@@ -117,7 +117,7 @@ pub fn ggx_visible_part(surface: &GgxSurface, view: Vector, light: Vector) -> f3
 pub fn ggx_lambda(surface: &GgxSurface, direction: Vector, cosine: f32) -> f32 {
     let x = dot(surface.tangent, direction) * surface.alpha_along;
     let y = dot(cross(surface.normal, surface.tangent), direction) * surface.alpha_across;
-    let squared = (x * x + y * y) / (cosine * cosine);
-    // Half of sqrt(1 + t) - 1, without the difference, of which small t leave no digits.
-    0.5 * squared / ((1.0 + squared).sqrt() + 1.0)
+    let squared = x * x + y * y;
+    // Without the difference, of which narrow lobes leave no digits, and without a quotient that may overflow.
+    0.5 * squared / (cosine * ((cosine * cosine + squared).sqrt() + cosine))
 }

@@ -74,9 +74,9 @@ fn ggx_surface_of_normal(normal: vec3f, options: LobeOptions) -> GgxSurface {
 fn ggx_lambda(surface: GgxSurface, direction: vec3f, cosine: f32) -> f32 {
     let x = dot(surface.tangent, direction) * surface.alpha_along;
     let y = dot(cross(surface.normal, surface.tangent), direction) * surface.alpha_across;
-    let squared = (x * x + y * y) / (cosine * cosine);
-    // Half of sqrt(1 + t) - 1, without the difference, of which small t leave no digits.
-    return 0.5 * squared / (sqrt(1.0 + squared) + 1.0);
+    let squared = x * x + y * y;
+    // Without the difference, of which narrow lobes leave no digits, and without a quotient that may overflow.
+    return 0.5 * squared / (cosine * (sqrt(cosine * cosine + squared) + cosine));
 }
 
 // G2 / n.v about the bump normal, with the widths of the lobe itself. Zero where the light is not above the facet.

@@ -264,7 +264,7 @@ fn models_of_moments_shade_the_pixels_part_and_the_whole_base() {
         assert!(close(found.xx, kept * 0.04 + base) && close(found.yy, kept * 0.04 + base), "{found:?}");
         let whole = shaded(shading, sigma, &FootprintRatio::WHOLE, &options);
         assert!(close(whole.xx, 0.04 + base), "{whole:?}");
-        // A base that is in the map is nobody's excess.
+        // A base in the map is not excess and stays whole.
         let baked = LobeOptions { base_in_maps: Base::Baked, ..options };
         let found = shaded(shading, sigma, &ratio, &baked);
         assert!(close(found.xx, kept * (0.04 - base) + base), "{shading}: {found:?}");

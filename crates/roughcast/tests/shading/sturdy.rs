@@ -2,7 +2,7 @@
 
 use roughcast::shading::{
     BaseLobe, FootprintModel, FootprintRatio, Form, LobeOptions, Masking, Repair, Shading,
-    blinn_phong_surface, ggx_surface_of_normal,
+    blinn_phong_surface, ggx_surface_of_normal, ggx_visible_part,
 };
 use roughcast::texture::{Base, Packing, RoughnessStored};
 use roughcast::{Lobe, Slope};
@@ -82,6 +82,23 @@ fn extreme_texels_of_unsigned_textures() {
             let options = options[(random.unit() * options.len() as f64) as usize];
             check(shading, &texels, &packing, &options);
         }
+    }
+}
+
+#[test]
+fn the_roughest_lobe_is_finite_for_light_at_the_horizon() {
+    // A stored exponent of 1e-3, the least that counts: its width is 45.
+    let options = LobeOptions {
+        base_in_maps: Base::Baked,
+        roughness_stored: RoughnessStored::SpecularPower,
+        ..LobeOptions::default()
+    };
+    check(Shading::Ggx, &[[0.0, 0.0, 1.0, 1.0], [0.0; 4], [0.0; 4]], &Packing::IDENTITY, &options);
+    let surface = ggx_surface_of_normal([0.0, 0.0, 1.0], &LobeOptions { specular_power: 1e-3, ..options });
+    for cosine in [1.2e-18, 1e-15, 1e-6] {
+        let light = [1.0, 0.0, cosine];
+        let part = ggx_visible_part(&surface, [0.0, 0.6, 0.8], light);
+        assert!(part.is_finite() && part >= 0.0, "{cosine}: {part}");
     }
 }
 
