@@ -302,7 +302,7 @@ pub fn bake_file(input: &Path, output: &Path, args: &Args, stages: &mut Stages) 
     })
 }
 
-/// What is wrong with a map that is not to be mended.
+/// What is wrong with a map that is not to be repaired.
 fn broken_texels(report: &BakeReport) -> anyhow::Error {
     let counts = report.counts;
     let kinds = [

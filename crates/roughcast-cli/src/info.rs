@@ -168,11 +168,10 @@ impl Findings {
         if let Some(layer) = name_of_layer(info) {
             self.put("layer", json!(layer), layer.to_owned());
         }
-        let unsigned = !sample_type.is_float();
-        if unsigned && info.layout.uses_scale() {
+        if info.layout.uses_scale(sample_type) {
             self.put("scale", json!(info.scale), info.scale.to_string());
         }
-        if unsigned && info.layout.uses_variance_scale() {
+        if info.layout.uses_variance_scale(sample_type) {
             self.put("variance_scale", json!(info.variance_scale), info.variance_scale.to_string());
         }
         self.put("base", json!(info.base.name()), info.base.name().to_owned());

@@ -198,10 +198,10 @@ impl FileReport {
     /// The scales that a shader needs to decode the texels.
     fn scales(&self) -> [Option<f32>; 2] {
         let BakeOptions { layout, bits, .. } = self.options;
-        let unsigned = !bits.sample_type().is_float();
+        let sample_type = bits.sample_type();
         [
-            (unsigned && layout.uses_scale()).then_some(self.report.scale),
-            (unsigned && layout.uses_variance_scale()).then_some(self.report.variance_scale),
+            layout.uses_scale(sample_type).then_some(self.report.scale),
+            layout.uses_variance_scale(sample_type).then_some(self.report.variance_scale),
         ]
     }
 

@@ -28,8 +28,10 @@ pub fn reader_note(container: Container, layers: usize, sample_type: SampleType)
     let arrays = (layers > 1).then_some(
         "three.js, Babylon.js and Godot read no array textures (--split writes a file for each layer)",
     );
-    let sixteen = (sample_type == SampleType::U16)
-        .then_some("browsers sample 16-bit integers only with an extension, Babylon.js and PlayCanvas not at all (--bits half or --target web)");
+    let sixteen = (sample_type == SampleType::U16).then_some(
+        "browsers sample 16-bit integers only with an extension, Babylon.js and PlayCanvas not at all (--bits half or \
+         --target web)",
+    );
     let all: Vec<&str> = arrays.into_iter().chain(sixteen).collect();
     (!all.is_empty()).then(|| all.join("; "))
 }

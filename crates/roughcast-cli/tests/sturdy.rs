@@ -81,7 +81,7 @@ fn texels_that_are_no_numbers_are_counted_and_flat_or_refused() {
 }
 
 #[test]
-fn broken_normals_are_mended_and_counted_or_refused() {
+fn broken_normals_are_repaired_and_counted_or_refused() {
     let folder = scratch();
     let (input, output) = (folder.path().join("broken.exr"), folder.path().join("out.exr"));
     // Straight into the surface, to a side of it, and NaN, among normals of slope 1/4.

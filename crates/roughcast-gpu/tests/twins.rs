@@ -143,11 +143,11 @@ fn slopes_are_mended_as_on_the_cpu() {
         *input = [special[i % 7], special[i / 7 % 7], special[i / 49], 0.0];
     }
     let body =
-        "let mended = mended_slope(input.xyz, 3.0);\noutput = vec4f(mended.slope, f32(mended.fault), 0.0);";
+        "let mended = repaired_slope(input.xyz, 3.0);\noutput = vec4f(mended.slope, f32(mended.fault), 0.0);";
     for (input, output) in inputs.iter().zip(run(&gpu(), body, &inputs)) {
         let mut counts = SourceCounts::default();
-        let wanted =
-            roughcast::mended_slope(input[0], input[1], input[2], MAX_SLOPE, &mut counts).unwrap_or_default();
+        let wanted = roughcast::repaired_slope(input[0], input[1], input[2], MAX_SLOPE, &mut counts)
+            .unwrap_or_default();
         let length = wanted.x.hypot(wanted.y);
         // A slope as long as the largest may fall on either side of it.
         let on_the_edge = (length - MAX_SLOPE).abs() <= MENDED * MAX_SLOPE;

@@ -1,7 +1,10 @@
 //! Footprint correction on real maps: what it gains where textures are magnified, and that it changes nothing elsewhere.
 
+mod common;
+
 use std::sync::Arc;
 
+use common::picture;
 use roughcast::shading::{FootprintModel, LobeOptions, Material, Shading};
 use roughcast::texture::TextureArray;
 use roughcast::{BakeOptions, Green, Image, SourceOptions, Wrap, bake};
@@ -31,9 +34,7 @@ struct Seen {
 
 impl Seen {
     fn new(name: &str, green: Green, view: View) -> Self {
-        let path = roughcast_testdata::find(name);
-        let decoded = roughcast_io::read_image_file(&path, &roughcast_io::ReadOptions::default());
-        let image = decoded.unwrap_or_else(|e| panic!("{}: {e}", path.display())).image;
+        let image = picture(name).image;
         let source = SourceOptions { green, ..SourceOptions::default() };
         let plane = Arc::new(Shape::Plane(Plane::default()));
         let scene = view.scene(plane, (image.width(), image.height()), SIZE, Material::default());

@@ -1,9 +1,12 @@
 //! Real normal maps, seen from afar: LEAN against the ordinary way.
 
+mod common;
+
 use std::sync::Arc;
 
+use common::picture;
 use roughcast::shading::{Form, LobeOptions, Material, Shading};
-use roughcast::{BakeOptions, Image, SourceOptions, Wrap, bake};
+use roughcast::{BakeOptions, SourceOptions, Wrap, bake};
 use roughcast_scene::metrics::{energy_error, rmse};
 use roughcast_scene::render::{Method, ShadingTextures, Truth, unwatched};
 use roughcast_scene::{Filter, Plane, Reconstruction, Sampler, Shape, SlopeMap, View};
@@ -18,16 +21,10 @@ const MAPS: [(&str, f64); 3] = [
     ("materials/scratched_gold/ScratchedGold-Normal.png", 1.2),
 ];
 
-fn map(name: &str) -> Image {
-    let path = roughcast_testdata::find(name);
-    let decoded = roughcast_io::read_image_file(&path, &roughcast_io::ReadOptions::default());
-    decoded.unwrap_or_else(|e| panic!("{}: {e}", path.display())).image
-}
-
 #[test]
 fn lean_is_nearer_to_the_truth_of_real_maps() {
     for (name, factor) in roughcast_testdata::rows_with_files(MAPS, |row| row.0) {
-        let map = map(name);
+        let map = picture(name).image;
         let source = SourceOptions::default();
         let arrays = bake(&map, &source, None, &BakeOptions::default()).unwrap().arrays;
         let slopes = SlopeMap::of(&map, &source).unwrap();

@@ -1,7 +1,10 @@
 //! With the options' defaults LEAN is as good as stored variance: no real map's few steep texels may spoil its range.
 
+mod common;
+
 use std::sync::Arc;
 
+use common::picture;
 use roughcast::detect::{guess_channels, guess_range};
 use roughcast::shading::{LobeOptions, Material, Shading};
 use roughcast::{BakeOptions, BakeReport, Green, Image, MaxSlope, Samples, SourceOptions, bake};
@@ -32,9 +35,7 @@ impl Far {
 
     /// With these texels instead of some of its own.
     fn of(path: &str, green: Green, texels: &[[u8; 3]]) -> Self {
-        let file = roughcast_testdata::find(path);
-        let decoded = roughcast_io::read_image_file(&file, &roughcast_io::ReadOptions::default());
-        let decoded = decoded.unwrap_or_else(|e| panic!("{path}: {e}"));
+        let decoded = picture(path);
         let (range, mut image) = (guess_range(&decoded.image), decoded.image);
         let channels = image.channels();
         for (i, texel) in texels.iter().enumerate() {

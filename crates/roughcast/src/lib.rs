@@ -90,6 +90,6 @@ pub use options::{
     NormalChannels, NormalRange, PyramidFilter, Red, RoughnessTexture, ScaleChoice, SourceOptions, Wrap,
 };
 pub use pyramid::{LevelStats, level_sizes, levels_of_four};
-pub use slope::{Normal, Slope, SourceCounts, mended_slope, normal_from_slope, slope_from_normal};
+pub use slope::{Normal, Slope, SourceCounts, normal_from_slope, repaired_slope, slope_from_normal};
 pub use source::{BaseRoughness, RoughnessMap, SourceError, stored_from_variance, variance_from_stored};
 pub use survey::survey_stride;

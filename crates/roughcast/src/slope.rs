@@ -75,7 +75,7 @@ impl SourceCounts {
 
 /// The slope of a vector that may be no usable normal, scaled back to `max_slope` where it is longer, direction kept; `None`
 /// where the vector points into the surface or is no number. Counts what was wrong.
-pub fn mended_slope(x: f32, y: f32, z: f32, max_slope: f32, counts: &mut SourceCounts) -> Option<Slope> {
+pub fn repaired_slope(x: f32, y: f32, z: f32, max_slope: f32, counts: &mut SourceCounts) -> Option<Slope> {
     if !(x.is_finite() && y.is_finite() && z.is_finite()) {
         counts.non_finite += 1;
         return None;
@@ -104,21 +104,21 @@ mod tests {
 
     const MAX: f32 = 128.0;
 
-    fn mend(x: f32, y: f32, z: f32) -> (Option<Slope>, SourceCounts) {
+    fn repair(x: f32, y: f32, z: f32) -> (Option<Slope>, SourceCounts) {
         let mut counts = SourceCounts::default();
-        let slope = mended_slope(x, y, z, MAX, &mut counts);
+        let slope = repaired_slope(x, y, z, MAX, &mut counts);
         (slope, counts)
     }
 
     #[test]
     fn good_normals_pass_uncounted_and_length_does_not_matter() {
-        assert_eq!(mend(0.3, -0.4, 0.5), (Some(Slope { x: 0.6, y: -0.8 }), SourceCounts::default()));
-        assert_eq!(mend(3.0, -4.0, 5.0).0, Some(Slope { x: 0.6, y: -0.8 }));
+        assert_eq!(repair(0.3, -0.4, 0.5), (Some(Slope { x: 0.6, y: -0.8 }), SourceCounts::default()));
+        assert_eq!(repair(3.0, -4.0, 5.0).0, Some(Slope { x: 0.6, y: -0.8 }));
     }
 
     #[test]
     fn steep_normals_are_scaled_back_in_their_direction_and_counted() {
-        let (slope, counts) = mend(-3.0, 4.0, 1e-6);
+        let (slope, counts) = repair(-3.0, 4.0, 1e-6);
         assert_eq!(slope, Some(Slope { x: -0.6 * MAX, y: 0.8 * MAX }));
         assert_eq!(counts, SourceCounts { clamped: 1, ..Default::default() });
     }
@@ -126,15 +126,15 @@ mod tests {
     #[test]
     fn broken_normals_have_no_slope_and_are_counted() {
         for (x, y, z) in [(0.6, 0.8, 0.0), (1e-30, 0.0, -0.0), (0.6, 0.0, -0.8)] {
-            assert_eq!(mend(x, y, z), (None, SourceCounts { behind: 1, ..Default::default() }));
+            assert_eq!(repair(x, y, z), (None, SourceCounts { behind: 1, ..Default::default() }));
         }
         for (x, y, z) in [(0.0, 0.0, -1.0), (0.0, 0.0, 0.0)] {
-            assert_eq!(mend(x, y, z), (None, SourceCounts { invalid: 1, ..Default::default() }));
+            assert_eq!(repair(x, y, z), (None, SourceCounts { invalid: 1, ..Default::default() }));
         }
         for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
             let counts = SourceCounts { non_finite: 1, ..Default::default() };
-            assert_eq!(mend(bad, 0.0, 1.0), (None, counts));
-            assert_eq!(mend(0.0, 0.0, bad), (None, counts));
+            assert_eq!(repair(bad, 0.0, 1.0), (None, counts));
+            assert_eq!(repair(0.0, 0.0, bad), (None, counts));
         }
     }
 }

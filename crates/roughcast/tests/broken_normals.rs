@@ -36,7 +36,7 @@ fn map_with(texels: &[[u8; 3]]) -> (Image, usize) {
     (Image::new(size, size, 3, Samples::U8(samples)).expect("as many"), broken)
 }
 
-/// The deviation of the slopes of the whole map, which is the roughness from far, and what was mended.
+/// The deviation of the slopes of the whole map, which is the roughness from far, and what was repaired.
 fn far_roughness(image: &Image) -> (f64, SourceCounts) {
     let baked = baked(image, &SourceOptions::default(), &float_moments(PyramidFilter::Box));
     let levels = decode(&baked.arrays).expect("moments");
@@ -50,9 +50,9 @@ fn a_few_broken_texels_do_not_change_a_real_map_seen_from_far() {
     const UNCHANGED: f64 = 1e-4;
     let (sound, _) = far_roughness(&map_with(&[]).0);
     let (image, broken) = map_with(&INTO_THE_SURFACE);
-    let (mended, counts) = far_roughness(&image);
+    let (repaired, counts) = far_roughness(&image);
     assert_eq!(counts, SourceCounts { behind: broken as u64, ..Default::default() });
-    assert!((mended / sound - 1.0).abs() < UNCHANGED, "{mended} and {sound}");
+    assert!((repaired / sound - 1.0).abs() < UNCHANGED, "{repaired} and {sound}");
     // Such a share of texels does matter where they are as steep as can be.
     let (image, _) = map_with(&[STEEP]);
     let (steep, counts) = far_roughness(&image);

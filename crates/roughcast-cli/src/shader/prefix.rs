@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 use std::str::FromStr;
+use std::sync::LazyLock;
 
 use roughcast::shading::wgsl::MODULES;
 
@@ -84,7 +85,12 @@ pub fn is_constant(name: &str) -> bool {
 }
 
 /// The module of every constant, struct and function of the library.
-pub fn global_names() -> HashMap<&'static str, &'static str> {
+pub fn global_names() -> &'static HashMap<&'static str, &'static str> {
+    static NAMES: LazyLock<HashMap<&str, &str>> = LazyLock::new(read_global_names);
+    &NAMES
+}
+
+fn read_global_names() -> HashMap<&'static str, &'static str> {
     let mut names = HashMap::new();
     for module in MODULES {
         for line in module.source.lines() {

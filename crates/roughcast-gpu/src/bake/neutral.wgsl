@@ -9,9 +9,9 @@ fn neutral_slope(at: vec2i) -> vec2f {
     for (var i = 0; i < 9; i++) {
         let x = neighbour(at.x + i % 3 - 1, size.x, params.wrap);
         let y = neighbour(at.y + i / 3 - 1, size.y, params.wrap);
-        let mended = slope_unless_broken(vec2i(x, y));
-        if mended.fault < FAULT_BEHIND {
-            sum += rounded2(mended.slope);
+        let repaired = slope_unless_broken(vec2i(x, y));
+        if repaired.fault < FAULT_BEHIND {
+            sum += rounded2(repaired.slope);
             count += 1.0;
         }
     }
@@ -19,10 +19,10 @@ fn neutral_slope(at: vec2i) -> vec2f {
     return vec2f(quotient(sum.x, valid), quotient(sum.y, valid));
 }
 
-fn map_slope(at: vec2u) -> MendedSlope {
-    let mended = slope_unless_broken(vec2i(at));
-    if mended.fault < FAULT_BEHIND {
-        return mended;
+fn map_slope(at: vec2u) -> RepairedSlope {
+    let repaired = slope_unless_broken(vec2i(at));
+    if repaired.fault < FAULT_BEHIND {
+        return repaired;
     }
-    return MendedSlope(neutral_slope(vec2i(at)), mended.fault);
+    return RepairedSlope(neutral_slope(vec2i(at)), repaired.fault);
 }

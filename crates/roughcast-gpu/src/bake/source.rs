@@ -100,7 +100,7 @@ impl MapFormat {
         Ok(())
     }
 
-    /// WGSL that declares the map at a binding and defines `map_slope(at)`, the slope of a texel of it, mended or neutral. Needs
+    /// WGSL that declares the map at a binding and defines `map_slope(at)`, the slope of a texel of it, repaired or neutral. Needs
     /// `slope_limit()`, the largest slope.
     pub fn wgsl(self, options: &SourceOptions, binding: u32) -> String {
         let component = match self.texel {
@@ -138,7 +138,7 @@ impl MapFormat {
         };
         format!(
             "fn map_component(stored: f32) -> f32 {{ return {component}; }}\n\
-             fn slope_unless_broken(at: vec2i) -> MendedSlope {{\n    \
+             fn slope_unless_broken(at: vec2i) -> RepairedSlope {{\n    \
                  let texel = map_texel(at);\n    \
                  let factors = vec2f(params.normal_factor_x, params.normal_factor_y);\n    \
                  return {slope}slope_limit());\n}}\n{NEUTRAL}"
@@ -164,7 +164,7 @@ impl MapFormat {
         // A gradient may leave out its own texel: it is then finite also where there is no height.
         let check_of_hole = match self.texel {
             Texel::Value => {
-                "if !is_finite(map_height(at)) { return MendedSlope(vec2f(0.0), FAULT_NON_FINITE); }\n    "
+                "if !is_finite(map_height(at)) { return RepairedSlope(vec2f(0.0), FAULT_NON_FINITE); }\n    "
             }
             Texel::Unorm(_) | Texel::Code(_) => "",
         };
@@ -172,7 +172,7 @@ impl MapFormat {
             "fn map_height(at: vec2i) -> f32 {{ let stored = map_texel(at).x; return {height}; }}\n\
              fn map_heights(xs: vec3i, y: i32) -> vec3f {{\n    \
                  return vec3f(map_height(vec2i(xs.x, y)), map_height(vec2i(xs.y, y)), map_height(vec2i(xs.z, y)));\n}}\n\
-             fn map_slope(unsigned_at: vec2u) -> MendedSlope {{\n    \
+             fn map_slope(unsigned_at: vec2u) -> RepairedSlope {{\n    \
                  let at = vec2i(unsigned_at);\n    \
                  {check_of_hole}\
                  let size = vec2i(params.size);\n    \

@@ -47,14 +47,14 @@ pub fn shader_source(key: ShaderKey) -> Result<String, UnknownName> {
         "fn sampled(map: texture_2d<f32>, uv: vec2f) -> vec4f {{\n    \
          return {sample}(map, map_sampler, uv, sampling.detail);\n}}\n"
     );
-    let sampled = [sampled, footprint(key)].concat();
     let mut textures = String::new();
     for index in 0..key.shading.inputs(key.lobe).len() as u32 {
         let binding = FIRST_TEXTURE + index;
         let _ = writeln!(textures, "@group(1) @binding({binding}) var map{index}: texture_2d<f32>;");
     }
     let model = model(key.shading, key.lobe);
-    let parts: [&str; 5] = [&library, include_str!("common.wgsl"), &textures, &sampled, &model];
+    let footprint = footprint(key);
+    let parts: [&str; 6] = [&library, include_str!("common.wgsl"), &textures, &sampled, &footprint, &model];
     Ok(parts.join("\n"))
 }
 

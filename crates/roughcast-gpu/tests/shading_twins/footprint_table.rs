@@ -147,6 +147,17 @@ pub fn footprint_twins() -> Vec<Twin> {
             rust: |a, _, _| variances_words(level_variances(a[0])),
         },
         Twin {
+            name: "filter_level",
+            gives: Gives::Numbers,
+            call: "put(filter_level(FilterVariances(f2(0u), f2(2u))));",
+            arguments: |inputs| {
+                // Near level 0 a logarithm is a small difference.
+                let level = inputs.between(0.2, 12.0);
+                variances_words(level_variances(level))
+            },
+            rust: |a, _, _| one(FilterVariances { moments: pair(a), variances: pair(&a[2..]) }.level()),
+        },
+        Twin {
             name: "hardware_variances",
             gives: Gives::Numbers,
             call: "put_variances(hardware_variances(axes(0u), f(6u), f(7u)));",

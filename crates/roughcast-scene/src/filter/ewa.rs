@@ -5,14 +5,12 @@
 
 use glam::DVec2;
 use roughcast::Wrap;
-use roughcast::shading::FilterVariances;
+use roughcast::shading::{FilterVariances, PIXEL_DEVIATION};
 
 use super::footprint::Ellipse;
 use crate::Footprint;
 use crate::mipmap::{Level, Mipmap, wrapped};
 
-/// Deviation of the pixel filter, in pixels.
-const PIXEL_DEVIATION: f64 = 0.5;
 /// Deviations at which the Gaussian ends; beyond lies 1 % of its weight, which the texels within get instead.
 const RADIUS: f64 = 3.0;
 /// Variance of a plane Gaussian over that of the same Gaussian ended at [`RADIUS`], `1 / (1 - x / (e^x - 1))` with
@@ -28,13 +26,24 @@ const INTERPOLATION_VARIANCE: f64 = 1.0 / 6.0;
 /// On the last level deviations grow no further than this many times its longer side: all has long been averaged.
 const LAST_LEVEL_SIDES: f64 = 2.0;
 
+/// Deviations along the axes of the ellipse, in texels of level 0: the longer, and the shorter, which is no less than the largest ratio
+/// of axes allows.
+fn deviations(ellipse: &Ellipse) -> [f64; 2] {
+    let [major, minor] = [ellipse.major, ellipse.minor].map(|axis| f64::from(PIXEL_DEVIATION) * axis);
+    [major, minor.max(major / MAX_ECCENTRICITY)]
+}
+
+/// The level at which the shorter deviation has its texels.
+fn level_of(minor: f64) -> usize {
+    (minor / TEXELS).max(1.0).log2() as usize
+}
+
 /// The weighted mean over a footprint in texels of level 0.
 pub(super) fn sample(mipmap: &Mipmap, uv: DVec2, texels: &Footprint, wrap: Wrap) -> [f64; 4] {
     let ellipse = Ellipse::of(texels);
-    let major = PIXEL_DEVIATION * ellipse.major;
-    let minor = (PIXEL_DEVIATION * ellipse.minor).max(major / MAX_ECCENTRICITY);
+    let [major, minor] = deviations(&ellipse);
     let last = mipmap.levels().len() - 1;
-    let number = ((minor / TEXELS).max(1.0).log2() as usize).min(last);
+    let number = level_of(minor).min(last);
     let level = &mipmap.levels()[number];
 
     let (width, height) = mipmap.size();
@@ -58,11 +67,8 @@ pub(super) fn sample(mipmap: &Mipmap, uv: DVec2, texels: &Footprint, wrap: Wrap)
 /// Variances along the axes of the footprint, in texels of level 0, squared: those that [`sample`] gives its Gaussian, and for
 /// stored variances those of the area under each texel.
 pub(super) fn variances(texels: &Footprint) -> FilterVariances {
-    let ellipse = Ellipse::of(texels);
-    let major = PIXEL_DEVIATION * ellipse.major;
-    let minor = (PIXEL_DEVIATION * ellipse.minor).max(major / MAX_ECCENTRICITY);
-    let number = (minor / TEXELS).max(1.0).log2().floor();
-    let under_texel = (4.0_f64.powf(number) - 1.0) / 12.0;
+    let [major, minor] = deviations(&Ellipse::of(texels));
+    let under_texel = (4.0_f64.powi(level_of(minor) as i32) - 1.0) / 12.0;
     let whole = |deviation: f64| (deviation * deviation).max(INTERPOLATION_VARIANCE) as f32;
     FilterVariances { moments: [whole(major), whole(minor)], variances: [under_texel as f32; 2] }
 }

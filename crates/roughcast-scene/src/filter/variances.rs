@@ -55,6 +55,9 @@ impl Sampler {
         let texels = in_texels(&at.footprint, texture.size());
         let axes = footprint_axes(texels.dx.as_vec2().to_array(), texels.dy.as_vec2().to_array());
         let variances = self.variances(&axes, &texels);
+        if variances.is_beyond_correction() {
+            return FootprintRatio::WHOLE;
+        }
         let uv = reduced(at.uv, self.wrap);
         let derivative = |to: DVec2, sign: f64| {
             let there = self.sample(texture, uv + sign * to, &at.footprint);

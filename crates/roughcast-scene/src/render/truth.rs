@@ -4,7 +4,7 @@
 
 use glam::DVec2;
 use roughcast::Wrap;
-use roughcast::shading::{LobeOptions, Shading};
+use roughcast::shading::{LobeOptions, PIXEL_DEVIATION, Shading};
 
 use super::normal_quantile::normal_quantile;
 use super::shade::Shaded;
@@ -15,7 +15,7 @@ use crate::{Picture, Ray, Reconstruction, Scene, SlopeMap};
 /// Most samples of a pixel.
 pub const MAX_SAMPLES: u32 = 4096;
 /// Deviation of the pixel filter, in pixels.
-pub const PIXEL_FILTER_DEVIATION: f64 = 0.5;
+pub const PIXEL_FILTER_DEVIATION: f64 = PIXEL_DEVIATION as f64;
 /// Where the pixel filter ends, in pixels.
 pub const PIXEL_FILTER_RADIUS: f64 = 2.0;
 /// The part of a normal distribution below minus four deviations, where the pixel filter ends.

@@ -1,7 +1,8 @@
-//! Rays for the laws of shapes.
+//! Rays for the laws of shapes, and maps of the test data.
 #![allow(dead_code, reason = "each test program uses its part")]
 
 use glam::{DVec2, DVec3};
+use roughcast_io::Decoded;
 use roughcast_scene::{Hit, Ray, Shape};
 
 /// A small generator of evenly distributed numbers (splitmix64): the tests see the same ones on every run.
@@ -64,4 +65,11 @@ pub fn unorthonormality(hit: &Hit) -> f64 {
         }
     }
     worst
+}
+
+/// A picture of the test data.
+pub fn picture(name: &str) -> Decoded {
+    let path = roughcast_testdata::find(name);
+    let decoded = roughcast_io::read_image_file(&path, &roughcast_io::ReadOptions::default());
+    decoded.unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }

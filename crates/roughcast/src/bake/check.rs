@@ -109,8 +109,7 @@ pub(super) fn limit_slopes(
 
 /// Whether texels hold slopes or variances over a range that follows from the map.
 fn has_range_of_the_map(options: &BakeOptions) -> bool {
-    let unsigned = !options.bits.sample_type().is_float();
-    unsigned && options.scale == ScaleChoice::Auto && options.layout.uses_scale()
+    options.scale == ScaleChoice::Auto && options.layout.uses_scale(options.bits.sample_type())
 }
 
 /// Whether a filter may average moments. All that this library has may; this names the reason for the others.

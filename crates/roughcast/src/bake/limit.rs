@@ -4,14 +4,46 @@
 
 use super::SlopeLimit;
 use super::scales::{NeededRange, STEEP_COST, STEEP_ONE_IN, largest_variance, smallest_scale};
-use crate::options::MaxSlope;
+use crate::options::{BakeOptions, MaxSlope, ScaleChoice};
 use crate::pyramid::PyramidOptions;
 use crate::source::MapSource;
-use crate::survey::Survey;
+use crate::survey::{Survey, survey};
 use crate::texture::{Layout, Peaks};
 
+/// What is known of a map before it is stored.
+pub(super) struct Ranges {
+    /// A look at every slope, where a scale was to be found.
+    pub looked_at: Option<Survey>,
+    /// What the ranges of unsigned texels have to hold.
+    pub needed: NeededRange,
+    /// The limit that was found.
+    pub limit: Option<SlopeLimit>,
+}
+
+/// Finds the ranges of a map and, for [`MaxSlope::Auto`], limits its slopes. A scale that is to be found needs a look at every slope;
+/// otherwise one pass does it all.
+pub(super) fn find_ranges(
+    source: &mut MapSource<'_>,
+    max_slope: MaxSlope,
+    pyramid_options: PyramidOptions,
+    options: &BakeOptions,
+) -> Ranges {
+    let is_open = !options.bits.sample_type().is_float() && options.scale == ScaleChoice::Auto;
+    let looked_at = is_open.then(|| survey(&source.slopes_only()));
+    let stores_variance = options.layout.stores_variance();
+    let variance = stores_variance.then(|| largest_variance(&source.slopes_only(), pyramid_options));
+    let mut needed = NeededRange { peaks: looked_at.as_ref().map(|looked_at| looked_at.peaks), variance };
+    let limit = match (&looked_at, max_slope) {
+        (Some(looked_at), MaxSlope::Auto) => {
+            limit_steepest(source, &mut needed, looked_at, options.layout, pyramid_options)
+        }
+        _ => None,
+    };
+    Ranges { looked_at, needed, limit }
+}
+
 /// Lowers the largest slope of a source and what the ranges have to hold, where that wins more than [`STEEP_COST`]; says so.
-pub(super) fn limit_steepest(
+fn limit_steepest(
     source: &mut MapSource<'_>,
     needed: &mut NeededRange,
     looked_at: &Survey,

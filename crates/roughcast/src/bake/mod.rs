@@ -10,17 +10,17 @@ pub use check::refuse_filter;
 pub use plan::{BakePlan, plan_bake};
 
 use crate::moments::Moments;
-use crate::options::{BakeOptions, Blocks, MaxSlope, ScaleChoice, SourceOptions};
+use crate::options::{BakeOptions, Blocks, SourceOptions};
 use crate::pyramid::{self, LevelStats, PyramidOptions, level_sizes};
 use crate::source::{BaseRoughness, BaseSource, MapSource, RoughnessMap, SourceError, UseOfBase};
-use crate::survey::{survey, survey_of_some_rows};
+use crate::survey::survey_of_some_rows;
 use crate::texture::codec::Units;
 use crate::texture::orient::orient;
 use crate::texture::{self, Base, Bounds, EncoderShape, Layout, Part, Peaks, RoughnessStored, TextureArray};
-use crate::{Image, SampleType, SourceCounts};
+use crate::{Image, SourceCounts};
 use allocate::{allocate, level_outs};
-use limit::limit_steepest;
-use scales::{NeededRange, advice, largest_variance, peaks_of_most, set_scales};
+use limit::{Ranges, find_ranges};
+use scales::{advice, peaks_of_most, set_scales};
 
 /// Why a map could not be baked. One line, with the mend.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -144,20 +144,8 @@ pub fn bake_reusing(
     let mut source = source_of(image, source_options, roughness, options)?;
     let pyramid_options = PyramidOptions { filter: options.filter, wrap: source_options.wrap };
     let sample_type = options.bits.sample_type();
-    // A scale that is to be found needs a look at every slope first; otherwise one pass does it all.
-    let looked_at = (!sample_type.is_float() && options.scale == ScaleChoice::Auto)
-        .then(|| survey(&source.slopes_only()));
-    let variance = options
-        .layout
-        .uses_variance_scale()
-        .then(|| largest_variance(&source.slopes_only(), pyramid_options));
-    let mut needed = NeededRange { peaks: looked_at.as_ref().map(|looked_at| looked_at.peaks), variance };
-    let limit = match (&looked_at, source_options.max_slope) {
-        (Some(looked_at), MaxSlope::Auto) => {
-            limit_steepest(&mut source, &mut needed, looked_at, options.layout, pyramid_options)
-        }
-        _ => None,
-    };
+    let Ranges { looked_at, needed, limit } =
+        find_ranges(&mut source, source_options.max_slope, pyramid_options, options);
     set_scales(&mut info, &needed, options);
     let mut arrays = allocate(textures, &info, options, (image.width(), image.height()));
     let shape = EncoderShape {
@@ -174,17 +162,9 @@ pub fn bake_reusing(
         slope: finest.steepest,
         variance: needed.variance.unwrap_or(finest.max_variance),
     };
-    // No advice is given on a scale that the caller chose, and single floats are fine enough on any slope.
-    let is_open = match sample_type {
-        SampleType::U8 | SampleType::U16 => options.scale == ScaleChoice::Auto,
-        SampleType::F16 => true,
-        SampleType::F32 => false,
-    };
     // Where no scale was to be found, a few rows tell how the slopes are distributed.
     let looked_at = looked_at.unwrap_or_else(|| survey_of_some_rows(&source.slopes_only()));
-    let whole = f64::from(built.whole.xx) + f64::from(built.whole.yy);
-    // A texel of level 0 is one slope, so that all variance there is the base's.
-    let base = finest.mean_variance_x + finest.mean_variance_y;
+    let [rms_slope, rms_slope_with_base] = rms_slopes(&built.whole, finest);
     let report = BakeReport {
         counts: built.counts,
         texels: image.width() as u64 * image.height() as u64,
@@ -193,8 +173,8 @@ pub fn bake_reusing(
         max_slope: source.max_slope(),
         limit: limit.map(|limit| SlopeLimit { texels: built.counts.clamped, ..limit }),
         steepest: finest.steepest,
-        rms_slope: (whole - base).max(0.0).sqrt(),
-        rms_slope_with_base: whole.sqrt(),
+        rms_slope,
+        rms_slope_with_base,
         whole: built.whole,
         bounds: texture::bounds_of_shape(&info, sample_type, shape, &peaks),
         bounds_of_most: texture::bounds_of_shape(
@@ -203,7 +183,7 @@ pub fn bake_reusing(
             shape,
             &peaks_of_most(&looked_at, &peaks),
         ),
-        advice: is_open.then(|| advice(&info, sample_type, shape, &looked_at, &peaks)).flatten(),
+        advice: advice(&info, options, shape, &looked_at, &peaks),
         levels: level_sizes(image.width(), image.height()).into_iter().zip(built.levels).collect(),
         roughness_resampled_from,
     };
@@ -215,6 +195,14 @@ pub fn bake_reusing(
         texture::mark_set(&mut arrays);
     }
     Ok(Baked { arrays, report })
+}
+
+/// The root mean square of the slopes of a whole map, without the base roughness and with it.
+fn rms_slopes(whole: &Moments, finest: &LevelStats) -> [f64; 2] {
+    let with_base = f64::from(whole.xx) + f64::from(whole.yy);
+    // A texel of level 0 is one slope, so that all variance there is the base's.
+    let base = finest.mean_variance_x + finest.mean_variance_y;
+    [with_base - base, with_base].map(|squared| squared.max(0.0).sqrt())
 }
 
 fn source_of<'a>(

@@ -55,7 +55,7 @@ pub(super) fn set_scales(info: &mut TextureInfo, needed: &NeededRange, options: 
 
 /// The smallest scale that holds every slope and, where a layout stores them, every second moment.
 pub(super) fn smallest_scale(layout: Layout, peaks: &Peaks) -> f32 {
-    let needed = if layout.uses_variance_scale() { peaks.component } else { peaks.second().sqrt() };
+    let needed = if layout.stores_variance() { peaks.component } else { peaks.second().sqrt() };
     needed.max(SMALLEST_SCALE)
 }
 
@@ -65,13 +65,20 @@ pub(super) fn peaks_of_most(looked_at: &Survey, peaks: &Peaks) -> Peaks {
     Peaks { component: slope.min(peaks.component), slope, ..*peaks }
 }
 
+/// Advice on a scale that a few steep texels have made too large. None is given on a scale that the caller chose, and single
+/// floats are fine enough on any slope.
 pub(super) fn advice(
     info: &TextureInfo,
-    sample_type: SampleType,
+    options: &BakeOptions,
     shape: EncoderShape,
     looked_at: &Survey,
     peaks: &Peaks,
 ) -> Option<ScaleAdvice> {
+    let sample_type = options.bits.sample_type();
+    let is_chosen = !sample_type.is_float() && options.scale != ScaleChoice::Auto;
+    if is_chosen || sample_type == SampleType::F32 {
+        return None;
+    }
     let limited = peaks_of_most(looked_at, peaks);
     let max_slope = limited.slope;
     let scale = if sample_type.is_float() { info.scale } else { smallest_scale(info.layout, &limited) };

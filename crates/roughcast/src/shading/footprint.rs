@@ -27,8 +27,8 @@
 use super::{FootprintModel, LobeOptions};
 use crate::moments::Covariance;
 
-/// Standard deviation of the pixel filter, in pixels.
-const PIXEL_DEVIATION: f32 = 0.5;
+/// Standard deviation of the pixel filter, a Gaussian, in pixels.
+pub const PIXEL_DEVIATION: f32 = 0.5;
 /// The largest over the mean variance of linear interpolation between two texels: `1/4` over `1/6`.
 const LARGEST_OVER_MEAN: f32 = 1.5;
 /// The level at which the correction ends; from the one before it fades out. On coarser levels a texel's mean changes with all that
@@ -79,6 +79,18 @@ pub struct FilterVariances {
     pub moments: [f32; 2],
     /// For stored variances: the area under each texel alone, since a mean of variances has none of the variance between.
     pub variances: [f32; 2],
+}
+
+impl FilterVariances {
+    /// The level of detail of the texels under the filter, from the area under each, whose variance is `(4^l - 1) / 12`.
+    pub fn level(&self) -> f32 {
+        0.5 * (1.0 + 12.0 * self.variances[0]).log2()
+    }
+
+    /// Whether the filter's texels are so coarse that nothing is corrected: derivatives of the mean are not needed then.
+    pub fn is_beyond_correction(&self) -> bool {
+        self.level() >= LAST_LEVEL
+    }
 }
 
 /// Variances of trilinear interpolation at a level of detail, 0 or more: those of its two levels, mixed as it mixes them.
@@ -195,8 +207,7 @@ pub fn footprint_ratio(
         yy: seen[0] * along[1] * along[1] + seen[1] * across[1] * across[1],
         xy: seen[0] * along[0] * along[1] + seen[1] * across[0] * across[1],
     };
-    // The area under a texel of level l has the variance (4^l - 1) / 12.
-    let level = 0.5 * (1.0 + 12.0 * filter.variances[0]).log2();
+    let level = filter.level();
     let reach = (LAST_LEVEL - level).clamp(0.0, 1.0);
     let [moments, variances] = [filter.moments, filter.variances].map(|variances| {
         let part = pixel_part(changes, variances, pixel);

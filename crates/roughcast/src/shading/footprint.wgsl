@@ -64,6 +64,11 @@ fn footprint_axes(texels_dx: vec2f, texels_dy: vec2f) -> FootprintAxes {
     return FootprintAxes(vec2f(major, minor), along, across);
 }
 
+// The level of detail of the texels under a filter, from the area under each, whose variance is (4^l - 1) / 12.
+fn filter_level(filtered: FilterVariances) -> f32 {
+    return 0.5 * log2(1.0 + 12.0 * filtered.variances.x);
+}
+
 // Of trilinear interpolation at a level of detail, 0 or more.
 fn level_variances(detail: f32) -> FilterVariances {
     let level = max(detail, 0.0);
@@ -132,8 +137,7 @@ fn footprint_ratio(
     let seen = min(pixel, filtered.moments);
     let squares = seen.x * along * along + seen.y * across * across;
     let linear_covariance = vec3f(squares, seen.x * along.x * along.y + seen.y * across.x * across.y);
-    // The area under a texel of level l has the variance (4^l - 1) / 12.
-    let level = 0.5 * log2(1.0 + 12.0 * filtered.variances.x);
+    let level = filter_level(filtered);
     let reach = clamp(LAST_LEVEL - level, 0.0, 1.0);
     let all_moments = pixel_part(changes, filtered.moments, pixel);
     let all_variances = pixel_part(changes, filtered.variances, pixel);

@@ -46,8 +46,8 @@ pub use facet::{
     cosine_power, facet_visible_part, unit_normal,
 };
 pub use footprint::{
-    FilterVariances, FootprintAxes, FootprintRatio, PixelPart, footprint_axes, footprint_ratio,
-    hardware_variances, level_variances, pixel_part,
+    FilterVariances, FootprintAxes, FootprintRatio, PIXEL_DEVIATION, PixelPart, footprint_axes,
+    footprint_ratio, hardware_variances, level_variances, pixel_part,
 };
 pub use gaussian::{
     LARGEST_EXPONENT, LEAST_VARIANCE, SlopeGaussian, gaussian_lobe, gaussian_visible_part, slope_gaussian,

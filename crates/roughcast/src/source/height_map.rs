@@ -1,6 +1,6 @@
 //! Slopes from height maps.
 
-use super::{Reading, count_unusable, load_channel, mend, neighbour};
+use super::{Reading, count_unusable, load_channel, neighbour, repair};
 use crate::Image;
 use crate::options::{Gradient, HeightSense, Wrap};
 use crate::row::SourceScratch;
@@ -42,9 +42,9 @@ pub(super) fn fill(
     if count_unusable(bx, by, *max_slope) == 0 {
         return SourceCounts::default();
     }
-    // The slope before it is repaired as a vector over a z of one: `mended_slope` tells too steep from not finite.
+    // The slope before it is repaired as a vector over a z of one: `repaired_slope` tells too steep from not finite.
     let (raw_x, raw_y) = (bx.to_vec(), by.to_vec());
-    mend(bx, by, *max_slope, Slope::default(), |i| Some([raw_x[i], raw_y[i], 1.0]))
+    repair(bx, by, *max_slope, Slope::default(), |i| Some([raw_x[i], raw_y[i], 1.0]))
 }
 
 /// The mean of all heights that are finite: what stands for the others where heights are stored. 0 where none is.

@@ -25,12 +25,12 @@ fn forward(above: vec3f, here: vec3f, scale: f32) -> vec2f {
 }
 
 // A slope that is not too steep, as it is; others mended.
-fn slope_from_gradient(slope: vec2f, max_slope: f32) -> MendedSlope {
+fn slope_from_gradient(slope: vec2f, max_slope: f32) -> RepairedSlope {
     let squares = rounded2(slope * slope);
     if (squares.x + squares.y) <= max_slope * max_slope {
-        return MendedSlope(slope, FAULT_NONE);
+        return RepairedSlope(slope, FAULT_NONE);
     }
-    return mended_slope(vec3f(slope, 1.0), max_slope);
+    return repaired_slope(vec3f(slope, 1.0), max_slope);
 }
 
 // The index of a neighbour that may be one step outside 0 .. size.

@@ -12,7 +12,7 @@ pub(crate) use resize::resized;
 
 use crate::options::{Kind, MaxSlope, SourceOptions, Wrap};
 use crate::row::{Extra, Row, RowSource, SourceScratch};
-use crate::slope::{Slope, SourceCounts, mended_slope};
+use crate::slope::{Slope, SourceCounts, repaired_slope};
 use crate::vectorised::vectorised;
 use crate::{Image, Samples};
 
@@ -195,9 +195,9 @@ vectorised! {
     }
 }
 
-/// Mends every texel that the fast loops found unusable, except those that are broken, which become `broken`. `component`
+/// Repairs every texel that the fast loops found unusable, except those that are broken, which become `broken`. `component`
 /// gives a texel's vector.
-fn mend(
+fn repair(
     bx: &mut [f32],
     by: &mut [f32],
     max_slope: f32,
@@ -210,7 +210,7 @@ fn mend(
             continue;
         }
         let slope = match component(index) {
-            Some([x, y, z]) => mended_slope(x, y, z, max_slope, &mut counts),
+            Some([x, y, z]) => repaired_slope(x, y, z, max_slope, &mut counts),
             None => {
                 counts.invalid += 1;
                 None

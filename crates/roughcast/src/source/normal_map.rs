@@ -2,7 +2,7 @@
 
 use half::f16;
 
-use super::{Reading, count_unusable, mend, neighbour};
+use super::{Reading, count_unusable, neighbour, repair};
 use crate::options::{NormalChannels, SourceOptions};
 use crate::row::SourceScratch;
 use crate::slope::{Slope, SourceCounts};
@@ -66,8 +66,8 @@ fn fill_unless_broken(
     if count_unusable(bx, by, *max_slope) == 0 {
         return SourceCounts::default();
     }
-    mend(bx, by, *max_slope, BROKEN, |i| {
-        // An infinite component is no empty background: `mended_slope` counts it as what it is.
+    repair(bx, by, *max_slope, BROKEN, |i| {
+        // An infinite component is no empty background: `repaired_slope` counts it as what it is.
         let finite = nx[i].is_finite() && ny[i].is_finite();
         let outside = z_from_xy && finite && nx[i] * nx[i] + ny[i] * ny[i] > invalid_squared;
         (!outside).then_some([nx[i], ny[i], nz[i]])

@@ -7,6 +7,7 @@ mod words;
 use std::collections::BTreeMap;
 
 use super::layers_of;
+use crate::SampleType;
 use crate::named::named_enum;
 use crate::options::{NormalRange, RoughnessTexture, Wrap};
 
@@ -81,18 +82,20 @@ impl Layout {
         }
     }
 
-    /// Whether unsigned texels of the layout hold slopes or their moments, over [`TextureInfo::scale`]. Floats hold the values
-    /// themselves.
-    pub const fn uses_scale(self) -> bool {
-        matches!(
-            self,
-            Layout::Lean | Layout::Clean | Layout::Schilling | Layout::SchillingIsotropic | Layout::Variance
-        )
+    /// Whether the layout holds variances or standard deviations themselves.
+    pub const fn stores_variance(self) -> bool {
+        matches!(self, Layout::Schilling | Layout::SchillingIsotropic | Layout::Variance)
     }
 
-    /// Whether they hold variances or standard deviations, over [`TextureInfo::variance_scale`].
-    pub const fn uses_variance_scale(self) -> bool {
-        matches!(self, Layout::Schilling | Layout::SchillingIsotropic | Layout::Variance)
+    /// Whether texels of this type hold slopes or their moments over [`TextureInfo::scale`]. Floats hold the values themselves.
+    pub fn uses_scale(self, sample_type: SampleType) -> bool {
+        let stores_slopes = matches!(self, Layout::Lean | Layout::Clean) || self.stores_variance();
+        stores_slopes && !sample_type.is_float()
+    }
+
+    /// Whether texels of this type hold variances or standard deviations over [`TextureInfo::variance_scale`].
+    pub fn uses_variance_scale(self, sample_type: SampleType) -> bool {
+        self.stores_variance() && !sample_type.is_float()
     }
 }
 

@@ -101,11 +101,11 @@ fn slope_of_normal(
     let scale = f64::from(options.normal_scale);
     let right = if options.red == Red::Left { -scale } else { scale };
     let up = if options.green == Green::Down { -scale } else { scale };
-    mended(right * nx, up * ny, nz, options, counts)
+    repaired(right * nx, up * ny, nz, options, counts)
 }
 
 /// The slope of a normal, not longer than the options allow; `None` for one that is no surface's.
-fn mended(x: f64, y: f64, z: f64, options: &SourceOptions, counts: &mut SourceCounts) -> Option<[f64; 2]> {
+fn repaired(x: f64, y: f64, z: f64, options: &SourceOptions, counts: &mut SourceCounts) -> Option<[f64; 2]> {
     let longest = f64::from(options.max_slope.before_a_look());
     let across = x.hypot(y);
     if !(x.is_finite() && y.is_finite() && z.is_finite()) {
@@ -171,5 +171,5 @@ fn slope_of_height(
     };
     // A gradient may leave out its own texel, which has no height all the same.
     let hole = if h(0, 0).is_finite() { 0.0 } else { f64::NAN };
-    mended(-slope_right + hole, -slope_up, 1.0, options, counts)
+    repaired(-slope_right + hole, -slope_up, 1.0, options, counts)
 }
