@@ -100,15 +100,15 @@ named_enum! {
 named_enum! {
     /// The form of a lobe, given its density `p` over slopes.
     pub enum Form: "form" {
-        /// The LEAN text's: `2 pi p`, without the factor `1 / h.z^4`. Blinn-Phong is `s cos^s`.
-        Paper = "paper",
-        /// A microfacet distribution, `D = p / h.z^4`: it integrates to 1 over the projected solid angle of its own axis.
-        /// Blinn-Phong is `(s + 2) / (2 pi) cos^s`.
-        Normalised = "normalised",
-        /// `D G2 / n.v`: that distribution with Smith's height-correlated shadowing and masking, so that a quarter of it
+        /// `D G2 / n.v`: the normalised distribution D with Smith's height-correlated shadowing and masking, so that a quarter of it
         /// with Fresnel's term is what a microfacet BRDF reflects of a light's irradiance. Models in the surface frame take
         /// the surface normal for n, those in the frame of the bump the bump normal.
         Physical = "physical",
+        /// A microfacet distribution, `D = p / h.z^4`: it integrates to 1 over the projected solid angle of its own axis.
+        /// Blinn-Phong is `(s + 2) / (2 pi) cos^s`.
+        Normalised = "normalised",
+        /// The LEAN text's: `2 pi p`, without the factor `1 / h.z^4`. Blinn-Phong is `s cos^s`.
+        Paper = "paper",
     }
 }
 

@@ -11,9 +11,9 @@ struct LobeOptions {
     footprint: u32,         // FOOTPRINT_...
 }
 
-const FORM_PAPER: u32 = 0u;         // 2 pi p of the slope density p; cosine lobes s cos^s
-const FORM_NORMALISED: u32 = 1u;    // p / h.z^4: a microfacet distribution; cosine lobes (s + 2) / (2 pi) cos^s
-const FORM_PHYSICAL: u32 = 2u;      // D G2 / n.v: that distribution with shadowing and masking
+const FORM_PHYSICAL: u32 = 0u;      // D G2 / n.v: the distribution below with shadowing and masking
+const FORM_NORMALISED: u32 = 1u;    // D = p / h.z^4 of the slope density p; cosine lobes (s + 2) / (2 pi) cos^s
+const FORM_PAPER: u32 = 2u;         // 2 pi p; cosine lobes s cos^s
 
 const BASE_PLANE: u32 = 0u;         // variance 1 / s in the plane of the surface
 const BASE_FACET: u32 = 1u;         // the lobe of a facet of slope B, seen there

@@ -290,7 +290,7 @@ mod tests {
             assert_eq!(words(LobeOptions { roughness_stored: *stored, ..default })[5], number(name));
         }
         use crate::shading::{BaseLobe, FootprintModel, Form, Masking, Repair};
-        for (form, name) in Form::ALL.iter().copied().zip(["FORM_PAPER", "FORM_NORMALISED", "FORM_PHYSICAL"])
+        for (form, name) in Form::ALL.iter().copied().zip(["FORM_PHYSICAL", "FORM_NORMALISED", "FORM_PAPER"])
         {
             assert_eq!(words(LobeOptions { form, ..default })[1], number(name));
         }
@@ -312,6 +312,8 @@ mod tests {
         ] {
             assert_eq!(words(LobeOptions { footprint, ..default })[7], number(name));
         }
+        // A caller that leaves all choices zero has the defaults.
+        assert_eq!(words(default)[1..], [0; 7]);
         assert_eq!(f32::from_bits(default.to_words()[0]), default.specular_power);
     }
 }
