@@ -34,7 +34,8 @@ def errors(program: Path, image: Path, options: list[str]) -> dict[tuple[str, st
         command = [program, "compare", image, "-o", f"{folder}/report", "--frames", "0", "--filters", "anisotropic"]
         done = subprocess.run([*command, *options], capture_output=True, text=True)
         if done.returncode != 0:
-            print(f"{image.name}: {(done.stderr.strip().splitlines() or ["it was stopped without a word"])[-1]}", file=sys.stderr)
+            said = done.stderr.strip().splitlines() or ["it was stopped without a word"]
+            print(f"{image.name}: {said[-1]}", file=sys.stderr)
             return {}
         results = json.loads(Path(folder, "report", "results.json").read_text())
     return {(row["view"], row["method"]): row["rmse"] for row in results if row["map"] == image.name}
