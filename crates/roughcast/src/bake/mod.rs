@@ -42,7 +42,7 @@ pub struct ScaleAdvice {
     pub factor: f32,
 }
 
-/// A largest slope that was lowered because a few steep texels cost much: see [`MaxSlope::Auto`].
+/// A largest slope that was lowered because a few steep texels cost much: see [`MaxSlope::Auto`](crate::MaxSlope::Auto).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlopeLimit {
     /// The largest slope.
@@ -64,9 +64,10 @@ pub struct BakeReport {
     pub scale: f32,
     /// Range of the stored variances or deviations; 1 where there are none.
     pub variance_scale: f32,
-    /// The largest slope allowed: that of the options, what a fixed scale can hold, or what was found for [`MaxSlope::Auto`].
+    /// The largest slope allowed: that of the options, what a fixed scale can hold, or what
+    /// [`MaxSlope::Auto`](crate::MaxSlope::Auto) has found.
     pub max_slope: f32,
-    /// Set where [`MaxSlope::Auto`] has lowered it.
+    /// Set where [`MaxSlope::Auto`](crate::MaxSlope::Auto) has lowered it.
     pub limit: Option<SlopeLimit>,
     /// Length of the steepest slope.
     pub steepest: f32,
