@@ -6,7 +6,7 @@ use crate::options::{BakeOptions, NormalRange, RoughnessTexture, SourceOptions};
 use crate::source::{BaseRoughness, check_numbers};
 use crate::texture::{Layout, TextureInfo};
 
-/// Checked options and what follows from them, for those who bake by other means than [`crate::bake`], such as a GPU.
+/// Checked options and what follows from them, for those who bake by other means than [`crate::bake()`], such as a GPU.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BakePlan {
     /// How the map is read. The largest slope is lowered to what the texels can hold; it is only [`MaxSlope::Auto`](crate::MaxSlope::Auto) where it

@@ -7,7 +7,7 @@ use crate::options::Wrap;
 use crate::row::Extra;
 use crate::texture::RoughnessStored;
 
-/// A roughness stored in an image. [`crate::bake`] resamples one whose size differs from that of the map.
+/// A roughness stored in an image. [`crate::bake()`] resamples one whose size differs from that of the map.
 #[derive(Clone, Copy, Debug)]
 pub struct RoughnessMap<'a> {
     /// The pixels.
