@@ -63,6 +63,7 @@
 
 mod bake;
 pub mod detect;
+mod distribution;
 mod image;
 mod moments;
 mod named;
@@ -82,8 +83,9 @@ pub use bake::{
     BakeError, BakePlan, BakeReport, Baked, ScaleAdvice, SlopeLimit, bake, bake_reusing, plan_bake,
     refuse_filter,
 };
+pub use distribution::{Distribution, MAX_GAUSSIANS, WeightedGaussian};
 pub use image::{Image, ImageError, SampleType, Samples};
-pub use moments::{Covariance, Moments};
+pub use moments::{Covariance, Moments, SlopeMatrix};
 pub use named::{Named, UnknownName};
 pub use options::{
     AnisotropyOutput, BakeOptions, Bits, Blocks, Gradient, Green, HeightSense, Kind, Lobe, MaxSlope,

@@ -2,6 +2,8 @@
 //!
 //! Source: LEAN mapping, Eq. 2 to 5. Order of second moments everywhere: xx, yy, xy.
 
+use std::ops::{Add, Mul, Sub};
+
 use crate::slope::Slope;
 
 /// Mean slope and raw second moments. Linear: any non-negative filter may average them.
@@ -101,9 +103,104 @@ impl Covariance {
     }
 }
 
+/// A 2x2 matrix, row by row, that takes slopes from one frame to another: `new = matrix * old`.
+pub type SlopeMatrix = [[f32; 2]; 2];
+
+impl Moments {
+    /// The moments of the transformed slopes: `A B` and `A M Aᵀ`. Exact for any distribution, since a change of frame is
+    /// linear in slopes.
+    #[must_use]
+    pub fn transformed(self, matrix: SlopeMatrix) -> Self {
+        let second = Covariance { xx: self.xx, yy: self.yy, xy: self.xy }.transformed(matrix);
+        Self { mean: self.mean.transformed(matrix), xx: second.xx, yy: second.yy, xy: second.xy }
+    }
+}
+
+impl Covariance {
+    /// The covariance of the transformed slopes, `A Σ Aᵀ`.
+    #[must_use]
+    pub fn transformed(self, [[a, b], [c, d]]: SlopeMatrix) -> Self {
+        let Self { xx, yy, xy } = self;
+        Self {
+            xx: a * a * xx + 2.0 * a * b * xy + b * b * yy,
+            yy: c * c * xx + 2.0 * c * d * xy + d * d * yy,
+            xy: a * c * xx + (a * d + b * c) * xy + b * d * yy,
+        }
+    }
+}
+
+impl Add for Moments {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            mean: self.mean + other.mean,
+            xx: self.xx + other.xx,
+            yy: self.yy + other.yy,
+            xy: self.xy + other.xy,
+        }
+    }
+}
+
+impl Mul<f32> for Moments {
+    type Output = Self;
+
+    fn mul(self, weight: f32) -> Self {
+        Self { mean: self.mean * weight, xx: self.xx * weight, yy: self.yy * weight, xy: self.xy * weight }
+    }
+}
+
+impl Add for Covariance {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { xx: self.xx + other.xx, yy: self.yy + other.yy, xy: self.xy + other.xy }
+    }
+}
+
+impl Sub for Covariance {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self { xx: self.xx - other.xx, yy: self.yy - other.yy, xy: self.xy - other.xy }
+    }
+}
+
+impl Mul<f32> for Covariance {
+    type Output = Self;
+
+    fn mul(self, factor: f32) -> Self {
+        Self { xx: self.xx * factor, yy: self.yy * factor, xy: self.xy * factor }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_change_of_frame_transforms_every_slope() {
+        /// A few f32 roundings of numbers near one.
+        const ROUNDING: f32 = 1e-6;
+        let slopes = [Slope { x: 0.3, y: -0.2 }, Slope { x: -0.7, y: 0.4 }, Slope { x: 0.1, y: 0.9 }];
+        let mean_of = |slopes: &[Slope]| {
+            let sum = slopes.iter().fold(Moments::default(), |sum, slope| sum + Moments::of_slope(*slope));
+            sum * (1.0 / slopes.len() as f32)
+        };
+        // A shear, a mirror, and a turn with a stretch.
+        for matrix in [[[1.0, 0.7], [0.0, 1.0]], [[-1.0, 0.0], [0.0, 1.0]], [[0.8, -0.6], [1.2, 1.6]]] {
+            let one_by_one = mean_of(&slopes.map(|slope| slope.transformed(matrix)));
+            let together = mean_of(&slopes).transformed(matrix);
+            let pairs = [
+                (one_by_one.mean.x, together.mean.x),
+                (one_by_one.mean.y, together.mean.y),
+                (one_by_one.xx, together.xx),
+                (one_by_one.yy, together.yy),
+                (one_by_one.xy, together.xy),
+            ];
+            assert!(pairs.iter().all(|(a, b)| (a - b).abs() < ROUNDING), "{matrix:?}: {pairs:?}");
+        }
+    }
 
     #[test]
     fn the_covariance_of_one_slope_is_nothing() {

@@ -1,5 +1,9 @@
 //! Slopes and normals in the tangent frame: x right, y up, z out of the surface.
 
+use std::ops::{Add, Mul, Neg, Sub};
+
+use crate::moments::SlopeMatrix;
+
 /// The slope of a surface element, `(N.x / N.z, N.y / N.z)`; for a height field minus its gradient. No unit.
 ///
 /// Source: LEAN mapping, Eq. 3.
@@ -11,6 +15,46 @@ pub struct Slope {
     pub y: f32,
 }
 
+impl Slope {
+    /// The slope in another frame: `matrix * self`.
+    #[must_use]
+    pub fn transformed(self, [[a, b], [c, d]]: SlopeMatrix) -> Self {
+        Self { x: a * self.x + b * self.y, y: c * self.x + d * self.y }
+    }
+}
+
+impl Add for Slope {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { x: self.x + other.x, y: self.y + other.y }
+    }
+}
+
+impl Sub for Slope {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self { x: self.x - other.x, y: self.y - other.y }
+    }
+}
+
+impl Neg for Slope {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self { x: -self.x, y: -self.y }
+    }
+}
+
+impl Mul<f32> for Slope {
+    type Output = Self;
+
+    fn mul(self, factor: f32) -> Self {
+        Self { x: self.x * factor, y: self.y * factor }
+    }
+}
+
 /// A direction out of the surface; unit length where a function says so.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Normal {
@@ -20,6 +64,24 @@ pub struct Normal {
     pub y: f32,
     /// Out of the surface.
     pub z: f32,
+}
+
+impl Normal {
+    /// The components.
+    pub fn to_array(self) -> [f32; 3] {
+        [self.x, self.y, self.z]
+    }
+
+    /// The length: 1, or what averaging has left of it.
+    pub fn length(self) -> f32 {
+        (self.x * self.x + self.y * self.y + self.z * self.z).sqrt()
+    }
+}
+
+impl From<[f32; 3]> for Normal {
+    fn from([x, y, z]: [f32; 3]) -> Self {
+        Self { x, y, z }
+    }
 }
 
 /// The slope of a normal with `z > 0`; its length does not matter.

@@ -1,0 +1,162 @@
+//! The distribution of slopes under a footprint: what every source of bumps answers, and what every shading model takes.
+//!
+//! One Gaussian describes the bumps of LEAN and its relatives; a mixture of up to four describes bumps of several kinds under one
+//! footprint. The filtered normal is kept beside them: diffuse light needs its length, which the Gaussians do not determine.
+
+use crate::moments::{Covariance, Moments, SlopeMatrix};
+use crate::slope::{Normal, Slope, normal_from_slope};
+
+/// The most Gaussians of a distribution.
+pub const MAX_GAUSSIANS: usize = 4;
+
+/// One Gaussian of a distribution of slopes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WeightedGaussian {
+    /// Its part of the whole, 0 to 1.
+    pub weight: f32,
+    /// Mean slope.
+    pub mean: Slope,
+    /// Covariance. As a texture stores it: rounding may have made it one of no distribution.
+    pub covariance: Covariance,
+}
+
+/// A list of one to [`MAX_GAUSSIANS`] weighted Gaussians of slopes and the filtered normal. The weights sum to 1.
+///
+/// ```
+/// use roughcast::{Covariance, Distribution, Slope};
+///
+/// let bumps = Distribution::gaussian(Slope { x: 0.5, y: 0.0 }, Covariance::isotropic(0.01));
+/// assert_eq!(bumps.gaussians().len(), 1);
+/// // In a frame that is mirrored along x:
+/// let mirrored = bumps.transformed([[-1.0, 0.0], [0.0, 1.0]]);
+/// assert_eq!(mirrored.moments().mean.x, -0.5);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Distribution {
+    normal: Normal,
+    count: usize,
+    gaussians: [WeightedGaussian; MAX_GAUSSIANS],
+}
+
+impl Distribution {
+    /// A single slope: no bumps are hidden.
+    pub fn of_slope(slope: Slope) -> Self {
+        Self::gaussian(slope, Covariance::default())
+    }
+
+    /// One Gaussian. Its filtered normal is the unit normal of the mean slope; see [`Distribution::with_normal`].
+    pub fn gaussian(mean: Slope, covariance: Covariance) -> Self {
+        let mut gaussians = [WeightedGaussian::default(); MAX_GAUSSIANS];
+        gaussians[0] = WeightedGaussian { weight: 1.0, mean, covariance };
+        Self { normal: normal_from_slope(mean), count: 1, gaussians }
+    }
+
+    /// A mixture, with weights as given: they should sum to 1. The filtered normal is the unit normal of the mean slope. `None`
+    /// for no Gaussian, and for more than [`MAX_GAUSSIANS`].
+    pub fn mixture(gaussians: &[WeightedGaussian]) -> Option<Self> {
+        if !(1..=MAX_GAUSSIANS).contains(&gaussians.len()) {
+            return None;
+        }
+        let mut mixture = Self::of_slope(Slope::default());
+        mixture.count = gaussians.len();
+        mixture.gaussians[..gaussians.len()].copy_from_slice(gaussians);
+        Some(mixture.with_normal(normal_from_slope(mixture.moments().mean)))
+    }
+
+    /// The same with another filtered normal.
+    #[must_use]
+    pub fn with_normal(self, normal: Normal) -> Self {
+        Self { normal, ..self }
+    }
+
+    /// The filtered normal for diffuse light, at the length that averaging has left it.
+    pub fn normal(&self) -> Normal {
+        self.normal
+    }
+
+    /// The Gaussians, one to [`MAX_GAUSSIANS`].
+    #[inline]
+    pub fn gaussians(&self) -> &[WeightedGaussian] {
+        &self.gaussians[..self.count]
+    }
+
+    /// The same with each covariance replaced by what `change` makes of it.
+    #[must_use]
+    #[inline]
+    pub fn map_covariances(mut self, change: impl Fn(&WeightedGaussian) -> Covariance) -> Self {
+        for gaussian in &mut self.gaussians[..self.count] {
+            gaussian.covariance = change(gaussian);
+        }
+        self
+    }
+
+    /// The moments of the whole.
+    pub fn moments(&self) -> Moments {
+        self.gaussians().iter().fold(Moments::default(), |sum, gaussian| {
+            sum + Moments::from_mean_and_covariance(gaussian.mean, gaussian.covariance) * gaussian.weight
+        })
+    }
+
+    /// The distribution in another frame of the same tangent plane. The filtered normal keeps its length; its direction is that of
+    /// its transformed slope.
+    #[must_use]
+    pub fn transformed(mut self, matrix: SlopeMatrix) -> Self {
+        for gaussian in &mut self.gaussians[..self.count] {
+            gaussian.mean = gaussian.mean.transformed(matrix);
+            gaussian.covariance = gaussian.covariance.transformed(matrix);
+        }
+        let length = self.normal.length();
+        let Slope { x, y } = Slope { x: self.normal.x, y: self.normal.y }.transformed(matrix);
+        let turned = Normal { x, y, z: self.normal.z };
+        let scale = if turned.length() > 0.0 { length / turned.length() } else { 0.0 };
+        self.normal = Normal { x: x * scale, y: y * scale, z: turned.z * scale };
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A few f32 roundings of numbers near one.
+    const ROUNDING: f32 = 1e-6;
+
+    #[test]
+    fn the_covariance_of_a_mixture_is_that_within_plus_that_between() {
+        let part = |weight, x, variance| WeightedGaussian {
+            weight,
+            mean: Slope { x, y: 0.1 },
+            covariance: Covariance::isotropic(variance),
+        };
+        let mixture =
+            Distribution::mixture(&[part(0.25, -0.6, 0.02), part(0.75, 0.2, 0.04)]).expect("two parts");
+        let covariance = mixture.moments().covariance();
+        // Law of total covariance: 0.25 * 0.02 + 0.75 * 0.04 within, 0.25 * 0.75 * 0.8^2 between.
+        assert!((covariance.xx - (0.035 + 0.12)).abs() < ROUNDING, "{covariance:?}");
+        assert!((covariance.yy - 0.035).abs() < ROUNDING && covariance.xy.abs() < ROUNDING, "{covariance:?}");
+    }
+
+    #[test]
+    fn a_mixture_has_one_to_four_parts() {
+        let part = WeightedGaussian { weight: 0.2, ..WeightedGaussian::default() };
+        for count in 0..=MAX_GAUSSIANS + 1 {
+            let mixture = Distribution::mixture(&vec![part; count]);
+            assert_eq!(
+                mixture.map(|m| m.gaussians().len()),
+                (1..=MAX_GAUSSIANS).contains(&count).then_some(count)
+            );
+        }
+    }
+
+    #[test]
+    fn a_change_of_frame_keeps_the_length_of_the_normal() {
+        let normal = Normal { x: 0.3, y: -0.1, z: 0.8 };
+        let turned = Distribution::of_slope(Slope::default())
+            .with_normal(normal)
+            .transformed([[0.5, 0.2], [0.0, -2.0]]);
+        assert!((turned.normal().length() - normal.length()).abs() < ROUNDING);
+        let slope = Slope { x: 0.3 / 0.8, y: -0.1 / 0.8 }.transformed([[0.5, 0.2], [0.0, -2.0]]);
+        let Normal { x, y, z } = turned.normal();
+        assert!((x / z - slope.x).abs() < ROUNDING && (y / z - slope.y).abs() < ROUNDING);
+    }
+}
