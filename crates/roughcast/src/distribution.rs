@@ -5,6 +5,7 @@
 
 use crate::moments::{Covariance, Moments, SlopeMatrix};
 use crate::slope::{Normal, Slope, normal_from_slope};
+use crate::texture::Base;
 
 /// The most Gaussians of a distribution.
 pub const MAX_GAUSSIANS: usize = 4;
@@ -34,6 +35,7 @@ pub struct WeightedGaussian {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distribution {
     normal: Normal,
+    base: Base,
     count: usize,
     gaussians: [WeightedGaussian; MAX_GAUSSIANS],
 }
@@ -44,11 +46,18 @@ impl Distribution {
         Self::gaussian(slope, Covariance::default())
     }
 
-    /// One Gaussian. Its filtered normal is the unit normal of the mean slope; see [`Distribution::with_normal`].
+    /// One Gaussian, whose filtered normal is the unit normal of the mean slope.
+    #[inline]
     pub fn gaussian(mean: Slope, covariance: Covariance) -> Self {
+        Self::new(normal_from_slope(mean), mean, covariance)
+    }
+
+    /// One Gaussian beside a filtered normal of any length. The base roughness is not in it.
+    #[inline]
+    pub fn new(normal: Normal, mean: Slope, covariance: Covariance) -> Self {
         let mut gaussians = [WeightedGaussian::default(); MAX_GAUSSIANS];
         gaussians[0] = WeightedGaussian { weight: 1.0, mean, covariance };
-        Self { normal: normal_from_slope(mean), count: 1, gaussians }
+        Self { normal, base: Base::None, count: 1, gaussians }
     }
 
     /// A mixture, with weights as given: they should sum to 1. The filtered normal is the unit normal of the mean slope. `None`
@@ -67,6 +76,17 @@ impl Distribution {
     #[must_use]
     pub fn with_normal(self, normal: Normal) -> Self {
         Self { normal, ..self }
+    }
+
+    /// The same, with another statement of where the base roughness is: [`Base::Baked`] where the covariances contain it already.
+    #[must_use]
+    pub fn with_base(self, base: Base) -> Self {
+        Self { base, ..self }
+    }
+
+    /// Whether the covariances contain the base roughness.
+    pub fn base(&self) -> Base {
+        self.base
     }
 
     /// The filtered normal for diffuse light, at the length that averaging has left it.
@@ -88,6 +108,21 @@ impl Distribution {
             gaussian.covariance = change(gaussian);
         }
         self
+    }
+
+    /// The Gaussian with the mean and the covariance of the whole.
+    #[inline]
+    pub fn whole(&self) -> WeightedGaussian {
+        if self.count == 1 {
+            return self.gaussians[0];
+        }
+        let parts = self.gaussians().iter();
+        let mean = parts.clone().fold(Slope::default(), |sum, part| sum + part.mean * part.weight);
+        let covariance = parts.fold(Covariance::default(), |sum, part| {
+            let Slope { x, y } = part.mean - mean;
+            sum + (part.covariance + Covariance { xx: x * x, yy: y * y, xy: x * y }) * part.weight
+        });
+        WeightedGaussian { weight: 1.0, mean, covariance }
     }
 
     /// The moments of the whole.
@@ -130,7 +165,9 @@ mod tests {
         };
         let mixture =
             Distribution::mixture(&[part(0.25, -0.6, 0.02), part(0.75, 0.2, 0.04)]).expect("two parts");
-        let covariance = mixture.moments().covariance();
+        let covariance = mixture.whole().covariance;
+        let of_moments = mixture.moments().covariance();
+        assert!((covariance - of_moments).trace().abs() < ROUNDING, "{covariance:?} and {of_moments:?}");
         // Law of total covariance: 0.25 * 0.02 + 0.75 * 0.04 within, 0.25 * 0.75 * 0.8^2 between.
         assert!((covariance.xx - (0.035 + 0.12)).abs() < ROUNDING, "{covariance:?}");
         assert!((covariance.yy - 0.035).abs() < ROUNDING && covariance.xy.abs() < ROUNDING, "{covariance:?}");

@@ -26,17 +26,17 @@ pub fn base_covariance(slope: Slope, options: &LobeOptions) -> Covariance {
     }
 }
 
-/// The variance along each axis that the base roughness has in a map: none where it is added at shading.
-pub fn base_in_map(options: &LobeOptions) -> f32 {
-    match options.base_in_maps {
+/// The variance along each axis that the base roughness has in a distribution: none where it is added at shading.
+pub fn base_in_map(base: Base, options: &LobeOptions) -> f32 {
+    match base {
         Base::None => 0.0,
         Base::Baked => 1.0 / options.specular_power,
     }
 }
 
-/// The base roughness that is still to be added to what a map holds: none where it is in the map.
-pub fn base_to_add(mean: Slope, options: &LobeOptions) -> Covariance {
-    match options.base_in_maps {
+/// The base roughness that is still to be added to a distribution: none where it is in it.
+pub fn base_to_add(mean: Slope, base: Base, options: &LobeOptions) -> Covariance {
+    match base {
         Base::None => base_covariance(mean, options),
         Base::Baked => Covariance::default(),
     }

@@ -8,12 +8,12 @@ fn base_covariance(slope: vec2f, options: LobeOptions) -> vec3f {
     return select(vec3f(variance, variance, 0.0), facet, options.base == BASE_FACET);
 }
 
-// The variance along each axis that it has in a map.
-fn base_in_map(options: LobeOptions) -> f32 {
-    return select(0.0, 1.0 / options.specular_power, options.base_in_maps == MAPS_WITH_BASE);
+// The variance along each axis that it has in maps.
+fn base_in_map(base: u32, options: LobeOptions) -> f32 {
+    return select(0.0, 1.0 / options.specular_power, base == MAPS_WITH_BASE);
 }
 
-// What is still to be added to what a map holds.
-fn base_to_add(mean: vec2f, options: LobeOptions) -> vec3f {
-    return select(base_covariance(mean, options), vec3f(0.0), options.base_in_maps == MAPS_WITH_BASE);
+// What is still to be added to what maps hold.
+fn base_to_add(mean: vec2f, base: u32, options: LobeOptions) -> vec3f {
+    return select(base_covariance(mean, options), vec3f(0.0), base == MAPS_WITH_BASE);
 }

@@ -1,7 +1,7 @@
 // Beckmann's distribution in the frame of the filtered bump normal, of variance 1 / s.
 
-fn beckmann_surface(normal: vec3f, options: LobeOptions) -> BumpFacet {
-    return bump_facet(normal, options.specular_power);
+fn beckmann_surface(distribution: Distribution, options: LobeOptions) -> BumpFacet {
+    return bump_facet(distribution.normal, options.specular_power);
 }
 
 fn beckmann_lobe(surface: BumpFacet, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {

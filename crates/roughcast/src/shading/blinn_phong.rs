@@ -6,10 +6,11 @@
 use super::facet::{BumpFacet, bump_facet, cosine_lobe, facet_visible_part};
 use super::vector::{Vector, half_vector};
 use super::{Form, LobeOptions};
+use crate::distribution::Distribution;
 
-/// The facet of a filtered normal, of any length.
-pub fn blinn_phong_surface(normal: Vector, options: &LobeOptions) -> BumpFacet {
-    bump_facet(normal, options.specular_power)
+/// The facet of a distribution's filtered normal.
+pub fn blinn_phong_surface(distribution: &Distribution, options: &LobeOptions) -> BumpFacet {
+    bump_facet(distribution.normal().to_array(), options.specular_power)
 }
 
 /// The lobe for unit directions to the viewer and to the light. Normalised about the bump normal.

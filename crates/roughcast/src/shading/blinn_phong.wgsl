@@ -1,7 +1,7 @@
 // Blinn-Phong: a cosine lobe about the filtered bump normal, in the half vector.
 
-fn blinn_phong_surface(normal: vec3f, options: LobeOptions) -> BumpFacet {
-    return bump_facet(normal, options.specular_power);
+fn blinn_phong_surface(distribution: Distribution, options: LobeOptions) -> BumpFacet {
+    return bump_facet(distribution.normal, options.specular_power);
 }
 
 fn blinn_phong_lobe(surface: BumpFacet, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {

@@ -3,8 +3,6 @@
 use super::masking::{gaussian_lambda, visible_part};
 use super::vector::{Vector, cross, dot, normalize};
 use super::{Form, LobeOptions, Masking};
-use crate::texture::Packing;
-use crate::texture::packing::unpack;
 
 /// Filtered normals are not flatter than this: steeper than any slope that an eight-bit normal can tell from horizontal.
 pub const LEAST_NORMAL_Z: f32 = crate::texture::pbr::FLATTEST;
@@ -32,11 +30,6 @@ pub fn bump_facet(normal: Vector, specular_power: f32) -> BumpFacet {
 /// The direction of a filtered normal: z at least [`LEAST_NORMAL_Z`], unit length.
 pub fn unit_normal(normal: Vector) -> Vector {
     normalize([normal[0], normal[1], normal[2].max(LEAST_NORMAL_Z)])
-}
-
-/// The filtered normal that LEAN's first texture holds; its length is what averaging has left of it.
-pub fn bump_normal(lean1: [f32; 4], packing: &Packing) -> Vector {
-    [unpack(lean1[0], packing.unit), unpack(lean1[1], packing.unit), lean1[2]]
 }
 
 /// `cos^exponent` of the angle between two directions of any length, zero from a right angle on.

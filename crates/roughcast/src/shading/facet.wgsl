@@ -24,11 +24,6 @@ fn bump_facet(normal: vec3f, specular_power: f32) -> BumpFacet {
     return BumpFacet(unit_normal(normal), specular_power);
 }
 
-// The filtered normal that LEAN's first texture holds; its length is what averaging has left of it. For diffuse light.
-fn bump_normal(lean1: vec4f, packing: Packing) -> vec3f {
-    return vec3f(lean1.xy * packing.unit.x + packing.unit.y, lean1.z);
-}
-
 // log(1 + x) for x >= 0, also where 1 + x would round x away: 2 artanh(x / (2 + x)), as a series for small x.
 fn log_one_plus(x: f32) -> f32 {
     let z = x / (2.0 + x);

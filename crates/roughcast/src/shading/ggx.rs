@@ -11,12 +11,12 @@ use super::gaussian::LEAST_VARIANCE;
 use super::masking::visible_part;
 use super::vector::{Vector, cross, dot, half_vector, normalize, scaled, sum};
 use super::{Form, LobeOptions};
-use crate::source::variance_from_stored;
-use crate::texture::packing::unpack;
-use crate::texture::{Base, Packing, RoughnessStored};
+use crate::distribution::Distribution;
+use crate::moments::Covariance;
+use crate::texture::Base;
 
-/// Stored exponents below this count as it: its α of about 45 is rougher than anything that is stored.
-pub const LEAST_STORED_POWER: f32 = 1e-3;
+/// Squared lengths of a direction below which it counts as none: of differences of variances, which are below 1e-18.
+const LEAST_SQUARED_DIRECTION: f32 = 1e-36;
 
 /// A facet of GGX.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,53 +31,59 @@ pub struct GgxSurface {
     pub alpha_across: f32,
 }
 
-/// The unit normal that the normal texture holds. Where no z is stored (two-channel textures give 0 for it), it follows
-/// from x and y.
-pub fn ggx_normal(normal: [f32; 4], packing: &Packing) -> Vector {
-    let [x, y, z] = [0, 1, 2].map(|i| unpack(normal[i], packing.unit));
-    let z = if z > 0.0 { z } else { (1.0 - x * x - y * y).max(0.0).sqrt() };
-    unit_normal([x, y, z])
+/// The variances of a covariance along its principal axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PrincipalAxes {
+    /// Unit vector along the larger variance; the x axis where both are equal.
+    pub direction: [f32; 2],
+    /// The larger variance.
+    pub larger: f32,
+    /// The smaller variance.
+    pub smaller: f32,
 }
 
-/// The facet that filtered texels of a material hold: the normal, the roughness and, for anisotropic maps, direction and
-/// strength of the anisotropy. Without these pass [`ISOTROPIC`].
-pub fn ggx_surface(
-    normal: [f32; 4],
-    roughness: f32,
-    anisotropy: [f32; 4],
-    packing: &Packing,
-    options: &LobeOptions,
-) -> GgxSurface {
-    let roughness = match options.roughness_stored {
-        RoughnessStored::SpecularPower => roughness.max(LEAST_STORED_POWER),
-        _ => roughness,
+/// The principal axes of a positive semidefinite covariance. The smaller variance keeps its digits beside a much larger one.
+pub fn principal_axes(covariance: Covariance) -> PrincipalAxes {
+    let Covariance { xx, yy, xy } = covariance;
+    let half_difference = 0.5 * (xx - yy);
+    let radius = (half_difference * half_difference + xy * xy).sqrt();
+    let mean = 0.5 * (xx + yy);
+    let larger = mean + radius;
+    let smaller = if radius <= 0.5 * mean {
+        mean - radius
+    } else {
+        let determinant = f64::from(xx) * f64::from(yy) - f64::from(xy) * f64::from(xy);
+        (determinant / f64::from(larger)) as f32
     };
-    let added = match options.base_in_maps {
-        Base::None => 1.0 / options.specular_power,
-        Base::Baked => 0.0,
+    // The eigenvector of the larger, in the form whose first component does not cancel.
+    let [x, y] =
+        if half_difference >= 0.0 { [half_difference + radius, xy] } else { [xy, radius - half_difference] };
+    let squared = x * x + y * y;
+    let direction = if squared > LEAST_SQUARED_DIRECTION {
+        let inverse = 1.0 / squared.sqrt();
+        [x * inverse, y * inverse]
+    } else {
+        [1.0, 0.0]
     };
-    let variance = variance_from_stored(roughness, options.roughness_stored).max(0.0) + added;
-    let across = (2.0 * variance.max(LEAST_VARIANCE)).sqrt();
-    // Widths above 1 are left alone, as the baker counts them as 1.
-    let along = across + (1.0 - across).max(0.0) * anisotropy[2] * anisotropy[2];
-    let direction = [unpack(anisotropy[0], packing.unit), unpack(anisotropy[1], packing.unit)];
-    ggx_facet(ggx_normal(normal, packing), direction, along, across)
+    PrincipalAxes { direction, larger, smaller }
 }
 
-/// The anisotropy texel of a material that has none, for any packing: its strength is zero.
-pub const ISOTROPIC: [f32; 4] = [1.0, 0.5, 0.0, 1.0];
-
-/// GGX as a base lobe about a normal of any length: `α = sqrt(2 / s)`.
-pub fn ggx_surface_of_normal(normal: Vector, options: &LobeOptions) -> GgxSurface {
-    let alpha = (2.0 / options.specular_power).sqrt();
-    ggx_facet(unit_normal(normal), [1.0, 0.0], alpha, alpha)
+/// The facet of a distribution, base roughness included: `α² = 2σ²` along each principal axis of the covariance.
+pub fn ggx_surface(distribution: &Distribution, options: &LobeOptions) -> GgxSurface {
+    let bumps = distribution.whole().covariance.positive_semidefinite();
+    let base = match distribution.base() {
+        Base::None => Covariance::isotropic(1.0 / options.specular_power),
+        Base::Baked => Covariance::default(),
+    };
+    let axes = principal_axes(bumps + base);
+    let [along, across] =
+        [axes.larger, axes.smaller].map(|variance| (2.0 * variance.max(LEAST_VARIANCE)).sqrt());
+    ggx_facet(unit_normal(distribution.normal().to_array()), axes.direction, along, across)
 }
 
-/// A facet whose tangent is the direction in the surface's plane, made orthogonal to the bump normal; the x axis where
-/// filtering has left no direction.
-fn ggx_facet(normal: Vector, direction: [f32; 2], along: f32, across: f32) -> GgxSurface {
-    let [x, y] = direction;
-    let direction = if x * x + y * y > LEAST_COSINE { [x, y, 0.0] } else { [1.0, 0.0, 0.0] };
+/// A facet whose tangent is the direction in the surface's plane, made orthogonal to the bump normal.
+fn ggx_facet(normal: Vector, [x, y]: [f32; 2], along: f32, across: f32) -> GgxSurface {
+    let direction = [x, y, 0.0];
     // The normal is never in the surface's plane, so something is left.
     let in_plane = sum(direction, scaled(normal, -dot(normal, direction)));
     GgxSurface { normal, alpha_along: along, tangent: normalize(in_plane), alpha_across: across }

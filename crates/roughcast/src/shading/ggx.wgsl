@@ -1,7 +1,7 @@
 // GGX with the baked roughness of a physically based material, isotropic or anisotropic.
 
-// Stored exponents below this count as it.
-const LEAST_STORED_POWER: f32 = 1e-3;
+// Squared lengths of a direction below which it counts as none: of differences of variances, which are below 1e-18.
+const LEAST_SQUARED_DIRECTION: f32 = 1e-36;
 
 struct GgxSurface {
     normal: vec3f,          // unit bump normal
@@ -10,64 +10,46 @@ struct GgxSurface {
     alpha_across: f32,      // width across the tangent
 }
 
-// Slope variance per axis of a roughness as stored: alpha^2 / 2.
-fn variance_from_stored(stored: f32, roughness_stored: u32) -> f32 {
-    let rough = select(stored, 1.0 - stored, roughness_stored == STORED_GLOSS);
-    let square = stored * stored;
-    let perceptual = rough * rough;
-    switch roughness_stored {
-        case STORED_ALPHA: {
-            return 0.5 * square;
-        }
-        case STORED_ALPHA_SQUARED: {
-            return 0.5 * stored;
-        }
-        case STORED_SPECULAR_POWER: {
-            return 1.0 / max(stored, LEAST_STORED_POWER);
-        }
-        default: {
-            return 0.5 * perceptual * perceptual;
-        }
-    }
+// The larger and the smaller variance of a covariance, and the direction of the larger: x where both are equal.
+struct PrincipalAxes {
+    direction: vec2f,
+    larger: f32,
+    smaller: f32,
 }
 
-// A facet whose tangent is a direction in the surface's plane, made orthogonal to the bump normal; the x axis where there
-// is no direction.
+fn principal_axes(sigma: vec3f) -> PrincipalAxes {
+    let half_difference = 0.5 * (sigma.x - sigma.y);
+    let radius = sqrt(half_difference * half_difference + sigma.z * sigma.z);
+    let mean = 0.5 * (sigma.x + sigma.y);
+    let larger = mean + radius;
+    // The difference keeps its digits while it is large; the determinant, whose products are rounded once where fma does so, beyond.
+    let square = sigma.z * sigma.z;
+    let determinant = fma(sigma.x, sigma.y, -square) + fma(-sigma.z, sigma.z, square);
+    let smaller = select(determinant / larger, mean - radius, radius <= 0.5 * mean);
+    // The eigenvector of the larger, in the form whose first component does not cancel.
+    let wide = vec2f(half_difference + radius, sigma.z);
+    let tall = vec2f(sigma.z, radius - half_difference);
+    let raw = select(tall, wide, half_difference >= 0.0);
+    let squared = dot(raw, raw);
+    let direction = select(vec2f(1.0, 0.0), raw * inverseSqrt(squared), squared > LEAST_SQUARED_DIRECTION);
+    return PrincipalAxes(direction, larger, smaller);
+}
+
+// A facet whose tangent is a direction in the surface's plane, made orthogonal to the bump normal.
 fn ggx_facet(normal: vec3f, direction: vec2f, along: f32, across: f32) -> GgxSurface {
-    let known = dot(direction, direction) > LEAST_COSINE;
-    let main_direction = vec3f(select(vec2f(1.0, 0.0), direction, known), 0.0);
+    let main_direction = vec3f(direction, 0.0);
     let in_plane = main_direction - dot(normal, main_direction) * normal;
     return GgxSurface(normal, along, normalize(in_plane), across);
 }
 
-// The unit normal that the normal texture holds. Where no z is stored (two-channel textures give 0 for it), it follows
-// from x and y.
-fn ggx_normal(normal: vec4f, packing: Packing) -> vec3f {
-    let stored = normal.xyz * packing.unit.x + packing.unit.y;
-    let z = sqrt(max(1.0 - dot(stored.xy, stored.xy), 0.0));
-    return unit_normal(vec3f(stored.xy, select(z, stored.z, stored.z > 0.0)));
-}
-
-// Where there is no anisotropy texture, pass vec4f(1.0, 0.5, 0.0, 1.0).
-fn ggx_surface(
-    normal: vec4f,
-    roughness: f32,
-    anisotropy: vec4f,
-    packing: Packing,
-    options: LobeOptions,
-) -> GgxSurface {
-    let added = select(1.0 / options.specular_power, 0.0, options.base_in_maps == MAPS_WITH_BASE);
-    let variance = max(variance_from_stored(roughness, options.roughness_stored), 0.0) + added;
-    let across = sqrt(2.0 * max(variance, LEAST_VARIANCE));
-    let along = across + max(1.0 - across, 0.0) * anisotropy.z * anisotropy.z;
-    let direction = anisotropy.xy * packing.unit.x + packing.unit.y;
-    return ggx_facet(ggx_normal(normal, packing), direction, along, across);
-}
-
-// GGX as a base lobe about a normal of any length: alpha = sqrt(2 / s).
-fn ggx_surface_of_normal(normal: vec3f, options: LobeOptions) -> GgxSurface {
-    let alpha = sqrt(2.0 / options.specular_power);
-    return ggx_facet(unit_normal(normal), vec2f(1.0, 0.0), alpha, alpha);
+// The facet of a distribution, base roughness included: alpha^2 = 2 variance along each principal axis.
+fn ggx_surface(distribution: Distribution, options: LobeOptions) -> GgxSurface {
+    let whole = whole_gaussian(distribution);
+    let bumps = positive_semidefinite(vec3f(whole.variance, whole.covariance));
+    let base = select(1.0 / options.specular_power, 0.0, distribution.base == MAPS_WITH_BASE);
+    let axes = principal_axes(bumps + vec3f(base, base, 0.0));
+    let alpha = sqrt(2.0 * max(vec2f(axes.larger, axes.smaller), vec2f(LEAST_VARIANCE)));
+    return ggx_facet(unit_normal(distribution.normal), axes.direction, alpha.x, alpha.y);
 }
 
 // Smith's lambda of GGX for a direction with this cosine to the bump normal, above zero.

@@ -1,14 +1,14 @@
 //! Shading models: what a filtered surface reflects. One model a file, each with a WGSL twin of the same name beside it.
 //!
-//! Every model has two steps, with the same names in Rust and in WGSL:
+//! A model takes a [`Distribution`] of slopes, whatever it comes from, in two steps with the same names in Rust and in WGSL:
 //!
-//! 1. `<model>_surface`: filtered texels of the model's layout become a surface, once a pixel; models of moments take, beside
-//!    them, which part of their variance the pixel sees ([`footprint_ratio`]);
+//! 1. `<model>_surface`: the distribution under a pixel becomes a surface, once a pixel: impossible covariances are repaired and the
+//!    base roughness is added;
 //! 2. `<model>_lobe`: the lobe for a direction to the viewer and one to the light, once a light.
 //!
-//! The base lobes (`phong`, `blinn_phong`, `beckmann`, `off_centre`) take a filtered normal instead of texels, so that they
-//! serve any normal map; [`bump_normal`] reads it from LEAN's first texture. [`Surface`] does both steps for any model, and
-//! [`reflect`] makes radiance of its lobe.
+//! [`Shading::surface_of`] and [`Surface::lobe`] do both steps for any model, and [`reflect`] makes radiance of the lobe.
+//! What comes before is not a model's business: [`crate::texture`] reads texels as distributions (`lean_moments` and its like), and
+//! [`pixel_distribution`] takes off what a texture filter covers beyond the pixel.
 //!
 //! All directions are unit vectors in the tangent frame of the *surface* (x right, y up, z the surface normal), and `h` is
 //! the half vector. A lobe of slope density `p` has three forms ([`Form`]).
@@ -16,34 +16,46 @@
 //! No lobe is ever NaN or infinite, whatever filtering leaves: a zero normal counts as flat, a horizontal one as steep, and
 //! a covariance without width is given the least there is ([`LEAST_VARIANCE`]). The base's exponent s is meant to be from 1
 //! to 10⁵.
+//!
+//! ```
+//! use roughcast::shading::{LobeOptions, Shading};
+//! use roughcast::{Covariance, Distribution, Slope};
+//!
+//! // Bumps with a standard deviation of 0.1 along x hide under the pixel; the material's own exponent is 200.
+//! let bumps = Distribution::gaussian(Slope::default(), Covariance { xx: 0.01, yy: 0.0, xy: 0.0 });
+//! let options = LobeOptions { specular_power: 200.0, ..LobeOptions::default() };
+//! let surface = Shading::Lean.surface_of(&bumps, &options);
+//! let from = |x: f32, y: f32| [x, y, (1.0 - x * x - y * y).sqrt()];
+//! // The highlight is wider along x than along y.
+//! let view = from(0.0, 0.0);
+//! assert!(surface.lobe(view, from(0.3, 0.0), &options) > surface.lobe(view, from(0.0, 0.3), &options));
+//! ```
 
 mod base;
 mod beckmann;
 mod blinn_phong;
-mod clean;
+mod calls;
 mod facet;
 mod footprint;
 mod gaussian;
 mod ggx;
-mod lean;
 mod masking;
-mod moment_surface;
+mod mixture;
 mod off_centre;
 mod phong;
+mod pixel;
 mod reflectance;
 mod surface;
 mod toksvig;
-mod variance;
 mod vector;
-pub mod wgsl;
 
 pub use base::{base_covariance, base_in_map, base_to_add};
 pub use beckmann::{beckmann_lobe, beckmann_surface};
 pub use blinn_phong::{blinn_phong_against_beckmann, blinn_phong_lobe, blinn_phong_surface};
-pub use clean::{clean_lobe, clean_surface};
+pub use calls::Calls;
 pub use facet::{
-    BumpFacet, LEAST_COSINE, LEAST_NORMAL_Z, LEAST_VIEW_COSINE, bump_facet, bump_normal, cosine_lobe,
-    cosine_power, facet_visible_part, unit_normal,
+    BumpFacet, LEAST_COSINE, LEAST_NORMAL_Z, LEAST_VIEW_COSINE, bump_facet, cosine_lobe, cosine_power,
+    facet_visible_part, unit_normal,
 };
 pub use footprint::{
     FilterVariances, FootprintAxes, FootprintRatio, PIXEL_DEVIATION, PixelPart, footprint_axes,
@@ -54,24 +66,24 @@ pub use gaussian::{
     squared_deviations,
 };
 pub use ggx::{
-    GgxSurface, ISOTROPIC, LEAST_STORED_POWER, ggx_lambda, ggx_lobe, ggx_normal, ggx_surface,
-    ggx_surface_of_normal, ggx_visible_part,
+    GgxSurface, PrincipalAxes, ggx_lambda, ggx_lobe, ggx_surface, ggx_visible_part, principal_axes,
 };
-pub use lean::{lean_lobe, lean_surface};
 pub use masking::{gaussian_lambda, projected_variance, visible_part};
-pub use moment_surface::moment_surface;
-pub use off_centre::{off_centre_lobe, off_centre_surface};
+pub use mixture::{MixtureSurface, mixture_lobe, mixture_surface, shaded_gaussian};
+pub use off_centre::off_centre_surface;
 pub use phong::{phong_lobe, phong_surface};
+pub use pixel::pixel_distribution;
 pub use reflectance::{
     LightSample, Material, Radiance, ambient_radiance, diffuse_radiance, reflect, schlick, specular_radiance,
 };
-pub use surface::{Surface, SurfaceLobe, slope_normal};
-pub use toksvig::{toksvig_lobe, toksvig_normal, toksvig_surface};
-pub use variance::{variance_lobe, variance_surface};
+pub use surface::{ModelSurface, Surface};
+pub use toksvig::toksvig_surface;
 pub use vector::LEAST_HEIGHT;
 
+#[cfg(doc)]
+use crate::Distribution;
 use crate::named::named_enum;
-use crate::texture::{Base, Layout, Part, RoughnessStored, TextureInfo};
+use crate::texture::{Base, Layout, TextureInfo, Wanted};
 
 named_enum! {
     /// A shading model.
@@ -164,11 +176,6 @@ pub struct LobeOptions {
     pub base: BaseLobe,
     /// What becomes of impossible covariances.
     pub repair: Repair,
-    /// Whether the maps hold the base roughness already, so that `1 / s` is not to be added to them again. The maps of
-    /// `blinn-phong` and its like hold none in any case, and Toksvig's factor is one of s.
-    pub base_in_maps: Base,
-    /// How a material's roughness is stored.
-    pub roughness_stored: RoughnessStored,
     /// Whose slopes mask, in the physical form.
     pub masking: Masking,
     /// Which variance counts as roughness.
@@ -182,8 +189,6 @@ impl Default for LobeOptions {
             form: Form::Physical,
             base: BaseLobe::Plane,
             repair: Repair::Clamp,
-            base_in_maps: Base::None,
-            roughness_stored: RoughnessStored::Perceptual,
             masking: Masking::Base,
             footprint: FootprintModel::Corrected,
         }
@@ -202,42 +207,33 @@ impl LobeOptions {
     /// masks, and none is taken off for the footprint, which could be the base's.
     #[must_use]
     pub fn for_maps(self, info: &TextureInfo) -> Self {
-        let options = Self { base_in_maps: info.base, roughness_stored: info.roughness_stored, ..self };
         match (info.base, info.specular_power()) {
-            (Base::Baked, Some(specular_power)) => Self { specular_power, ..options },
+            (Base::Baked, Some(specular_power)) => Self { specular_power, ..self },
             (Base::Baked, None) => {
-                Self { masking: Masking::Full, footprint: FootprintModel::Published, ..options }
+                Self { masking: Masking::Full, footprint: FootprintModel::Published, ..self }
             }
-            (Base::None, _) => options,
+            (Base::None, _) => self,
         }
     }
 
-    /// The bytes of WGSL's `struct LobeOptions`: the exponent's bits, then the place of each choice in its enum's `ALL`.
+    /// The bytes of WGSL's `struct LobeOptions`: the exponent's bits, the place of each choice in its enum's `ALL`, and two words
+    /// that are not used.
     pub fn to_words(&self) -> [u32; 8] {
         [
             self.specular_power.to_bits(),
             self.form as u32,
             self.base as u32,
             self.repair as u32,
-            self.base_in_maps as u32,
-            self.roughness_stored as u32,
             self.masking as u32,
             self.footprint as u32,
+            0,
+            0,
         ]
     }
 }
 
-/// A texture that a model samples: which file of the layout, and which of its layers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Input {
-    /// The file.
-    pub part: Part,
-    /// The layer's name.
-    pub layer: &'static str,
-}
-
 impl Shading {
-    /// The layout whose textures the model samples.
+    /// The layout that the model is made for. It shades the distributions of any other as well.
     pub const fn layout(self) -> Layout {
         match self {
             Self::Phong | Self::BlinnPhong | Self::Beckmann | Self::OffCentre | Self::Lean => Layout::Lean,
@@ -248,15 +244,11 @@ impl Shading {
         }
     }
 
-    /// Which of [`Shading::inputs`] has the mean slope in its first two channels, by which models of moments tell what the
-    /// pixel sees of them; `None` for the others.
-    pub const fn mean_input(self) -> Option<usize> {
+    /// What the model takes of a distribution.
+    pub const fn wanted(self) -> Wanted {
         match self {
-            Self::Lean => Some(1),
-            Self::Clean | Self::Variance => Some(0),
-            Self::Phong | Self::BlinnPhong | Self::Beckmann | Self::OffCentre | Self::Toksvig | Self::Ggx => {
-                None
-            }
+            Self::Phong | Self::BlinnPhong | Self::Beckmann | Self::OffCentre => Wanted::Normal,
+            Self::Lean | Self::Clean | Self::Toksvig | Self::Variance | Self::Ggx => Wanted::Distribution,
         }
     }
 

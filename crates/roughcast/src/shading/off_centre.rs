@@ -4,20 +4,11 @@
 //! covariance. At the finest level it is LEAN's own lobe.
 
 use super::LobeOptions;
-use super::base::base_covariance;
-use super::facet::LEAST_NORMAL_Z;
-use super::gaussian::{SlopeGaussian, gaussian_lobe, slope_gaussian};
-use super::vector::Vector;
-use crate::slope::Slope;
+use super::mixture::{MixtureSurface, mixture_surface};
+use crate::distribution::Distribution;
+use crate::texture::normal_moments;
 
-/// The Gaussian about the slope of a filtered normal, of any length.
-pub fn off_centre_surface(normal: Vector, options: &LobeOptions) -> SlopeGaussian {
-    let z = normal[2].max(LEAST_NORMAL_Z);
-    let slope = Slope { x: normal[0] / z, y: normal[1] / z };
-    slope_gaussian(slope, base_covariance(slope, options), options)
-}
-
-/// The lobe for unit directions to the viewer and to the light. Normalised about the surface normal.
-pub fn off_centre_lobe(surface: &SlopeGaussian, view: Vector, light: Vector, options: &LobeOptions) -> f32 {
-    gaussian_lobe(surface, view, light, options)
+/// The Gaussian about the slope of a distribution's filtered normal.
+pub fn off_centre_surface(distribution: &Distribution, options: &LobeOptions) -> MixtureSurface {
+    mixture_surface(&normal_moments(distribution.normal().to_array()), options)
 }

@@ -5,10 +5,9 @@ struct LobeOptions {
     form: u32,              // FORM_...
     base: u32,              // BASE_...
     repair: u32,            // REPAIR_...
-    base_in_maps: u32,      // MAPS_...
-    roughness_stored: u32,  // STORED_...
     masking: u32,           // MASKING_..., in the physical form
     footprint: u32,         // FOOTPRINT_...
+    unused: vec2u,          // so that the struct takes as many bytes by the rules of every language
 }
 
 const FORM_PHYSICAL: u32 = 0u;      // D G2 / n.v: the distribution below with shadowing and masking
@@ -20,15 +19,6 @@ const BASE_FACET: u32 = 1u;         // the lobe of a facet of slope B, seen ther
 
 const REPAIR_CLAMP: u32 = 0u;       // impossible covariances are made positive semidefinite
 const REPAIR_PUBLISHED: u32 = 1u;   // no highlight where the determinant is not positive
-
-const MAPS_WITHOUT_BASE: u32 = 0u;  // the base roughness is added at shading
-const MAPS_WITH_BASE: u32 = 1u;     // it is in the maps
-
-const STORED_PERCEPTUAL: u32 = 0u;      // sqrt(alpha)
-const STORED_ALPHA: u32 = 1u;           // alpha
-const STORED_ALPHA_SQUARED: u32 = 2u;   // alpha^2
-const STORED_GLOSS: u32 = 3u;           // 1 - sqrt(alpha)
-const STORED_SPECULAR_POWER: u32 = 4u;  // 2 / alpha^2
 
 const MASKING_BASE: u32 = 0u;   // of the base roughness
 const MASKING_FULL: u32 = 1u;   // of base roughness and bumps

@@ -8,10 +8,11 @@ use std::f32::consts::TAU;
 use super::facet::{BumpFacet, bump_facet, cosine_lobe, cosine_power};
 use super::vector::{Vector, both_above, dot, scaled, sum};
 use super::{Form, LobeOptions};
+use crate::distribution::Distribution;
 
-/// The facet of a filtered normal, of any length.
-pub fn phong_surface(normal: Vector, options: &LobeOptions) -> BumpFacet {
-    bump_facet(normal, options.specular_power)
+/// The facet of a distribution's filtered normal.
+pub fn phong_surface(distribution: &Distribution, options: &LobeOptions) -> BumpFacet {
+    bump_facet(distribution.normal().to_array(), options.specular_power)
 }
 
 /// The lobe for unit directions to the viewer and to the light. Normalised about the reflected ray.

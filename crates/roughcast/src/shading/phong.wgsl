@@ -1,7 +1,7 @@
 // Phong: a cosine lobe about the reflected ray, with Phong's own exponent.
 
-fn phong_surface(normal: vec3f, options: LobeOptions) -> BumpFacet {
-    return bump_facet(normal, options.specular_power);
+fn phong_surface(distribution: Distribution, options: LobeOptions) -> BumpFacet {
+    return bump_facet(distribution.normal, options.specular_power);
 }
 
 fn phong_lobe(surface: BumpFacet, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {

@@ -1,10 +1,5 @@
 // From lobes to light, in linear RGB. Irradiance is that of a surface which faces the light.
 
-// The unit normal of a slope: for diffuse light where the layout holds no normal.
-fn slope_normal(slope: vec2f) -> vec3f {
-    return normalize(vec3f(slope, 1.0));
-}
-
 // Schlick's approximation of Fresnel reflectance, from that at normal incidence.
 fn schlick(specular: f32, cosine: f32) -> f32 {
     let rest = clamp(1.0 - cosine, 0.0, 1.0);

@@ -1,26 +1,19 @@
-//! Toksvig: Blinn-Phong with the exponent that the length of the averaged normal leaves.
+//! Toksvig: Blinn-Phong with the exponent that base and bumps leave together, `1 / s' = 1 / s + σ²`.
 //!
-//! Source: Toksvig, "Mipmapping normal maps", 2005, as the LEAN text compares with it. The texture holds the gloss factor
-//! for the exponent that it was baked for, so `s' = gloss * s` for that s and no other.
+//! Source: Toksvig, "Mipmapping normal maps", 2005. His texture gives the variance; any other distribution does as well.
 
 use super::LobeOptions;
-use super::blinn_phong::blinn_phong_lobe;
 use super::facet::{BumpFacet, bump_facet};
-use super::vector::Vector;
-use crate::texture::Packing;
-use crate::texture::packing::unpack;
+use super::gaussian::LEAST_VARIANCE;
+use crate::distribution::Distribution;
+use crate::texture::Base;
 
-/// The averaged normal that Toksvig's texture holds, not renormalised.
-pub fn toksvig_normal(toksvig: [f32; 4], packing: &Packing) -> Vector {
-    [0, 1, 2].map(|i| unpack(toksvig[i], packing.unit))
-}
-
-/// The facet that a filtered texel of Toksvig's texture holds, with its dulled exponent.
-pub fn toksvig_surface(toksvig: [f32; 4], packing: &Packing, options: &LobeOptions) -> BumpFacet {
-    bump_facet(toksvig_normal(toksvig, packing), toksvig[3] * options.specular_power)
-}
-
-/// The lobe for unit directions to the viewer and to the light. Normalised about the bump normal.
-pub fn toksvig_lobe(surface: &BumpFacet, view: Vector, light: Vector, options: &LobeOptions) -> f32 {
-    blinn_phong_lobe(surface, view, light, options)
+/// The facet of a distribution's filtered normal, with its dulled exponent.
+pub fn toksvig_surface(distribution: &Distribution, options: &LobeOptions) -> BumpFacet {
+    let bumps = (0.5 * distribution.whole().covariance.trace()).max(0.0);
+    let base = match distribution.base() {
+        Base::None => 1.0 / options.specular_power,
+        Base::Baked => 0.0,
+    };
+    bump_facet(distribution.normal().to_array(), 1.0 / (bumps + base).max(LEAST_VARIANCE))
 }

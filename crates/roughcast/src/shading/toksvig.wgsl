@@ -1,14 +1,8 @@
-// Toksvig: Blinn-Phong with the exponent that the length of the averaged normal leaves.
+// Toksvig: Blinn-Phong with the exponent that base and bumps leave together, 1 / s' = 1 / s + variance.
 
-// The averaged normal, not renormalised: for diffuse light.
-fn toksvig_normal(toksvig: vec4f, packing: Packing) -> vec3f {
-    return toksvig.xyz * packing.unit.x + packing.unit.y;
-}
-
-fn toksvig_surface(toksvig: vec4f, packing: Packing, options: LobeOptions) -> BumpFacet {
-    return bump_facet(toksvig_normal(toksvig, packing), toksvig.w * options.specular_power);
-}
-
-fn toksvig_lobe(surface: BumpFacet, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {
-    return blinn_phong_lobe(surface, view, light, options);
+fn toksvig_surface(distribution: Distribution, options: LobeOptions) -> BumpFacet {
+    let whole = whole_gaussian(distribution);
+    let bumps = max(0.5 * (whole.variance.x + whole.variance.y), 0.0);
+    let base = select(1.0 / options.specular_power, 0.0, distribution.base == MAPS_WITH_BASE);
+    return bump_facet(distribution.normal, 1.0 / max(bumps + base, LEAST_VARIANCE));
 }

@@ -18,6 +18,7 @@ mod schilling;
 mod set_id;
 mod shape;
 mod split;
+mod texels;
 mod toksvig;
 mod variance;
 
@@ -28,6 +29,12 @@ pub use packing::Packing;
 pub use schilling::Factor;
 pub(crate) use set_id::set_id;
 pub use split::{join_layers, mark_set, split_infos, split_layers};
+
+pub use texels::{
+    Filtered, ISOTROPIC, Input, LEAST_STORED_POWER, TexelReader, Wanted, bump_normal, clean_moments,
+    lean_moments, normal_moments, pbr_moments, pbr_normal, schilling_isotropic_moments, schilling_moments,
+    toksvig_moments, toksvig_normal, variance_moments,
+};
 
 use crate::moments::Moments;
 use crate::options::{AnisotropyOutput, RoughnessTexture};

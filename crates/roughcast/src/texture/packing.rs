@@ -1,12 +1,12 @@
-//! How to read stored texels as a shader does: one affine map for each kind of quantity.
+//! How to read stored texels as a shader does: one affine map for each kind of quantity, and what the maps hold of the base roughness.
 
-use super::TextureInfo;
 use super::codec::{Affine, Units};
+use super::{Base, RoughnessStored, TextureInfo};
 use crate::SampleType;
 
 /// The way from stored texels, as a sampler returns them, to values: `value = stored * scale + offset`, each pair a
-/// `[scale, offset]`. For float texels, which hold values as they are, every pair is `[1, 0]`, but for unit vectors that
-/// [`TextureInfo::normal_range`] says otherwise of.
+/// `[scale, offset]`. For float texels, which hold values as they are, every pair is `[1, 0]`, except for unit
+/// vectors where [`TextureInfo::normal_range`] states another range.
 ///
 /// Filtering and these maps may change places, since both are affine.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,10 +19,16 @@ pub struct Packing {
     pub mixed: [f32; 2],
     /// `Mxx + Myy`.
     pub trace: [f32; 2],
-    /// A stored variance.
-    pub variance: [f32; 2],
+    /// A stored variance or standard deviation.
+    pub spread: [f32; 2],
+    /// The signed entry of a covariance's factor, Schilling's d2.
+    pub signed_spread: [f32; 2],
     /// A component of a unit vector. LEAN's and Schilling's `N.z` is stored as it is and needs none.
     pub unit: [f32; 2],
+    /// Whether the base roughness is in the maps.
+    pub base: Base,
+    /// How a material's roughness is stored.
+    pub roughness_stored: RoughnessStored,
 }
 
 impl Packing {
@@ -32,8 +38,11 @@ impl Packing {
         second: [1.0, 0.0],
         mixed: [1.0, 0.0],
         trace: [1.0, 0.0],
-        variance: [1.0, 0.0],
+        spread: [1.0, 0.0],
+        signed_spread: [1.0, 0.0],
         unit: [1.0, 0.0],
+        base: Base::None,
+        roughness_stored: RoughnessStored::Perceptual,
     };
 
     /// The packing of a file with this meaning and sample type.
@@ -44,15 +53,27 @@ impl Packing {
             second: inverse(units.second()),
             mixed: inverse(units.mixed()),
             trace: inverse(units.trace()),
-            variance: inverse(units.variance()),
+            spread: inverse(units.variance()),
+            signed_spread: inverse(units.signed_variance()),
             unit: inverse(units.unit()),
+            base: info.base,
+            roughness_stored: info.roughness_stored,
         }
     }
 
-    /// The numbers in the order of the fields: the bytes of WGSL's `struct Packing`, six `vec2f`.
-    pub fn to_array(&self) -> [f32; 12] {
-        let pairs = [self.slope, self.second, self.mixed, self.trace, self.variance, self.unit];
-        std::array::from_fn(|i| pairs[i / 2][i % 2])
+    /// The words in the order of the fields: the bytes of WGSL's `struct Packing`, seven `vec2f` and two `u32`.
+    pub fn to_words(&self) -> [u32; 16] {
+        let pairs = [
+            self.slope,
+            self.second,
+            self.mixed,
+            self.trace,
+            self.spread,
+            self.signed_spread,
+            self.unit,
+            [f32::from_bits(self.base as u32), f32::from_bits(self.roughness_stored as u32)],
+        ];
+        std::array::from_fn(|i| pairs[i / 2][i % 2].to_bits())
     }
 }
 
@@ -89,7 +110,8 @@ mod tests {
             (units.second(), packing.second, scale * scale),
             (units.mixed(), packing.mixed, scale * scale),
             (units.trace(), packing.trace, 2.0 * scale * scale),
-            (units.variance(), packing.variance, info().variance_scale),
+            (units.variance(), packing.spread, info().variance_scale),
+            (units.signed_variance(), packing.signed_spread, info().variance_scale),
             (units.unit(), packing.unit, 1.0),
         ];
         for (affine, pair, full) in pairs {

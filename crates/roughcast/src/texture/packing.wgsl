@@ -1,11 +1,23 @@
 // How to read stored texels: value = stored * x + y for each kind of quantity; (1, 0) for float textures.
-// Uploaded: 48 bytes, the twelve numbers in the order of the fields.
+// Uploaded: 64 bytes, the numbers in the order of the fields.
 
 struct Packing {
-    slope: vec2f,       // a component of a slope
-    second: vec2f,      // Mxx, Myy
-    mixed: vec2f,       // Mxy
-    trace: vec2f,       // Mxx + Myy
-    variance: vec2f,    // a stored variance
-    unit: vec2f,        // a component of a unit vector
+    slope: vec2f,           // a component of a slope
+    second: vec2f,          // Mxx, Myy
+    mixed: vec2f,           // Mxy
+    trace: vec2f,           // Mxx + Myy
+    spread: vec2f,          // a stored variance or standard deviation
+    signed_spread: vec2f,   // the signed entry of a covariance's factor
+    unit: vec2f,            // a component of a unit vector
+    base: u32,              // MAPS_...: whether the base roughness is in the maps
+    roughness_stored: u32,  // STORED_...: how a material's roughness is stored
 }
+
+const MAPS_WITHOUT_BASE: u32 = 0u;  // the base roughness is added at shading
+const MAPS_WITH_BASE: u32 = 1u;     // it is in the maps
+
+const STORED_PERCEPTUAL: u32 = 0u;      // sqrt(alpha)
+const STORED_ALPHA: u32 = 1u;           // alpha
+const STORED_ALPHA_SQUARED: u32 = 2u;   // alpha^2
+const STORED_GLOSS: u32 = 3u;           // 1 - sqrt(alpha)
+const STORED_SPECULAR_POWER: u32 = 4u;  // 2 / alpha^2

@@ -1,13 +1,13 @@
 //! Every lobe against its formula in f64, on the same single-precision inputs.
 
 use roughcast::shading::{
-    BaseLobe, FootprintRatio, Form, ISOTROPIC, LobeOptions, Shading, Surface, phong_lobe, phong_surface,
+    BaseLobe, FootprintRatio, Form, LobeOptions, Shading, Surface, phong_lobe, phong_surface,
 };
-use roughcast::texture::{Base, Packing, RoughnessStored};
+use roughcast::texture::{Base, ISOTROPIC, Packing, RoughnessStored, normal_moments};
 use roughcast::{Covariance, Moments, Slope};
 
 use super::oracle;
-use super::support::{Frame, Random, Vector, dot, narrow, normalize, scaled, sum, wide};
+use super::support::{Frame, Random, Vector, dot, narrow, normalize, scaled, sum, surface_of_texels, wide};
 
 /// Relative, of a lobe where it is above `DEEPEST` of its peak: half vector and bump normal are rounded to 6e-8, which a
 /// lobe of s = 16384 turns into `s sinθ 6e-8`, at four deviations 3e-5; three roundings add up.
@@ -132,7 +132,8 @@ fn phong() {
             let normal = [f64::from(slope.x), f64::from(slope.y), 1.0];
             let deviation = 0.5 / f64::from(s).sqrt();
             let (view, light, _) = directions(random, normalize(normal), deviation)?;
-            let got = phong_lobe(&phong_surface(narrow(normal), &options), view, light, &options);
+            let got =
+                phong_lobe(&phong_surface(&normal_moments(narrow(normal)), &options), view, light, &options);
             let reflected = oracle::reflected(normal, wide(view));
             let of = |light| oracle::cosine_lobe(reflected, normalize(light), f64::from(s), Form::Normalised);
             Some((f64::from(got), of(wide(light)), of(reflected)))
@@ -185,7 +186,8 @@ fn models_with_moments() {
     for shading in [Shading::Lean, Shading::Clean, Shading::Variance] {
         for base_in_maps in Base::ALL.iter().copied() {
             for s in POWERS {
-                let options = LobeOptions { base_in_maps, ..options(s, Form::Normalised) };
+                let options = options(s, Form::Normalised);
+                let packing = Packing { base: base_in_maps, ..Packing::IDENTITY };
                 let base = if base_in_maps == Base::None { 1.0 / f64::from(s) } else { 0.0 };
                 let difference = largest_difference(|random| {
                     let moments = draw_moments(random);
@@ -195,7 +197,7 @@ fn models_with_moments() {
                     let peak = Frame::SURFACE.direction(mean);
                     let (view, light, h) = directions(random, peak, sigma[0].min(sigma[1]).sqrt())?;
                     let surface =
-                        shading.surface(&texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options);
+                        surface_of_texels(shading, &texels, &FootprintRatio::WHOLE, &packing, &options);
                     let of = |h| oracle::gaussian(mean, sigma, h, Form::Normalised);
                     Some((f64::from(surface.lobe(view, light, &options)), of(h), of(peak)))
                 });
@@ -208,11 +210,8 @@ fn models_with_moments() {
 #[test]
 fn materials_in_every_way_of_storing() {
     for stored in RoughnessStored::ALL.iter().copied() {
-        let options = LobeOptions {
-            base_in_maps: Base::Baked,
-            roughness_stored: stored,
-            ..options(8.0, Form::Normalised)
-        };
+        let options = options(8.0, Form::Normalised);
+        let packing = Packing { base: Base::Baked, roughness_stored: stored, ..Packing::IDENTITY };
         for alpha in [0.02_f64, 0.1, 0.5] {
             let roughness = match stored {
                 RoughnessStored::Perceptual => alpha.sqrt(),
@@ -231,7 +230,7 @@ fn materials_in_every_way_of_storing() {
                     let texels = [[unit[0], unit[1], unit[2], 1.0], [roughness, 0.0, 0.0, 1.0], anisotropy];
                     let (view, light, h) = directions(random, normal, alpha)?;
                     let surface =
-                        Shading::Ggx.surface(&texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options);
+                        surface_of_texels(Shading::Ggx, &texels, &FootprintRatio::WHOLE, &packing, &options);
                     let of = |h| oracle::ggx(normal, direction, [along, alpha], h, Form::Normalised);
                     Some((f64::from(surface.lobe(view, light, &options)), of(h), of(normalize(normal))))
                 });
@@ -243,16 +242,12 @@ fn materials_in_every_way_of_storing() {
 
 #[test]
 fn a_material_without_its_base_gets_it_added_once() {
-    let maps = |base_in_maps| LobeOptions {
-        base_in_maps,
-        roughness_stored: RoughnessStored::AlphaSquared,
-        ..options(50.0, Form::Normalised)
-    };
+    let options = options(50.0, Form::Normalised);
+    let maps = |base| Packing { base, roughness_stored: RoughnessStored::AlphaSquared, ..Packing::IDENTITY };
     let h = [0.1, 0.05, 0.993_730_3];
-    let value = |alpha_squared: f32, options: LobeOptions| {
+    let value = |alpha_squared: f32, packing: Packing| {
         let texels = [[0.0, 0.0, 1.0, 1.0], [alpha_squared; 4]];
-        Shading::Ggx
-            .surface(&texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
+        surface_of_texels(Shading::Ggx, &texels, &FootprintRatio::WHOLE, &packing, &options)
             .lobe(h, h, &options)
     };
     let (without, with) = (value(0.01, maps(Base::None)), value(0.01 + 2.0 / 50.0, maps(Base::Baked)));
@@ -294,8 +289,9 @@ fn unsigned_texels_shade_as_the_values_that_they_hold() {
         second: [1.69, 0.0],
         mixed: [3.38, -1.69],
         trace: [3.38, 0.0],
-        variance: [0.5, 0.0],
+        spread: [0.5, 0.0],
         unit: [2.0, -1.0],
+        ..Packing::IDENTITY
     };
     let stored = |value: f32, [scale, offset]: [f32; 2]| (value - offset) / scale;
     let options = options(64.0, Form::Normalised);
@@ -329,8 +325,8 @@ fn unsigned_texels_shade_as_the_values_that_they_hold() {
             vec![[
                 stored(bx, packing.slope),
                 stored(by, packing.slope),
-                stored(0.05, packing.variance),
-                stored(0.06, packing.variance),
+                stored(0.05, packing.spread),
+                stored(0.06, packing.spread),
             ]],
         ),
         (
@@ -340,8 +336,8 @@ fn unsigned_texels_shade_as_the_values_that_they_hold() {
         ),
     ];
     for (shading, plain, packed) in cases {
-        let plain = shading.surface(&plain, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options);
-        let packed = shading.surface(&packed, &FootprintRatio::WHOLE, &packing, &options);
+        let plain = surface_of_texels(shading, &plain, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options);
+        let packed = surface_of_texels(shading, &packed, &FootprintRatio::WHOLE, &packing, &options);
         assert!((lobe(plain) / lobe(packed) - 1.0).abs() < ROUNDING, "{shading}");
         for (a, b) in plain.normal.iter().zip(packed.normal) {
             assert!((a - b).abs() < ROUNDING, "{shading}");

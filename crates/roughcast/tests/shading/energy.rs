@@ -4,15 +4,16 @@ use std::f64::consts::TAU;
 
 use roughcast::Slope;
 use roughcast::shading::{
-    BaseLobe, FootprintRatio, Form, LobeOptions, Shading, Surface, SurfaceLobe, beckmann_surface,
-    blinn_phong_surface, ggx_surface, ggx_surface_of_normal, off_centre_surface, phong_surface,
-    slope_gaussian,
+    BaseLobe, FootprintRatio, Form, LobeOptions, ModelSurface, Shading, Surface, beckmann_surface,
+    blinn_phong_surface, gaussian_lobe, ggx_surface, mixture_surface, phong_surface, slope_gaussian,
 };
-use roughcast::texture::{Base, Packing, RoughnessStored};
-use roughcast::{Covariance, Lobe};
+use roughcast::texture::{
+    Base, Layout, Packing, RoughnessStored, TextureInfo, Wanted, layers_of, normal_moments, pbr_moments,
+};
+use roughcast::{Covariance, Distribution, Lobe};
 
 use super::oracle::reflected;
-use super::support::{Frame, Vector, narrow};
+use super::support::{Frame, Vector, narrow, surface_of_texels};
 
 /// Of an integral: the quadrature of GGX's tail, which falls slowest, is good to 2e-5, single floats add as much at s = 16384.
 const TOLERANCE: f64 = 1e-4;
@@ -50,9 +51,13 @@ fn round(width: f64) -> [[f64; 2]; 2] {
 }
 
 /// The lobe where viewer and light both look along the half vector.
-fn along(surface: SurfaceLobe, options: LobeOptions) -> impl Fn(Vector) -> f64 {
-    let surface = Surface { normal: [0.0, 0.0, 1.0], lobe: surface };
+fn along(surface: ModelSurface, options: LobeOptions) -> impl Fn(Vector) -> f64 {
+    let surface = Surface { normal: [0.0, 0.0, 1.0], model: surface };
     move |h| f64::from(surface.lobe(narrow(h), narrow(h), &options))
+}
+
+fn flat() -> Distribution {
+    Distribution::of_slope(Slope::default())
 }
 
 fn options(specular_power: f32, form: Form) -> LobeOptions {
@@ -86,7 +91,7 @@ fn gaussians_in_the_surface_frame() {
                 let options = options(s, Form::Normalised);
                 let surface = slope_gaussian(mean, sigma, &options);
                 let centre = [f64::from(mean.x), f64::from(mean.y)];
-                let lobe = along(SurfaceLobe::Lean(surface), options);
+                let lobe = |h: Vector| f64::from(gaussian_lobe(&surface, narrow(h), narrow(h), &options));
                 let integral = integral(&Frame::SURFACE, centre, axes_of(sigma), lobe);
                 assert!(is_one(integral), "B {mean:?}, Σ {sigma:?}: {integral}");
             }
@@ -100,10 +105,11 @@ fn off_centre_lobes_of_both_bases() {
         for slope in slopes() {
             for s in POWERS {
                 let options = LobeOptions { base: *base, ..options(s, Form::Normalised) };
-                let surface = off_centre_surface([slope.x, slope.y, 1.0], &options);
+                let surface = mixture_surface(&Distribution::of_slope(slope), &options);
                 let centre = [f64::from(slope.x), f64::from(slope.y)];
-                let lobe = along(SurfaceLobe::OffCentre(surface), options);
-                let integral = integral(&Frame::SURFACE, centre, axes_of(surface.covariance), lobe);
+                let covariance = surface.gaussians().next().expect("at least one").1.covariance;
+                let lobe = along(ModelSurface::Mixture(surface), options);
+                let integral = integral(&Frame::SURFACE, centre, axes_of(covariance), lobe);
                 assert!(is_one(integral), "{base}, B {slope:?}, s {s}: {integral}");
             }
         }
@@ -125,8 +131,8 @@ fn lobes_in_the_frame_of_the_bump() {
         for s in powers {
             let options = options(*s, Form::Normalised);
             let lobes = [
-                SurfaceLobe::BlinnPhong(blinn_phong_surface(narrow(normal), &options)),
-                SurfaceLobe::Beckmann(beckmann_surface(narrow(normal), &options)),
+                ModelSurface::BlinnPhong(blinn_phong_surface(&normal_moments(narrow(normal)), &options)),
+                ModelSurface::Beckmann(beckmann_surface(&normal_moments(narrow(normal)), &options)),
             ];
             for lobe in lobes {
                 let width = (1.0 / f64::from(*s)).sqrt();
@@ -147,7 +153,7 @@ fn phong_about_the_reflected_ray() {
             let options = options(*s, Form::Normalised);
             let surface = Surface {
                 normal: narrow(normal),
-                lobe: SurfaceLobe::Phong(phong_surface(narrow(normal), &options)),
+                model: ModelSurface::Phong(phong_surface(&normal_moments(narrow(normal)), &options)),
             };
             let frame = Frame::about(reflected(normal, view));
             let lobe = |light| f64::from(surface.lobe(narrow(view), narrow(light), &options));
@@ -162,22 +168,20 @@ fn ggx_isotropic_and_anisotropic() {
     // Its tail reaches the horizon whatever its width, so only a flat bump keeps all of it above the surface.
     for s in POWERS {
         let options = options(s, Form::Normalised);
-        let lobe = SurfaceLobe::Ggx(ggx_surface_of_normal([0.0, 0.0, 1.0], &options));
+        let lobe = ModelSurface::Ggx(ggx_surface(&flat(), &options));
         let width = (2.0 / f64::from(s)).sqrt();
         let integral = integral(&Frame::SURFACE, [0.0; 2], round(width), along(lobe, options));
         assert!(is_one(integral), "s {s}: {integral}");
     }
     for (alpha, strength) in [(0.05_f32, 0.5_f32), (0.3, 0.9), (0.01, 0.3)] {
-        let options = LobeOptions {
-            base_in_maps: Base::Baked,
-            roughness_stored: RoughnessStored::Alpha,
-            ..options(100.0, Form::Normalised)
-        };
+        let options = options(100.0, Form::Normalised);
+        let packing =
+            Packing { base: Base::Baked, roughness_stored: RoughnessStored::Alpha, ..Packing::IDENTITY };
         let texel = [0.6, 0.8, strength, 1.0];
-        let surface = ggx_surface([0.0, 0.0, 1.0, 1.0], alpha, texel, &Packing::IDENTITY, &options);
+        let surface = ggx_surface(&pbr_moments([0.0, 0.0, 1.0, 1.0], alpha, texel, &packing), &options);
         let (x, y) = (f64::from(surface.alpha_along), f64::from(surface.alpha_across));
         let axes = [[0.6 * x, 0.8 * x], [-0.8 * y, 0.6 * y]];
-        let lobe = along(SurfaceLobe::Ggx(surface), options);
+        let lobe = along(ModelSurface::Ggx(surface), options);
         let integral = integral(&Frame::SURFACE, [0.0; 2], axes, lobe);
         assert!(is_one(integral), "alpha {alpha}, strength {strength}: {integral}");
     }
@@ -187,9 +191,14 @@ fn ggx_isotropic_and_anisotropic() {
 fn toksvig_keeps_the_energy_of_its_dulled_exponent() {
     for gloss in [1.0_f32, 0.3, 0.01] {
         let options = options(4096.0, Form::Normalised);
-        let surface = Shading::Toksvig
-            .surface(&[[0.0, 0.0, 0.9, gloss]], &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
-            .lobe;
+        let surface = surface_of_texels(
+            Shading::Toksvig,
+            &[[0.0, 0.0, 0.9, gloss]],
+            &FootprintRatio::WHOLE,
+            &Packing::IDENTITY,
+            &options,
+        )
+        .model;
         let width = (1.0 / (4096.0 * f64::from(gloss))).sqrt();
         let integral = integral(&Frame::SURFACE, [0.0; 2], round(width), along(surface, options));
         assert!(is_one(integral), "{gloss}: {integral}");
@@ -202,7 +211,7 @@ fn the_papers_form_is_the_normalised_one_without_its_constants() {
     const ROUNDING: f64 = 1e-6;
     let h = Frame::SURFACE.direction([0.32, -0.13]);
     for shading in Shading::ALL {
-        let surface = |form| shading.surface_of_slope(Slope { x: 0.3, y: -0.1 }, &options(300.0, form)).lobe;
+        let surface = |form| shading.surface_of_slope(Slope { x: 0.3, y: -0.1 }, &options(300.0, form)).model;
         let value = |form| along(surface(form), options(300.0, form))(h);
         let normal = surface_axis(shading.base_lobe());
         let cosine = normal.iter().zip(h).map(|(n, h)| n * h).sum::<f64>();
@@ -226,7 +235,7 @@ fn surface_axis(base_lobe: Shading) -> Vector {
 #[test]
 fn the_integral_tells_what_is_not_normalised() {
     let paper = options(1024.0, Form::Paper);
-    let surface = SurfaceLobe::Beckmann(beckmann_surface([0.0, 0.0, 1.0], &paper));
+    let surface = ModelSurface::Beckmann(beckmann_surface(&flat(), &paper));
     let width = round(1.0 / 32.0);
     assert!(!is_one(integral(&Frame::SURFACE, [0.0; 2], width, along(surface, paper))));
     // A constant that is off by a thousandth.
@@ -234,23 +243,30 @@ fn the_integral_tells_what_is_not_normalised() {
     let lobe = along(surface, normalised);
     assert!(!is_one(integral(&Frame::SURFACE, [0.0; 2], width, |h| 1.001 * lobe(h))));
     // Blinn-Phong with Beckmann's constant: off by 2 / s.
-    let surface = SurfaceLobe::BlinnPhong(blinn_phong_surface([0.0, 0.0, 1.0], &normalised));
+    let surface = ModelSurface::BlinnPhong(blinn_phong_surface(&flat(), &normalised));
     let lobe = along(surface, normalised);
     assert!(!is_one(integral(&Frame::SURFACE, [0.0; 2], width, |h| 1024.0 / 1026.0 * lobe(h))));
 }
 
 #[test]
-fn every_model_samples_textures_of_its_layout() {
-    for shading in Shading::ALL {
-        for lobe in [Lobe::Isotropic, Lobe::Anisotropic] {
-            let inputs = shading.inputs(lobe);
-            assert!(!inputs.is_empty());
-            for input in inputs {
-                assert!(shading.layout().parts().contains(&input.part), "{shading}: {input:?}");
-                let info = roughcast::texture::TextureInfo::new(shading.layout(), input.part);
-                let layers = roughcast::texture::layers_of(&info);
-                assert!(layers.iter().any(|layer| layer.name == input.layer), "{shading}: {input:?}");
+fn every_reader_samples_textures_of_its_layout() {
+    let mut readers = 0;
+    for layout in Layout::ALL.iter().copied() {
+        for (wanted, lobe) in [Wanted::Normal, Wanted::Distribution].into_iter().zip(Lobe::ALL) {
+            let Some(reader) = layout.texel_reader(wanted, *lobe) else { continue };
+            readers += 1;
+            assert!(!reader.inputs.is_empty());
+            for input in reader.inputs {
+                assert!(layout.parts().contains(&input.part), "{layout}: {input:?}");
+                let layers = layers_of(&TextureInfo::new(layout, input.part));
+                assert!(layers.iter().any(|layer| layer.name == input.layer), "{layout}: {input:?}");
             }
+            assert!(reader.mean_input.is_none_or(|input| input < reader.inputs.len()), "{layout}");
         }
+    }
+    assert!(readers > 10, "{readers}");
+    // Every model can shade the layout that it is made for.
+    for shading in Shading::ALL {
+        assert!(shading.layout().texel_reader(shading.wanted(), Lobe::Isotropic).is_some(), "{shading}");
     }
 }

@@ -1,11 +1,13 @@
 //! Footprint correction: what a pixel sees of the variance under a texture filter.
 
 use roughcast::shading::{
-    FilterVariances, FootprintModel, FootprintRatio, LobeOptions, PixelPart, Shading, SurfaceLobe,
+    FilterVariances, FootprintModel, FootprintRatio, LobeOptions, ModelSurface, PixelPart, Shading,
     footprint_axes, footprint_ratio, hardware_variances, level_variances,
 };
 use roughcast::texture::{Base, Packing};
 use roughcast::{Covariance, Moments, Slope};
+
+use super::support::surface_of_texels;
 
 /// Single floats, a few operations.
 const ROUNDING: f64 = 1e-5;
@@ -235,7 +237,13 @@ fn a_magnified_texel_shows_the_linear_change_alone() {
 }
 
 /// The covariance that LEAN, CLEAN and stored variances shade.
-fn shaded(shading: Shading, sigma: Covariance, ratio: &FootprintRatio, options: &LobeOptions) -> Covariance {
+fn shaded(
+    shading: Shading,
+    sigma: Covariance,
+    ratio: &FootprintRatio,
+    base: Base,
+    options: &LobeOptions,
+) -> Covariance {
     let mean = Slope { x: 0.3, y: -0.2 };
     let moments = Moments::from_mean_and_covariance(mean, sigma);
     let texels = match shading {
@@ -243,9 +251,12 @@ fn shaded(shading: Shading, sigma: Covariance, ratio: &FootprintRatio, options: 
         Shading::Clean => vec![[mean.x, mean.y, moments.xx + moments.yy, 0.0]],
         _ => vec![[mean.x, mean.y, sigma.xx, sigma.yy]],
     };
-    match shading.surface(&texels, ratio, &Packing::IDENTITY, options).lobe {
-        SurfaceLobe::Lean(surface) | SurfaceLobe::Clean(surface) | SurfaceLobe::Variance(surface) => {
-            surface.covariance
+    match surface_of_texels(shading, &texels, ratio, &Packing { base, ..Packing::IDENTITY }, options).model {
+        ModelSurface::Mixture(surface) => {
+            let mut gaussians = surface.gaussians();
+            let (weight, first) = gaussians.next().expect("at least one");
+            assert!(weight == 1.0 && gaussians.next().is_none());
+            first.covariance
         }
         other => panic!("{other:?} has no covariance"),
     }
@@ -258,15 +269,13 @@ fn models_of_moments_shade_the_pixels_part_and_the_whole_base() {
     let ratio = FootprintRatio { moments: part(0.25), variances: part(0.5), ..FootprintRatio::WHOLE };
     let (s, base) = (100.0, 0.01);
     for (shading, kept) in [(Shading::Lean, 0.25), (Shading::Clean, 0.25), (Shading::Variance, 0.5)] {
-        assert!(shading.mean_input().is_some());
         let options = LobeOptions { specular_power: s, ..LobeOptions::default() };
-        let found = shaded(shading, sigma, &ratio, &options);
+        let found = shaded(shading, sigma, &ratio, Base::None, &options);
         assert!(close(found.xx, kept * 0.04 + base) && close(found.yy, kept * 0.04 + base), "{found:?}");
-        let whole = shaded(shading, sigma, &FootprintRatio::WHOLE, &options);
+        let whole = shaded(shading, sigma, &FootprintRatio::WHOLE, Base::None, &options);
         assert!(close(whole.xx, 0.04 + base), "{whole:?}");
         // A base in the map is not excess and stays whole.
-        let baked = LobeOptions { base_in_maps: Base::Baked, ..options };
-        let found = shaded(shading, sigma, &ratio, &baked);
+        let found = shaded(shading, sigma, &ratio, Base::Baked, &options);
         assert!(close(found.xx, kept * (0.04 - base) + base), "{shading}: {found:?}");
     }
 }

@@ -7,7 +7,7 @@ use roughcast::shading::{
 use roughcast::texture::Packing;
 use roughcast::{Covariance, Moments, Slope};
 
-use super::support::{Frame, Random, dot, narrow};
+use super::support::{Frame, Random, dot, narrow, surface_of_texels};
 
 /// Single floats: a few roundings of the moments, `2^-23` each, over the smallest variance compared, 1e-4.
 const ROUNDING: f32 = 3e-3;
@@ -47,8 +47,13 @@ fn lean_at_the_finest_level_is_off_centre_beckmann() {
                 let slope =
                     Slope { x: random.between(-1.0, 1.0) as f32, y: random.between(-1.0, 1.0) as f32 };
                 let texels = lean_texels(Moments::of_slope(slope));
-                let lean =
-                    Shading::Lean.surface(&texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options);
+                let lean = surface_of_texels(
+                    Shading::Lean,
+                    &texels,
+                    &FootprintRatio::WHOLE,
+                    &Packing::IDENTITY,
+                    &options,
+                );
                 let bump = Shading::Lean.surface_of_slope(slope, &options);
                 let width = 1.0 / f64::from(s).sqrt();
                 let found = difference(lean, bump, slope, width, &options);
@@ -69,11 +74,12 @@ fn clean_is_lean_for_isotropic_bumps_and_variance_is_lean_without_mixed_terms() 
     ];
     let lean = |sigma| {
         let texels = lean_texels(Moments::from_mean_and_covariance(mean, sigma));
-        Shading::Lean.surface(&texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
+        surface_of_texels(Shading::Lean, &texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
     };
     let clean = |sigma: Covariance| {
         let trace = sigma.trace() + mean.x * mean.x + mean.y * mean.y;
-        Shading::Clean.surface(
+        surface_of_texels(
+            Shading::Clean,
             &[[mean.x, mean.y, trace, 1.0]],
             &FootprintRatio::WHOLE,
             &Packing::IDENTITY,
@@ -82,7 +88,7 @@ fn clean_is_lean_for_isotropic_bumps_and_variance_is_lean_without_mixed_terms() 
     };
     let variance = |sigma: Covariance| {
         let texel = [mean.x, mean.y, sigma.xx, sigma.yy];
-        Shading::Variance.surface(&[texel], &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
+        surface_of_texels(Shading::Variance, &[texel], &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
     };
     let of = |one, other| difference(one, other, mean, 0.1, &options);
     assert!(of(lean(round), clean(round)) < ROUNDING);
@@ -118,7 +124,7 @@ fn lobes_turn_with_the_bumps() {
     };
     let lean = |[x, y]: [f32; 2], sigma| {
         let texels = lean_texels(Moments::from_mean_and_covariance(Slope { x, y }, sigma));
-        Shading::Lean.surface(&texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
+        surface_of_texels(Shading::Lean, &texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
     };
     let plain = lean([0.2, 0.05], sigma).lobe(view, light, &options);
     let turned = lean(turn([0.2, 0.05]), turned_sigma).lobe(turn3(view), turn3(light), &options);

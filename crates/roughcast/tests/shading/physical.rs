@@ -6,11 +6,11 @@ use roughcast::shading::{
     FootprintModel, FootprintRatio, Form, LightSample, LobeOptions, Masking, Material, Shading, Surface,
     reflect,
 };
-use roughcast::texture::{Base, Layout, Packing, Part, TextureInfo};
-use roughcast::{Covariance, Lobe, Moments, Slope};
+use roughcast::texture::{Base, Layout, Packing, Part, RoughnessStored, TextureInfo};
+use roughcast::{Covariance, Moments, Slope};
 
 use super::oracle;
-use super::support::{Frame, Random, Vector, dot, narrow, normalize, scaled, sum, wide};
+use super::support::{Frame, Random, Vector, dot, narrow, normalize, scaled, sum, surface_of_texels, wide};
 
 /// Of G2 by the rational fit of Λ, whose G1 is off by 0.0035 at most (Walter et al., 2007, section 5.2): G2 holds two of them.
 const FIT: f64 = 0.007;
@@ -124,8 +124,13 @@ fn a_flat_map_is_the_flat_microfacet_brdf_at_any_angle() {
     let s = 100.0_f32;
     let material = Material { albedo: [0.0; 3], ambient: [0.0; 3], specular: [1.0; 3] };
     for shading in Shading::ALL.iter().copied().filter(|shading| *shading != Shading::Phong) {
-        let surface =
-            shading.surface(&texels(shading), &FootprintRatio::WHOLE, &Packing::IDENTITY, &options(s));
+        let surface = surface_of_texels(
+            shading,
+            &texels(shading),
+            &FootprintRatio::WHOLE,
+            &Packing::IDENTITY,
+            &options(s),
+        );
         for degrees in [0.0_f64, 30.0, 60.0, 80.0] {
             for offset in [0.0_f64, 3.0] {
                 let direction = |degrees: f64, side: f64| {
@@ -193,7 +198,8 @@ fn a_white_surface_reflects_no_more_than_it_receives() {
         let options = LobeOptions { masking: Masking::Full, ..options(200.0) };
         let moments = Moments::from_mean_and_covariance(Slope::default(), sigma);
         let texels = [[0.0, 0.0, 1.0, moments.xy], [0.0, 0.0, moments.xx, moments.yy]];
-        let surface = Shading::Lean.surface(&texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options);
+        let surface =
+            surface_of_texels(Shading::Lean, &texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options);
         furnace(&surface, &options, &format!("{sigma:?}"));
         // Masked by the base alone they shine at grazing angles, as bump mapping does.
         let base = LobeOptions { masking: Masking::Base, ..options };
@@ -249,7 +255,8 @@ fn all_slopes_mask_more_than_the_base_does() {
     let texels = [[0.0, 0.0, 1.0, moments.xy], [0.0, 0.0, moments.xx, moments.yy]];
     let lobe = |masking, z: f64| {
         let options = LobeOptions { masking, ..options(256.0) };
-        let surface = Shading::Lean.surface(&texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options);
+        let surface =
+            surface_of_texels(Shading::Lean, &texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options);
         let x = (1.0 - z * z).sqrt();
         surface.lobe(narrow([x, 0.0, z]), narrow([-x, 0.0, z]), &options)
     };
@@ -278,7 +285,7 @@ fn maps_bring_the_exponent_of_their_base() {
     // Toksvig's factor is one of the exponent that it was baked for.
     for layout in [Layout::Toksvig, Layout::Lean] {
         let options = default.for_maps(&baked(layout, 1.0 / 32.0));
-        assert_eq!((options.specular_power, options.base_in_maps), (32.0, Base::Baked));
+        assert_eq!(options.specular_power, 32.0);
         assert_eq!((options.masking, options.footprint), (default.masking, default.footprint));
     }
     // Of a base that varies nobody knows which part of the variance it is.
@@ -291,15 +298,11 @@ fn maps_bring_the_exponent_of_their_base() {
 #[test]
 fn anisotropic_ggx_masks_along_the_viewers_direction() {
     let texel = [1.0, 0.0, 0.9, 1.0];
-    let options = LobeOptions {
-        base_in_maps: Base::Baked,
-        roughness_stored: roughcast::texture::RoughnessStored::Alpha,
-        ..options(100.0)
-    };
-    let inputs = Shading::Ggx.inputs(Lobe::Anisotropic).len();
+    let options = options(100.0);
+    let packing =
+        Packing { base: Base::Baked, roughness_stored: RoughnessStored::Alpha, ..Packing::IDENTITY };
     let texels = [[0.0, 0.0, 1.0, 1.0], [0.1; 4], texel];
-    assert_eq!(inputs, texels.len());
-    let surface = Shading::Ggx.surface(&texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options);
+    let surface = surface_of_texels(Shading::Ggx, &texels, &FootprintRatio::WHOLE, &packing, &options);
     let widths = [0.1 + 0.9 * 0.81, 0.1_f64];
     for (azimuth, alpha) in [(0.0, widths[0]), (0.5 * PI, widths[1])] {
         let (sin, cos) = 70.0_f64.to_radians().sin_cos();

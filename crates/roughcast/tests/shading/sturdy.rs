@@ -2,16 +2,17 @@
 
 use roughcast::shading::{
     BaseLobe, FootprintModel, FootprintRatio, Form, LobeOptions, Masking, Repair, Shading,
-    blinn_phong_surface, ggx_surface_of_normal, ggx_visible_part,
+    blinn_phong_surface, ggx_surface, ggx_visible_part,
 };
-use roughcast::texture::{Base, Packing, RoughnessStored};
-use roughcast::{Lobe, Slope};
+use roughcast::texture::{Base, Packing, RoughnessStored, normal_moments};
+use roughcast::{Distribution, Lobe, Slope};
 
-use super::support::{Frame, Random, narrow};
+use super::support::{Frame, Random, narrow, surface_of_texels};
 
 const POWERS: [f32; 4] = [1.0, 100.0, 16_384.0, 1e5];
 
-fn all_options() -> Vec<LobeOptions> {
+/// All options, each with a packing of floats for every statement about the maps.
+fn all_options() -> Vec<(LobeOptions, Packing)> {
     let mut all = Vec::new();
     for specular_power in POWERS {
         for form in Form::ALL.iter().copied() {
@@ -19,16 +20,17 @@ fn all_options() -> Vec<LobeOptions> {
                 for repair in Repair::ALL.iter().copied() {
                     for base_in_maps in Base::ALL.iter().copied() {
                         for roughness_stored in RoughnessStored::ALL.iter().copied() {
-                            all.push(LobeOptions {
+                            let options = LobeOptions {
                                 specular_power,
                                 form,
                                 base,
                                 repair,
-                                base_in_maps,
-                                roughness_stored,
                                 masking: Masking::ALL[all.len() % 2],
                                 footprint: FootprintModel::Corrected,
-                            });
+                            };
+                            let packing =
+                                Packing { base: base_in_maps, roughness_stored, ..Packing::IDENTITY };
+                            all.push((options, packing));
                         }
                     }
                 }
@@ -47,7 +49,7 @@ fn directions() -> Vec<[f32; 3]> {
 }
 
 fn check(shading: Shading, texels: &[[f32; 4]], packing: &Packing, options: &LobeOptions) {
-    let surface = shading.surface(texels, &FootprintRatio::WHOLE, packing, options);
+    let surface = surface_of_texels(shading, texels, &FootprintRatio::WHOLE, packing, options);
     assert!(surface.normal.iter().all(|v| v.is_finite()), "{shading} {texels:?}: {surface:?}");
     let directions = directions();
     for view in &directions {
@@ -66,21 +68,25 @@ fn extreme_texels_of_unsigned_textures() {
         second: [16_384.0, 0.0],
         mixed: [32_768.0, -16_384.0],
         trace: [32_768.0, 0.0],
-        variance: [16_384.0, 0.0],
+        spread: [16_384.0, 0.0],
+        signed_spread: [32_768.0, -16_384.0],
         unit: [2.0, -1.0],
+        ..Packing::IDENTITY
     };
     let ends = [0.0_f32, 0.5, 1.0];
     let mut random = Random(11);
     let options = all_options();
     for shading in Shading::ALL.iter().copied() {
         for _ in 0..400 {
-            let inputs = shading.inputs(Lobe::Anisotropic).len();
+            let reader = shading.layout().texel_reader(shading.wanted(), Lobe::Anisotropic);
+            let inputs = reader.expect("a model samples its layout").inputs.len();
             let pick = |random: &mut Random| {
                 if random.unit() < 0.7 { ends[(3.0 * random.unit()) as usize] } else { random.unit() as f32 }
             };
             let texels = (0..inputs).map(|_| [0; 4].map(|_| pick(&mut random))).collect::<Vec<_>>();
-            let options = options[(random.unit() * options.len() as f64) as usize];
-            check(shading, &texels, &packing, &options);
+            let (options, of_maps) = options[(random.unit() * options.len() as f64) as usize];
+            let Packing { base, roughness_stored, .. } = of_maps;
+            check(shading, &texels, &Packing { base, roughness_stored, ..packing }, &options);
         }
     }
 }
@@ -88,13 +94,12 @@ fn extreme_texels_of_unsigned_textures() {
 #[test]
 fn the_roughest_lobe_is_finite_for_light_at_the_horizon() {
     // A stored exponent of 1e-3, the least that counts: its width is 45.
-    let options = LobeOptions {
-        base_in_maps: Base::Baked,
-        roughness_stored: RoughnessStored::SpecularPower,
-        ..LobeOptions::default()
-    };
-    check(Shading::Ggx, &[[0.0, 0.0, 1.0, 1.0], [0.0; 4], [0.0; 4]], &Packing::IDENTITY, &options);
-    let surface = ggx_surface_of_normal([0.0, 0.0, 1.0], &LobeOptions { specular_power: 1e-3, ..options });
+    let packing =
+        Packing { base: Base::Baked, roughness_stored: RoughnessStored::SpecularPower, ..Packing::IDENTITY };
+    let options = LobeOptions::default();
+    check(Shading::Ggx, &[[0.0, 0.0, 1.0, 1.0], [0.0; 4], [0.0; 4]], &packing, &options);
+    let flat = Distribution::of_slope(Slope::default());
+    let surface = ggx_surface(&flat, &LobeOptions { specular_power: 1e-3, ..options });
     for cosine in [1.2e-18, 1e-15, 1e-6] {
         let light = [1.0, 0.0, cosine];
         let part = ggx_visible_part(&surface, [0.0, 0.6, 0.8], light);
@@ -105,23 +110,24 @@ fn the_roughest_lobe_is_finite_for_light_at_the_horizon() {
 #[test]
 fn a_mirror_with_its_base_baked_in_is_finite() {
     for shading in [Shading::Lean, Shading::Clean, Shading::Variance, Shading::Ggx] {
-        for options in all_options().into_iter().filter(|options| options.base_in_maps == Base::Baked) {
+        for (options, packing) in all_options().into_iter().filter(|(_, packing)| packing.base == Base::Baked)
+        {
             let texels = match shading {
                 Shading::Lean => vec![[0.1, 0.0, 0.9, 0.0], [0.25, 0.0, 0.0625, 0.0]],
                 Shading::Clean => vec![[0.25, 0.0, 0.0625, 1.0]],
                 Shading::Variance => vec![[0.25, 0.0, 0.0, 0.0]],
                 _ => vec![[0.0, 0.0, 1.0, 1.0], [0.0; 4], [0.0; 4]],
             };
-            check(shading, &texels, &Packing::IDENTITY, &options);
+            check(shading, &texels, &packing, &options);
         }
     }
-    // Mended it still shows a highlight, by the text's rule it shows none.
+    // Repaired it still shows a highlight, by the paper's rule it shows none.
     let h = narrow(Frame::SURFACE.direction([0.25, 0.0]));
     let lobe = |repair| {
-        let options = LobeOptions { base_in_maps: Base::Baked, repair, ..LobeOptions::default() };
+        let options = LobeOptions { repair, ..LobeOptions::default() };
+        let packing = Packing { base: Base::Baked, ..Packing::IDENTITY };
         let texels = [[0.1, 0.0, 0.9, 0.0], [0.25, 0.0, 0.0625, 0.0]];
-        Shading::Lean
-            .surface(&texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
+        surface_of_texels(Shading::Lean, &texels, &FootprintRatio::WHOLE, &packing, &options)
             .lobe(h, h, &options)
     };
     assert!(lobe(Repair::Clamp) > 0.0);
@@ -135,8 +141,7 @@ fn a_covariance_that_is_none_is_mended_or_shows_nothing() {
     let h = narrow(Frame::SURFACE.direction([0.25, 0.0]));
     let lobe = |repair| {
         let options = LobeOptions { repair, ..LobeOptions::default() };
-        Shading::Lean
-            .surface(&texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
+        surface_of_texels(Shading::Lean, &texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
             .lobe(h, h, &options)
     };
     assert!(lobe(Repair::Clamp) > 0.0);
@@ -149,8 +154,7 @@ fn the_repair_leaves_sound_covariances_alone() {
     let h = narrow(Frame::SURFACE.direction([0.3, 0.05]));
     let lobe = |repair| {
         let options = LobeOptions { repair, specular_power: 1e5, ..LobeOptions::default() };
-        Shading::Lean
-            .surface(&texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
+        surface_of_texels(Shading::Lean, &texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
             .lobe(h, h, &options)
     };
     assert_eq!(lobe(Repair::Clamp), lobe(Repair::Published));
@@ -159,7 +163,7 @@ fn the_repair_leaves_sound_covariances_alone() {
 #[test]
 fn steep_bumps_of_the_truth_are_finite() {
     for shading in Shading::ALL.iter().copied() {
-        for options in all_options() {
+        for (options, _) in all_options() {
             for slope in [Slope { x: 128.0, y: 0.0 }, Slope { x: -90.0, y: 90.0 }, Slope::default()] {
                 let surface = shading.surface_of_slope(slope, &options);
                 for h in directions() {
@@ -188,8 +192,9 @@ fn nothing_is_reflected_below_the_surface() {
 #[test]
 fn a_normal_without_direction_is_flat() {
     let options = LobeOptions::default();
-    assert_eq!(blinn_phong_surface([0.0; 3], &options).normal, [0.0, 0.0, 1.0]);
-    let ggx = ggx_surface_of_normal([0.0; 3], &options);
+    let zero = normal_moments([0.0; 3]);
+    assert_eq!(blinn_phong_surface(&zero, &options).normal, [0.0, 0.0, 1.0]);
+    let ggx = ggx_surface(&zero, &options);
     assert_eq!((ggx.normal, ggx.tangent), ([0.0, 0.0, 1.0], [1.0, 0.0, 0.0]));
 }
 
@@ -197,8 +202,9 @@ fn a_normal_without_direction_is_flat() {
 fn a_two_channel_normal_gets_its_z_back() {
     let packing = Packing { unit: [2.0, -1.0], ..Packing::IDENTITY };
     let options = LobeOptions::default();
-    let normal =
-        |texel| Shading::Ggx.surface(&[texel, [0.5; 4]], &FootprintRatio::WHOLE, &packing, &options).normal;
+    let normal = |texel| {
+        surface_of_texels(Shading::Ggx, &[texel, [0.5; 4]], &FootprintRatio::WHOLE, &packing, &options).normal
+    };
     let (two, three) = (normal([0.8, 0.5, 0.0, 1.0]), normal([0.8, 0.5, 0.9, 1.0]));
     for (a, b) in two.iter().zip(three) {
         assert!((a - b).abs() < 1e-6, "{two:?} {three:?}");

@@ -1,4 +1,21 @@
-//! Vectors in f64, random numbers, and frames.
+//! Vectors in f64, random numbers, frames, and what a renderer makes of texels.
+
+use roughcast::Lobe;
+use roughcast::shading::{FootprintRatio, LobeOptions, Shading, Surface};
+use roughcast::texture::Packing;
+
+/// The surface that a model makes of filtered texels of the layout that it is made for.
+pub fn surface_of_texels(
+    shading: Shading,
+    texels: &[[f32; 4]],
+    ratio: &FootprintRatio,
+    packing: &Packing,
+    options: &LobeOptions,
+) -> Surface {
+    let lobe = if texels.len() == 3 { Lobe::Anisotropic } else { Lobe::Isotropic };
+    let reader = shading.layout().texel_reader(shading.wanted(), lobe).expect("a model samples its layout");
+    shading.surface_of(&reader.read_pixel(texels, ratio, packing, options), options)
+}
 
 pub type Vector = [f64; 3];
 

@@ -1,0 +1,58 @@
+// The distribution of slopes under a footprint: one to four weighted Gaussians, and the filtered normal.
+
+struct WeightedGaussian {
+    mean: vec2f,        // mean slope
+    variance: vec2f,    // along x and y
+    covariance: f32,    // mixed term
+    weight: f32,        // its part of the whole, 0 to 1
+}
+
+struct Distribution {
+    normal: vec3f,      // filtered normal, at the length that averaging has left it
+    base: u32,          // MAPS_...: whether the base roughness is in the variances
+    count: u32,         // Gaussians, 1 to 4; their weights sum to 1
+    first: WeightedGaussian,
+    second: WeightedGaussian,
+    third: WeightedGaussian,
+    fourth: WeightedGaussian,
+}
+
+// The unit normal of a slope.
+fn slope_normal(slope: vec2f) -> vec3f {
+    return normalize(vec3f(slope, 1.0));
+}
+
+// A distribution of one Gaussian with this covariance (xx, yy, xy).
+fn one_gaussian(normal: vec3f, mean: vec2f, sigma: vec3f, base: u32) -> Distribution {
+    let none = WeightedGaussian(vec2f(0.0), vec2f(0.0), 0.0, 0.0);
+    let first = WeightedGaussian(mean, sigma.xy, sigma.z, 1.0);
+    return Distribution(normal, base, 1u, first, none, none, none);
+}
+
+// A single slope, without bumps that are hidden.
+fn distribution_of_slope(slope: vec2f) -> Distribution {
+    return one_gaussian(slope_normal(slope), slope, vec3f(0.0), MAPS_WITHOUT_BASE);
+}
+
+// A Gaussian's part of the mean slope of the whole.
+fn weighted_mean(gaussian: WeightedGaussian) -> vec2f {
+    return gaussian.weight * gaussian.mean;
+}
+
+// A Gaussian's part of the covariance (xx, yy, xy) of the whole, whose mean is given: that within it and that between the two means.
+fn weighted_covariance(gaussian: WeightedGaussian, mean: vec2f) -> vec3f {
+    let d = gaussian.mean - mean;
+    return gaussian.weight * (vec3f(gaussian.variance, gaussian.covariance) + d.xyx * d.xyy);
+}
+
+// The Gaussian with the mean and the covariance of the whole. Those beyond the count have no weight.
+fn whole_gaussian(distribution: Distribution) -> WeightedGaussian {
+    if distribution.count <= 1u {
+        return distribution.first;
+    }
+    let mean = weighted_mean(distribution.first) + weighted_mean(distribution.second)
+        + weighted_mean(distribution.third) + weighted_mean(distribution.fourth);
+    let sigma = weighted_covariance(distribution.first, mean) + weighted_covariance(distribution.second, mean)
+        + weighted_covariance(distribution.third, mean) + weighted_covariance(distribution.fourth, mean);
+    return WeightedGaussian(mean, sigma.xy, sigma.z, 1.0);
+}

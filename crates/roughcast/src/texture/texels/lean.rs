@@ -1,0 +1,45 @@
+//! LEAN's filtered texels as a distribution: mean and covariance of the slopes.
+//!
+//! Source: Olano & Baker, "LEAN Mapping", 2010, Eq. 5, Figure 16.
+
+use super::normal::{bump_normal, normal_moments};
+use super::{Filtered, Input, TexelReader};
+use crate::distribution::Distribution;
+use crate::moments::Moments;
+use crate::slope::{Normal, Slope};
+use crate::texture::packing::unpack;
+use crate::texture::{Packing, Part};
+
+const LEAN1: Input = Input { part: Part::Whole, layer: "lean1" };
+const LEAN2: Input = Input { part: Part::Whole, layer: "lean2" };
+
+pub(super) const NORMAL: TexelReader = TexelReader {
+    module: "lean-normal",
+    inputs: &[LEAN1],
+    mean_input: None,
+    filtered: Filtered::Other,
+    read: |texels, packing, _| normal_moments(bump_normal(texels[0], packing)),
+};
+
+pub(super) const MOMENTS: TexelReader = TexelReader {
+    module: "lean",
+    inputs: &[LEAN1, LEAN2],
+    mean_input: Some(1),
+    filtered: Filtered::Moments,
+    read: |texels, packing, _| lean_moments(texels[0], texels[1], packing),
+};
+
+/// The distribution that filtered texels of LEAN's two textures hold, with the covariance as it comes out of the subtraction.
+#[inline]
+pub fn lean_moments(lean1: [f32; 4], lean2: [f32; 4], packing: &Packing) -> Distribution {
+    let mean = Slope { x: unpack(lean2[0], packing.slope), y: unpack(lean2[1], packing.slope) };
+    let moments = Moments {
+        mean,
+        xx: unpack(lean2[2], packing.second),
+        yy: unpack(lean2[3], packing.second),
+        xy: unpack(lean1[3], packing.mixed),
+    };
+    let normal = Normal::from(bump_normal(lean1, packing));
+    // Eq. 5.
+    Distribution::new(normal, mean, moments.covariance_as_stored()).with_base(packing.base)
+}

@@ -1,0 +1,127 @@
+//! From filtered texels, as a sampler returns them, to a distribution of slopes: one layout a file, with its WGSL twin beside it.
+//!
+//! These functions decode and nothing else. What the pixel sees of a filtered distribution is
+//! [`pixel_distribution`](crate::shading::pixel_distribution)'s to say, what a model makes of it
+//! [`Shading::surface_of`](crate::shading::Shading::surface_of)'s.
+
+mod clean;
+mod lean;
+mod normal;
+mod pbr;
+mod schilling;
+mod toksvig;
+mod variance;
+
+pub use clean::clean_moments;
+pub use lean::lean_moments;
+pub use normal::{bump_normal, normal_moments};
+pub use pbr::{ISOTROPIC, LEAST_STORED_POWER, pbr_moments, pbr_normal};
+pub use schilling::{schilling_isotropic_moments, schilling_moments};
+pub use toksvig::{toksvig_moments, toksvig_normal};
+pub use variance::variance_moments;
+
+use super::{Layout, Packing, Part};
+use crate::distribution::Distribution;
+use crate::options::Lobe;
+use crate::shading::{FootprintRatio, LobeOptions, PixelPart, pixel_distribution};
+
+/// A texture of a layout: which of its files, and which layer of that.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Input {
+    /// The file.
+    pub part: Part,
+    /// The layer's name.
+    pub layer: &'static str,
+}
+
+/// What a renderer wants to know of a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Wanted {
+    /// The filtered normal alone.
+    Normal,
+    /// The distribution of slopes.
+    Distribution,
+}
+
+/// What a texture filter averages, which tells how much of the variance under it is the pixel's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Filtered {
+    /// Raw moments: interpolation between texels adds the variance between them.
+    Moments,
+    /// Variances: interpolation adds none.
+    Variances,
+    /// Something else, which the footprint correction does not apply to.
+    Other,
+}
+
+/// How filtered texels of a layout are read.
+#[derive(Clone, Copy, Debug)]
+pub struct TexelReader {
+    /// The WGSL module that reads the same texels: see [`crate::wgsl`].
+    pub module: &'static str,
+    /// The textures, in the order of the texels.
+    pub inputs: &'static [Input],
+    /// Which of them has the mean slope in its first two channels; the footprint correction needs its derivatives.
+    pub mean_input: Option<usize>,
+    /// What the filter has averaged.
+    pub filtered: Filtered,
+    read: fn(&[[f32; 4]], &Packing, &LobeOptions) -> Distribution,
+}
+
+impl TexelReader {
+    /// The distribution under the texture filter, from one filtered texel for each of the inputs.
+    ///
+    /// # Panics
+    /// If there are fewer texels than inputs.
+    #[inline]
+    pub fn read(&self, texels: &[[f32; 4]], packing: &Packing, options: &LobeOptions) -> Distribution {
+        (self.read)(texels, packing, options)
+    }
+
+    /// The part of a ratio that applies to what this reader's textures hold; `None` where the footprint correction does not apply.
+    #[inline]
+    pub fn pixel_part(&self, ratio: &FootprintRatio) -> Option<PixelPart> {
+        match self.filtered {
+            Filtered::Moments => Some(ratio.moments),
+            Filtered::Variances => Some(ratio.variances),
+            Filtered::Other => None,
+        }
+    }
+
+    /// The distribution under the pixel: what [`TexelReader::read`] gives, less what the texture filter covers beyond the pixel.
+    #[inline]
+    pub fn read_pixel(
+        &self,
+        texels: &[[f32; 4]],
+        ratio: &FootprintRatio,
+        packing: &Packing,
+        options: &LobeOptions,
+    ) -> Distribution {
+        let filtered = self.read(texels, packing, options);
+        match self.pixel_part(ratio) {
+            Some(part) => pixel_distribution(&filtered, ratio, part, options),
+            None => filtered,
+        }
+    }
+}
+
+impl Layout {
+    /// How a renderer reads this layout's textures for what it wants; `None` for layouts with more channels than a sampler returns.
+    /// `lobe` says whether a material has an anisotropy texture; other layouts do not care.
+    pub fn texel_reader(self, wanted: Wanted, lobe: Lobe) -> Option<&'static TexelReader> {
+        match (self, wanted, lobe) {
+            (Self::Lean, Wanted::Normal, _) => Some(&lean::NORMAL),
+            (Self::Lean, Wanted::Distribution, _) => Some(&lean::MOMENTS),
+            (Self::Clean, ..) => Some(&clean::MOMENTS),
+            (Self::Schilling, Wanted::Normal, _) => Some(&schilling::NORMAL),
+            (Self::Schilling, Wanted::Distribution, _) => Some(&schilling::MOMENTS),
+            (Self::SchillingIsotropic, ..) => Some(&schilling::ISOTROPIC_MOMENTS),
+            (Self::Variance, ..) => Some(&variance::MOMENTS),
+            (Self::Toksvig, ..) => Some(&toksvig::MOMENTS),
+            (Self::Pbr, Wanted::Normal, _) => Some(&pbr::NORMAL),
+            (Self::Pbr, Wanted::Distribution, Lobe::Isotropic) => Some(&pbr::MOMENTS),
+            (Self::Pbr, Wanted::Distribution, Lobe::Anisotropic) => Some(&pbr::ANISOTROPIC_MOMENTS),
+            (Self::BumpSlopes | Self::Moments, ..) => None,
+        }
+    }
+}

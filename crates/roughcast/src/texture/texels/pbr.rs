@@ -1,0 +1,93 @@
+//! The filtered texels of a physically based material as a distribution: `α² = 2σ²` along each axis.
+//!
+//! The direction and the strength of the anisotropy are those of glTF's KHR_materials_anisotropy: across the direction the width
+//! is the roughness texture's, along it `mix(α, 1, strength²)`.
+
+use super::{Filtered, Input, TexelReader};
+use crate::distribution::Distribution;
+use crate::moments::Covariance;
+use crate::shading::{LEAST_COSINE, unit_normal};
+use crate::slope::{Normal, Slope, slope_from_normal};
+use crate::source::variance_from_stored;
+use crate::texture::normal_moments;
+use crate::texture::packing::unpack;
+use crate::texture::{Packing, Part, RoughnessStored};
+
+const NORMAL_INPUT: Input = Input { part: Part::Normal, layer: "normal" };
+const ROUGHNESS: Input = Input { part: Part::Roughness, layer: "roughness" };
+const ANISOTROPY: Input = Input { part: Part::Anisotropy, layer: "anisotropy" };
+
+pub(super) const NORMAL: TexelReader = TexelReader {
+    module: "pbr-normal",
+    inputs: &[NORMAL_INPUT],
+    mean_input: None,
+    filtered: Filtered::Other,
+    read: |texels, packing, _| normal_moments(pbr_normal(texels[0], packing)),
+};
+
+pub(super) const MOMENTS: TexelReader = TexelReader {
+    module: "pbr",
+    inputs: &[NORMAL_INPUT, ROUGHNESS],
+    mean_input: None,
+    filtered: Filtered::Other,
+    read: |texels, packing, _| pbr_moments(texels[0], texels[1][0], ISOTROPIC, packing),
+};
+
+pub(super) const ANISOTROPIC_MOMENTS: TexelReader = TexelReader {
+    module: "pbr-anisotropic",
+    inputs: &[NORMAL_INPUT, ROUGHNESS, ANISOTROPY],
+    read: |texels, packing, _| pbr_moments(texels[0], texels[1][0], texels[2], packing),
+    ..MOMENTS
+};
+
+/// Stored exponents below this count as it: its α of about 45 is rougher than anything that is stored.
+pub const LEAST_STORED_POWER: f32 = 1e-3;
+
+/// The anisotropy texel of a material that has none, for any packing: its strength is zero.
+pub const ISOTROPIC: [f32; 4] = [1.0, 0.5, 0.0, 1.0];
+
+/// The unit normal that the normal texture holds. Where no z is stored (two-channel textures give 0 for it), it follows
+/// from x and y.
+#[inline]
+pub fn pbr_normal(normal: [f32; 4], packing: &Packing) -> [f32; 3] {
+    let [x, y, z] = [0, 1, 2].map(|i| unpack(normal[i], packing.unit));
+    let z = if z > 0.0 { z } else { (1.0 - x * x - y * y).max(0.0).sqrt() };
+    unit_normal([x, y, z])
+}
+
+/// The distribution that filtered texels of a material hold: the normal, the roughness and, for anisotropic maps, direction and
+/// strength of the anisotropy. Without these pass [`ISOTROPIC`]. Of a packed roughness texture pass the channel with the roughness.
+#[inline]
+pub fn pbr_moments(
+    normal: [f32; 4],
+    roughness: f32,
+    anisotropy: [f32; 4],
+    packing: &Packing,
+) -> Distribution {
+    let roughness = match packing.roughness_stored {
+        RoughnessStored::SpecularPower => roughness.max(LEAST_STORED_POWER),
+        _ => roughness,
+    };
+    let bump = Normal::from(pbr_normal(normal, packing));
+    let variance = variance_from_stored(roughness, packing.roughness_stored).max(0.0);
+    let across = (2.0 * variance).sqrt();
+    // Widths above 1 are left alone, as the baker counts them as 1.
+    let wider = (1.0 - across).max(0.0) * anisotropy[2] * anisotropy[2];
+    // Half the difference of the squared widths.
+    let added = wider * (across + 0.5 * wider);
+    let direction = [unpack(anisotropy[0], packing.unit), unpack(anisotropy[1], packing.unit)];
+    let squared = direction[0] * direction[0] + direction[1] * direction[1];
+    // The x axis where filtering has left no direction.
+    let along = if squared > LEAST_COSINE {
+        let inverse = 1.0 / squared.sqrt();
+        Slope { x: direction[0] * inverse, y: direction[1] * inverse }
+    } else {
+        Slope { x: 1.0, y: 0.0 }
+    };
+    let covariance = Covariance {
+        xx: variance + added * along.x * along.x,
+        yy: variance + added * along.y * along.y,
+        xy: added * along.x * along.y,
+    };
+    Distribution::new(bump, slope_from_normal(bump), covariance).with_base(packing.base)
+}

@@ -1,0 +1,12 @@
+// The normal texture of a physically based material as a source of bumps.
+//
+// The host supplies the uniforms `packing` and `options` and, for each texture i from 0 on, texeli(at), the filtered texel, and finesti(at),
+// that of the finest level.
+
+fn detail_slope(at: DetailPoint) -> vec2f {
+    return normal_moments(pbr_normal(finest0(at), packing)).first.mean;
+}
+
+fn detail_distribution(at: DetailPoint) -> Distribution {
+    return normal_moments(pbr_normal(texel0(at), packing));
+}

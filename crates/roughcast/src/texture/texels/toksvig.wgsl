@@ -1,0 +1,18 @@
+// Toksvig's filtered texel as a distribution: the variance that his factor leaves of an exponent.
+
+// Factors below this count as it.
+const LEAST_GLOSS: f32 = 1e-6;
+
+// The averaged normal, not renormalised: for diffuse light.
+fn toksvig_normal(toksvig: vec4f, packing: Packing) -> vec3f {
+    return toksvig.xyz * packing.unit.x + packing.unit.y;
+}
+
+// The factor f makes f s of the exponent s for which it was baked: the variance is 1 / (f s) - 1 / s.
+fn toksvig_moments(toksvig: vec4f, packing: Packing, options: LobeOptions) -> Distribution {
+    let normal = toksvig_normal(toksvig, packing);
+    let gloss = clamp(toksvig.w, LEAST_GLOSS, 1.0);
+    let variance = (1.0 - gloss) / (gloss * options.specular_power);
+    let slope = normal.xy / max(normal.z, LEAST_NORMAL_Z);
+    return one_gaussian(normal, slope, vec3f(variance, variance, 0.0), MAPS_WITHOUT_BASE);
+}

@@ -1,0 +1,26 @@
+//! The filtered texel of the variance texture as a distribution: nothing is subtracted, so eight bits go far.
+//!
+//! Source: the way out that Olano, "Shiny and CLEAN", 2011, names for eight-bit textures.
+
+use super::{Filtered, Input, TexelReader};
+use crate::distribution::Distribution;
+use crate::moments::Covariance;
+use crate::slope::Slope;
+use crate::texture::packing::unpack;
+use crate::texture::{Packing, Part};
+
+pub(super) const MOMENTS: TexelReader = TexelReader {
+    module: "variance",
+    inputs: &[Input { part: Part::Whole, layer: "variance" }],
+    mean_input: Some(0),
+    filtered: Filtered::Variances,
+    read: |texels, packing, _| variance_moments(texels[0], packing),
+};
+
+/// The distribution that a filtered texel of the variance texture holds.
+#[inline]
+pub fn variance_moments(variance: [f32; 4], packing: &Packing) -> Distribution {
+    let mean = Slope { x: unpack(variance[0], packing.slope), y: unpack(variance[1], packing.slope) };
+    let [xx, yy] = [variance[2], variance[3]].map(|stored| unpack(stored, packing.spread).max(0.0));
+    Distribution::gaussian(mean, Covariance { xx, yy, xy: 0.0 }).with_base(packing.base)
+}
