@@ -68,24 +68,21 @@ function snippets(readme) {
 const LAYOUTS = {
   lean: {
     texels: 'vec4 t1 = lean1, t2 = lean2;',
-    surface: 'rc_lean_surface(lean1, lean2, rc_whole_footprint(), packing, options)',
-    lobe: 'rc_lean_lobe',
+    moments: 'rc_lean_moments(lean1, lean2, packing)',
   },
   clean: {
     texels: 'vec4 t = clean;',
-    surface: 'rc_clean_surface(clean, rc_whole_footprint(), packing, options)',
-    lobe: 'rc_clean_lobe',
+    moments: 'rc_clean_moments(clean, packing)',
   },
   variance: {
     texels: 'vec4 t = variance;',
-    surface: 'rc_variance_surface(variance, rc_whole_footprint(), packing, options)',
-    lobe: 'rc_variance_lobe',
+    moments: 'rc_variance_moments(variance, packing)',
   },
 };
 
 function shader(readme, layout, library) {
   const { common, of } = snippets(readme);
-  const { texels, surface, lobe } = LAYOUTS[layout];
+  const { texels, moments } = LAYOUTS[layout];
   // Sampling is the test's own.
   const code = of(layout).split('\n').filter((line) => !line.includes('texture(')).join('\n');
   return `#version 300 es
@@ -117,13 +114,11 @@ void main() {
   options.form = RC_FORM_PHYSICAL;
   options.base = RC_BASE_PLANE;
   options.repair = RC_REPAIR_CLAMP;
-  options.base_in_maps = RC_MAPS_WITHOUT_BASE;
-  options.roughness_stored = RC_STORED_PERCEPTUAL;
   options.masking = RC_MASKING_BASE;
   options.footprint = RC_FOOTPRINT_CORRECTED;
   rc_Packing packing = rc_Packing(vec2(2.0 * sc, -sc), vec2(sc * sc, 0.0), vec2(2.0 * sc * sc, -sc * sc), vec2(2.0 * sc * sc, 0.0),
-    vec2(vs, 0.0), vec2(2.0, -1.0));
-  float exported = ${lobe}(${surface}, v, l, options);
+    vec2(vs, 0.0), vec2(2.0 * vs, -vs), vec2(2.0, -1.0), RC_MAPS_WITHOUT_BASE, RC_STORED_PERCEPTUAL);
+  float exported = rc_gaussian_lobe(rc_gaussian_surface(${moments}, options), v, l, options);
   // White, so that Fresnel's term is one.
   float wanted = rc_specular_radiance(exported, vec3(1.0), v, l, vec3(1.0), options).x;
   ${texels}

@@ -5,13 +5,12 @@ use std::ops::ControlFlow;
 use anyhow::Result;
 use indicatif::ProgressBar;
 use pollster::block_on;
-use roughcast::Wrap;
 use roughcast::shading::{LobeOptions, Shading};
 use roughcast::texture::TextureArray;
 use roughcast_gpu::render::{DrawOptions, Drawing, Geometry, GpuTextures, RenderTarget, Renderer};
 use roughcast_gpu::{Gpu, GpuOptions, render};
-use roughcast_scene::render::{Method, ShadingTextures, Truth};
-use roughcast_scene::{MAX_DETAIL, Picture, Reconstruction, Sampler, Scene, SlopeMap};
+use roughcast_scene::render::{Method, Truth};
+use roughcast_scene::{BakedTextures, MAX_DETAIL, Picture, Sampler, Scene, SlopeDetail};
 
 /// One way to make a picture of a scene. All pictures of one painter have the same size.
 pub enum Painter {
@@ -31,16 +30,15 @@ impl Painter {
         };
         match self {
             Self::Method(painter) => {
-                let MethodPainter { textures, sampler, options, size } = painter;
-                let method = Method { textures, sampler: *sampler, options: *options };
+                let MethodPainter { shading, textures, sampler, options, size } = painter;
+                let method =
+                    Method { shading: *shading, detail: &textures.sampled(*sampler), options: *options };
                 Ok(method.render(scene, *size, &watch)?)
             }
             Self::Truth(painter) => {
                 let truth = Truth {
                     shading: painter.shading,
-                    slopes: &painter.slopes,
-                    reconstruction: Reconstruction::Linear,
-                    wrap: painter.wrap,
+                    detail: &painter.detail,
                     options: painter.options,
                     samples: painter.samples,
                 };
@@ -53,7 +51,8 @@ impl Painter {
 
 /// One sample a pixel of filtered textures, on the processor.
 pub struct MethodPainter {
-    pub textures: ShadingTextures,
+    pub shading: Shading,
+    pub textures: BakedTextures,
     pub sampler: Sampler,
     pub options: LobeOptions,
     pub size: (u32, u32),
@@ -61,9 +60,8 @@ pub struct MethodPainter {
 
 /// Many samples a pixel of the finest level.
 pub struct TruthPainter {
-    pub slopes: SlopeMap,
+    pub detail: SlopeDetail,
     pub shading: Shading,
-    pub wrap: Wrap,
     pub options: LobeOptions,
     pub samples: u32,
     pub size: (u32, u32),

@@ -13,8 +13,10 @@ use roughcast::texture::TextureArray;
 use roughcast_gpu::render::DrawOptions;
 use roughcast_io::picture::{Plane, write_exr, write_png};
 use roughcast_io::{AtomicFile, AtomicSet};
-use roughcast_scene::render::{MAX_SAMPLES, ShadingTextures};
-use roughcast_scene::{Filter, Picture, Sampler, Scene, SlopeMap};
+use roughcast_scene::render::MAX_SAMPLES;
+use roughcast_scene::{
+    BakedTextures, Filter, Picture, Reconstruction, Sampler, Scene, SlopeDetail, SlopeMap,
+};
 
 use crate::args::{SourceArgs, one_of, positive};
 use crate::display::{exposure_of, shown};
@@ -251,8 +253,9 @@ impl Args {
         let filter = match (self.filter, subject) {
             (FilterChoice::Truth(samples), Subject::Map(map)) => {
                 let slopes = SlopeMap::of(&map.image, &map.options).with_context(named)?;
-                let wrap = map.options.wrap;
-                return Ok(Painter::Truth(TruthPainter { slopes, shading, wrap, options, samples, size }));
+                let (reconstruction, wrap) = (Reconstruction::Linear, map.options.wrap);
+                let detail = SlopeDetail { slopes, reconstruction, wrap };
+                return Ok(Painter::Truth(TruthPainter { detail, shading, options, samples, size }));
             }
             (FilterChoice::Truth(_), Subject::Baked(_)) => {
                 let line = "--filter truth needs the map, of which a baked file holds averages: give the map that it was \
@@ -279,8 +282,8 @@ impl Args {
             let painter = GpuPainter::new(shading, &arrays, &draw_options, scene, size)?;
             return Ok(Painter::Gpu(Box::new(painter)));
         }
-        let textures = ShadingTextures::new(shading, &arrays).with_context(named)?;
-        Ok(Painter::Method(MethodPainter { textures, sampler, options, size }))
+        let textures = BakedTextures::of_model(shading, &arrays).with_context(named)?;
+        Ok(Painter::Method(MethodPainter { shading, textures, sampler, options, size }))
     }
 
     /// The model: the one that was named, else LEAN's for a map, and for a baked file the one that samples its layout.

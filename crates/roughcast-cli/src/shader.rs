@@ -15,7 +15,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result};
 use clap::ValueHint;
 use clap::builder::TypedValueParser;
-use roughcast::shading::wgsl::{MODULES, Module, Role};
+use roughcast::wgsl::{MODULES, Module, Role};
 use roughcast_io::AtomicFile;
 use serde_json::{Value, json};
 
@@ -57,7 +57,7 @@ const ALL: &str = "all";
 
 /// What can be exported.
 fn exports() -> impl Iterator<Item = &'static Module> {
-    MODULES.iter().filter(|module| module.role != Role::Part)
+    MODULES.iter().filter(|module| matches!(module.role, Role::Model | Role::Companion))
 }
 
 /// What users of the layouts may ask for.

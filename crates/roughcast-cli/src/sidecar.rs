@@ -42,7 +42,8 @@ pub fn sidecar(stored: &[Stored], files: &[PathBuf]) -> Value {
     })
 }
 
-/// `value = stored * pair[0] + pair[1]`, with stored as a sampler returns it.
+/// The members of the exported shaders' `Packing`: `value = stored * pair[0] + pair[1]`, with stored as a sampler returns it, and two
+/// numbers of choices.
 fn packing(info: &TextureInfo, sample_type: SampleType) -> Value {
     let packing = Packing::new(info, sample_type);
     json!({
@@ -50,8 +51,11 @@ fn packing(info: &TextureInfo, sample_type: SampleType) -> Value {
         "second": packing.second,
         "mixed": packing.mixed,
         "trace": packing.trace,
-        "variance": packing.variance,
+        "spread": packing.spread,
+        "signed_spread": packing.signed_spread,
         "unit": packing.unit,
+        "base": packing.base as u32,
+        "roughness_stored": packing.roughness_stored as u32,
     })
 }
 

@@ -258,7 +258,7 @@ fn every_export_compiles_on_its_own() {
 
 /// Every global name of the library, as WGSL has it.
 fn library_names() -> Vec<&'static str> {
-    let lines = roughcast::shading::wgsl::MODULES.iter().flat_map(|module| module.source.lines());
+    let lines = roughcast::wgsl::MODULES.iter().flat_map(|module| module.source.lines());
     let names = lines.filter_map(|line| {
         let after = ["const ", "struct ", "fn "].iter().find_map(|keyword| line.strip_prefix(keyword))?;
         after.split([':', ' ', '(']).next()

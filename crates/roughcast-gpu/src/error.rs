@@ -1,10 +1,12 @@
 //! What can go wrong on a GPU. One line each, with the mend.
 
 use roughcast::BakeError;
+use roughcast_scene::DetailError;
 use roughcast_scene::render::RenderError;
 
 /// Why something could not be done on the GPU.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum GpuError {
     /// There is no adapter of the wanted kind.
     #[error(
@@ -99,9 +101,12 @@ pub enum GpuError {
     /// The map cannot be read as slopes, or options do not go together.
     #[error(transparent)]
     Bake(#[from] BakeError),
-    /// The scene cannot be rendered, or a model's textures are not complete.
+    /// The scene cannot be rendered.
     #[error(transparent)]
     Scene(#[from] RenderError),
+    /// Textures are no source of bumps: they are not complete, or not those of the model.
+    #[error(transparent)]
+    Detail(#[from] DetailError),
     /// A texture or an image is not of the kind that is needed.
     #[error("{0}")]
     Shape(String),

@@ -11,8 +11,8 @@ use roughcast::texture::{Layout, Part, TextureInfo};
 use roughcast::{BakeOptions, Bits, Lobe};
 use roughcast_gpu::bake::{BakePath, GpuBaker};
 use roughcast_gpu::render::{
-    DEPTH_FORMAT, Detail, DrawOptions, Geometry, GpuTextures, RenderTarget, Renderer, ShaderKey, Views,
-    render, shader_source,
+    DEPTH_FORMAT, DrawOptions, Geometry, GpuTextures, LevelOfDetail, RenderTarget, Renderer, ShaderKey,
+    Views, render, shader_source,
 };
 use roughcast_gpu::{Gpu, GpuError, Timestamps, read_back};
 use roughcast_scene::{Filter, Picture, Plane, Sampler, Scene, Shape, View, pattern};
@@ -48,10 +48,11 @@ fn every_shader_is_made_for_the_limits_of_the_web() {
 fn shaders_sample_as_many_textures_as_the_model_has_inputs() {
     for shading in Shading::ALL {
         for lobe in [Lobe::Isotropic, Lobe::Anisotropic] {
-            let key = ShaderKey { shading: *shading, lobe, detail: Detail::Derivatives };
+            let reader = shading.layout().texel_reader(shading.wanted(), lobe).expect("its layout");
+            let key = ShaderKey { shading: *shading, reader, level: LevelOfDetail::Derivatives };
             let source = shader_source(key).expect("the library has it");
-            assert_eq!(source.matches("= sampled(").count(), shading.inputs(lobe).len(), "{shading}");
-            assert!(!source.contains("textureSampleLevel"));
+            assert_eq!(source.matches(": texture_2d<f32>;").count(), reader.inputs.len(), "{shading}");
+            assert_eq!(source.matches("textureSampleBias(").count(), 1, "{shading}");
         }
     }
 }
@@ -88,7 +89,7 @@ fn a_colour_target_shows_the_radiance_that_the_picture_has() {
         let mut timestamps = Timestamps::new(&gpu, 1).await?;
         let span = timestamps.span("draw").expect("there is room for one");
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let views = Views { colour: &colour_view, specular: None, depth: &depth_view };
+        let views = Views::new(&colour_view, &depth_view);
         drawing.draw(&mut encoder, &views, Some(span.of_render_pass()));
         timestamps.resolve(&mut encoder);
         gpu.queue.submit([encoder.finish()]);

@@ -7,6 +7,7 @@ use common::maps::Random;
 use glam::DVec3;
 use half::f16;
 use pollster::block_on;
+use roughcast::wgsl::{Role, library_of};
 use roughcast::{MaxSlope, Normal, Slope, SourceCounts};
 use roughcast_gpu::{Gpu, read_back};
 use roughcast_scene::Light;
@@ -26,7 +27,7 @@ const STORES: f32 = 4.0 * f32::EPSILON;
 
 /// Runs `body`, WGSL that makes `output: vec4f` of `input: vec4f`, over all inputs.
 fn run(gpu: &Gpu, body: &str, inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
-    run_with(gpu, &roughcast::wgsl::ALL.join("\n"), &format!("opaque_zero = zero;\n{body}"), inputs)
+    run_with(gpu, &library_of(Role::Bake), &format!("opaque_zero = zero;\n{body}"), inputs)
 }
 
 /// The same with other functions than the library's.
@@ -291,7 +292,7 @@ const LIGHT: f32 = 8.0 * f32::EPSILON;
 
 /// The part of the renderer's shader that begins so and ends with a brace of its own.
 fn item(begin: &str) -> &'static str {
-    let source = include_str!("../src/render/common.wgsl");
+    let source = include_str!("../src/render/scene.wgsl");
     let (_, rest) = source.split_once(begin).unwrap_or_else(|| panic!("the shader has no '{begin}'"));
     let (length, start) = (rest.find("\n}\n").expect("it ends"), source.len() - rest.len() - begin.len());
     &source[start..start + begin.len() + length + 3]
@@ -299,7 +300,7 @@ fn item(begin: &str) -> &'static str {
 
 #[test]
 fn lights_are_finite_at_every_distance_and_those_of_the_cpu() {
-    let source = include_str!("../src/render/common.wgsl");
+    let source = include_str!("../src/render/scene.wgsl");
     let least = source.lines().find(|line| line.starts_with("const LEAST_SQUARED_DISTANCE"));
     let functions = ["struct SceneLight {", "fn unit_or(", "struct LightAt {", "fn light_at("].map(item);
     let functions = format!("{}\n{}", least.expect("the shader has it"), functions.join("\n"));

@@ -11,6 +11,7 @@
 #![forbid(unsafe_code)]
 
 mod camera;
+mod detail;
 mod filter;
 mod footprint;
 mod hit;
@@ -24,11 +25,14 @@ pub mod render;
 mod scene;
 mod sequence;
 mod shape;
-mod slope_map;
 mod split_mix;
 mod views;
 
 pub use camera::{Camera, CameraError, PixelRays};
+pub use detail::{
+    BakedTextures, Detail, DetailError, DetailPoint, Reconstruction, SlopeDetail, SlopeMap, TextureDetail,
+    TextureInputs, model_inputs, texture_inputs,
+};
 pub use filter::{Filter, Sampler, SummedAreaTable};
 pub use hit::{Footprint, Frame, Hit, Ray};
 pub use light::Light;
@@ -38,5 +42,4 @@ pub use picture::{Picture, luminance};
 pub use scene::Scene;
 pub use sequence::slow_move;
 pub use shape::{Bounds, MAX_DETAIL, Plane, Shape, ShapeError, Sphere, Torus, TriangleMesh};
-pub use slope_map::{Reconstruction, SlopeMap};
 pub use views::{View, default_light, repeats};

@@ -9,8 +9,10 @@ use roughcast::shading::{FootprintModel, LobeOptions, Material, Shading};
 use roughcast::texture::TextureArray;
 use roughcast::{BakeOptions, Green, Image, SourceOptions, Wrap, bake};
 use roughcast_scene::metrics::rmse;
-use roughcast_scene::render::{Method, ShadingTextures, Truth, unwatched};
-use roughcast_scene::{Filter, Picture, Plane, Reconstruction, Sampler, Scene, Shape, SlopeMap, View};
+use roughcast_scene::render::{Method, Truth, unwatched};
+use roughcast_scene::{
+    BakedTextures, Filter, Picture, Plane, Reconstruction, Sampler, Scene, Shape, SlopeDetail, SlopeMap, View,
+};
 
 const SIZE: (u32, u32) = (96, 72);
 
@@ -50,9 +52,11 @@ impl Seen {
     fn truth(&self, shading: Shading) -> Picture {
         let truth = Truth {
             shading,
-            slopes: &self.slopes,
-            reconstruction: Reconstruction::Linear,
-            wrap: Wrap::Repeat,
+            detail: &SlopeDetail {
+                slopes: self.slopes.clone(),
+                reconstruction: Reconstruction::Linear,
+                wrap: Wrap::Repeat,
+            },
             options: LobeOptions::default(),
             samples: 64,
         };
@@ -61,11 +65,11 @@ impl Seen {
 
     /// Root mean square errors of a model with a filter, corrected and as published.
     fn errors(&self, shading: Shading, filter: Filter, truth: &Picture) -> [f64; 2] {
-        let textures = ShadingTextures::new(shading, &self.maps(shading)).expect("the model's maps");
+        let textures = BakedTextures::of_model(shading, &self.maps(shading)).expect("the model's maps");
         let sampler = Sampler { filter, ..Sampler::default() };
         [FootprintModel::Corrected, FootprintModel::Published].map(|footprint| {
             let options = LobeOptions { footprint, ..LobeOptions::default() };
-            let method = Method { textures: &textures, sampler, options };
+            let method = Method { shading, detail: &textures.sampled(sampler), options };
             let picture = method.render(&self.scene, SIZE, &unwatched).expect("a picture");
             rmse(&picture, truth).expect("pictures of one size")
         })

@@ -6,8 +6,8 @@ use roughcast::shading::{LobeOptions, Material, Shading};
 use roughcast::{BakeOptions, Bits, Image, SourceOptions, bake};
 use roughcast_io::{ReadOptions, read_image_file};
 use roughcast_scene::metrics::{DEFAULT_PIXELS_PER_DEGREE, hdr_flip};
-use roughcast_scene::render::{Method, ShadingTextures, unwatched};
-use roughcast_scene::{Picture, Plane, Sampler, Shape, View};
+use roughcast_scene::render::{Method, unwatched};
+use roughcast_scene::{BakedTextures, Picture, Plane, Sampler, Shape, View};
 
 const SPECULAR_POWER: f32 = 13_777.0;
 const SIZE: (u32, u32) = (160, 120);
@@ -26,11 +26,11 @@ fn map(name: &str) -> Image {
 fn picture(map: &Image, bits: Bits, view: View) -> Picture {
     let options = BakeOptions { bits, ..BakeOptions::default() };
     let baked = bake(map, &SourceOptions::default(), None, &options).expect("a map");
-    let textures = ShadingTextures::new(Shading::Lean, &baked.arrays).expect("LEAN's textures");
+    let textures = BakedTextures::of_model(Shading::Lean, &baked.arrays).expect("LEAN's textures");
     let plane = Arc::new(Shape::Plane(Plane::default()));
     let scene = view.scene(plane, (map.width(), map.height()), SIZE, Material::default());
     let options = LobeOptions { specular_power: SPECULAR_POWER, ..LobeOptions::default() };
-    let method = Method { textures: &textures, sampler: Sampler::default(), options };
+    let method = Method { shading: Shading::Lean, detail: &textures.sampled(Sampler::default()), options };
     method.render(&scene, SIZE, &unwatched).expect("a picture")
 }
 

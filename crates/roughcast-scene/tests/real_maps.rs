@@ -8,8 +8,10 @@ use common::picture;
 use roughcast::shading::{Form, LobeOptions, Material, Shading};
 use roughcast::{BakeOptions, SourceOptions, Wrap, bake};
 use roughcast_scene::metrics::{energy_error, rmse};
-use roughcast_scene::render::{Method, ShadingTextures, Truth, unwatched};
-use roughcast_scene::{Filter, Plane, Reconstruction, Sampler, Shape, SlopeMap, View};
+use roughcast_scene::render::{Method, Truth, unwatched};
+use roughcast_scene::{
+    BakedTextures, Filter, Plane, Reconstruction, Sampler, Shape, SlopeDetail, SlopeMap, View,
+};
 
 const SIZE: (u32, u32) = (64, 48);
 
@@ -32,13 +34,18 @@ fn lean_is_nearer_to_the_truth_of_real_maps() {
         let scene = View::Far.scene(plane, (map.width(), map.height()), SIZE, Material::default());
         let options = LobeOptions { specular_power: 256.0, form: Form::Normalised, ..LobeOptions::default() };
         let errors = |shading: Shading, reconstruction| {
-            let truth =
-                Truth { shading, slopes: &slopes, reconstruction, wrap: Wrap::Repeat, options, samples: 64 };
+            let truth = Truth {
+                shading,
+                detail: &SlopeDetail { slopes: slopes.clone(), reconstruction, wrap: Wrap::Repeat },
+                options,
+                samples: 64,
+            };
             let truth = truth.render(&scene, SIZE, &unwatched).unwrap();
-            let textures = ShadingTextures::new(shading, &arrays).unwrap();
+            let textures = BakedTextures::of_model(shading, &arrays).unwrap();
             let sampler = Sampler { filter: Filter::Trilinear, ..Sampler::default() };
-            let picture =
-                Method { textures: &textures, sampler, options }.render(&scene, SIZE, &unwatched).unwrap();
+            let picture = Method { shading, detail: &textures.sampled(sampler), options }
+                .render(&scene, SIZE, &unwatched)
+                .unwrap();
             (rmse(&picture, &truth).unwrap(), energy_error(&picture, &truth).unwrap())
         };
         for reconstruction in Reconstruction::ALL {

@@ -10,10 +10,10 @@ use roughcast::texture::{Part, TextureArray};
 use roughcast::{BakeOptions, BaseRoughness, Bits, RoughnessTexture, Wrap, bake};
 use roughcast_scene::metrics::{energy_error, flicker, rmse};
 use roughcast_scene::pattern::{self, Pattern};
-use roughcast_scene::render::{Method, RenderError, ShadingTextures, Truth, unwatched};
+use roughcast_scene::render::{Method, RenderError, Truth, unwatched};
 use roughcast_scene::{
-    Camera, Filter, Light, Picture, Plane, Reconstruction, Sampler, Scene, Shape, SlopeMap, Sphere, Torus,
-    slow_move,
+    BakedTextures, Camera, DetailError, Filter, Light, Picture, Plane, Reconstruction, Sampler, Scene, Shape,
+    SlopeDetail, SlopeMap, Sphere, Torus, slow_move,
 };
 
 const SIZE: (u32, u32) = (64, 48);
@@ -21,13 +21,14 @@ const SIZE: (u32, u32) = (64, 48);
 /// A map, its slopes, and what is baked of it.
 struct Map {
     pattern: Pattern,
-    slopes: SlopeMap,
+    slopes: SlopeDetail,
 }
 
 impl Map {
     fn new(pattern: Pattern) -> Self {
         let slopes = SlopeMap::of(&pattern.heights, &pattern.source_options()).unwrap();
-        Self { pattern, slopes }
+        let (reconstruction, wrap) = (Reconstruction::Linear, Wrap::Repeat);
+        Self { pattern, slopes: SlopeDetail { slopes, reconstruction, wrap } }
     }
 
     fn baked(&self, shading: Shading, specular_power: f32) -> Vec<TextureArray> {
@@ -52,14 +53,16 @@ impl Map {
         filter: Filter,
         options: LobeOptions,
     ) -> Picture {
-        let textures = ShadingTextures::new(shading, &self.baked(shading, options.specular_power)).unwrap();
+        let textures =
+            BakedTextures::of_model(shading, &self.baked(shading, options.specular_power)).unwrap();
         let sampler = Sampler { filter, ..Sampler::default() };
-        Method { textures: &textures, sampler, options }.render(scene, size, &unwatched).unwrap()
+        Method { shading, detail: &textures.sampled(sampler), options }
+            .render(scene, size, &unwatched)
+            .unwrap()
     }
 
     fn truth(&self, shading: Shading, options: LobeOptions, samples: u32) -> Truth<'_> {
-        let (reconstruction, wrap) = (Reconstruction::Linear, Wrap::Repeat);
-        Truth { shading, slopes: &self.slopes, reconstruction, wrap, options, samples }
+        Truth { shading, detail: &self.slopes, options, samples }
     }
 }
 
@@ -280,8 +283,8 @@ fn packed_roughness_shades_as_roughness_alone() {
             BakeOptions { layout: Shading::Ggx.layout(), roughness_texture, ..BakeOptions::default() };
         let base = Some(BaseRoughness::Variance(1.0 / 64.0));
         let baked = bake(&map.pattern.heights, &map.pattern.source_options(), base, &bake_options).unwrap();
-        let textures = ShadingTextures::new(Shading::Ggx, &baked.arrays).unwrap();
-        let method = Method { textures: &textures, sampler: Sampler::default(), options };
+        let textures = BakedTextures::of_model(Shading::Ggx, &baked.arrays).unwrap();
+        let method = Method { shading: Shading::Ggx, detail: &textures.sampled(Sampler::default()), options };
         method.render(&scene, SIZE, &unwatched).unwrap()
     };
     let (alone, packed) = (picture(RoughnessTexture::Alone), picture(RoughnessTexture::Packed));
@@ -304,10 +307,10 @@ fn what_cannot_be_rendered_is_refused() {
         assert_eq!(truth(1, size), Err(RenderError::Size(size.0, size.1)));
     }
     let lean = map.baked(Shading::Lean, 32.0);
-    let wrong = ShadingTextures::new(Shading::Clean, &lean).unwrap_err();
-    assert_eq!(wrong, RenderError::MissingTexture { part: Part::Whole, layer: "clean" });
-    assert!(ShadingTextures::new(Shading::Lean, &[]).is_err());
-    assert!(ShadingTextures::new(Shading::Ggx, &map.baked(Shading::Ggx, 32.0)[..1]).is_err());
+    let wrong = BakedTextures::of_model(Shading::Clean, &lean).unwrap_err();
+    assert_eq!(wrong, DetailError::MissingTexture { part: Part::Whole, layer: "clean" });
+    assert!(BakedTextures::of_model(Shading::Lean, &[]).is_err());
+    assert!(BakedTextures::of_model(Shading::Ggx, &map.baked(Shading::Ggx, 32.0)[..1]).is_err());
     let mut blind = plane(1.0);
     blind.camera.target = blind.camera.eye;
     let result = map.truth(Shading::OffCentre, options, 1).render(&blind, SIZE, &unwatched);

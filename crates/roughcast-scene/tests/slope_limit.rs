@@ -9,8 +9,10 @@ use roughcast::detect::{guess_channels, guess_range};
 use roughcast::shading::{LobeOptions, Material, Shading};
 use roughcast::{BakeOptions, BakeReport, Green, Image, MaxSlope, Samples, SourceOptions, bake};
 use roughcast_scene::metrics::rmse;
-use roughcast_scene::render::{Method, ShadingTextures, Truth, unwatched};
-use roughcast_scene::{Picture, Plane, Reconstruction, Sampler, Scene, Shape, SlopeMap, View};
+use roughcast_scene::render::{Method, Truth, unwatched};
+use roughcast_scene::{
+    BakedTextures, Picture, Plane, Reconstruction, Sampler, Scene, Shape, SlopeDetail, SlopeMap, View,
+};
 
 const SIZE: (u32, u32) = (48, 36);
 const SAMPLES: u32 = 64;
@@ -51,9 +53,11 @@ impl Far {
         let truth = MODELS.map(|shading| {
             let truth = Truth {
                 shading,
-                slopes: &slopes,
-                reconstruction: Reconstruction::Linear,
-                wrap: source.wrap,
+                detail: &SlopeDetail {
+                    slopes: slopes.clone(),
+                    reconstruction: Reconstruction::Linear,
+                    wrap: source.wrap,
+                },
                 options: LobeOptions::default(),
                 samples: SAMPLES,
             };
@@ -67,9 +71,12 @@ impl Far {
         let options = BakeOptions { layout: MODELS[model].layout(), ..BakeOptions::default() };
         let source = SourceOptions { max_slope, ..self.source };
         let baked = bake(&self.image, &source, None, &options).expect("a map");
-        let textures = ShadingTextures::new(MODELS[model], &baked.arrays).expect("the model's maps");
-        let method =
-            Method { textures: &textures, sampler: Sampler::default(), options: LobeOptions::default() };
+        let textures = BakedTextures::of_model(MODELS[model], &baked.arrays).expect("the model's maps");
+        let method = Method {
+            shading: MODELS[model],
+            detail: &textures.sampled(Sampler::default()),
+            options: LobeOptions::default(),
+        };
         let picture = method.render(&self.scene, SIZE, &unwatched).expect("a picture");
         (rmse(&picture, &self.truth[model]).expect("pictures of one size"), baked.report)
     }

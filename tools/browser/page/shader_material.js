@@ -28,40 +28,37 @@ in vec2 texture_coordinates;
 in vec3 world_position;
 layout(location = 0) out highp vec4 radiance;`;
 
-// Which part of the filtered variance the pixel sees, for a trilinear filter. The texel has the mean slope in its first two channels.
+// Which part of the filtered variance the pixel sees, for a trilinear filter, and the distribution of slopes that it leaves.
 const FOOTPRINT = `
 const float MAX_ANISOTROPY = 1.0; // texture.anisotropy
 const float MIP_BIAS = 0.0;
 
-rc_FootprintRatio footprint(vec4 texel, vec2 size) {
-  vec2 mean = texel.xy * packing.slope.x + packing.slope.y;
+rc_Distribution under_pixel(rc_Distribution filtered, vec2 size) {
+  vec2 mean = filtered.first.mean;
   rc_FootprintAxes axes = rc_footprint_axes(dFdx(texture_coordinates) * size, dFdy(texture_coordinates) * size);
-  rc_FilterVariances filtered = rc_hardware_variances(axes, MAX_ANISOTROPY, MIP_BIAS);
-  return rc_footprint_ratio(axes, filtered, dFdx(mean), dFdy(mean), options);
+  rc_FilterVariances variances = rc_hardware_variances(axes, MAX_ANISOTROPY, MIP_BIAS);
+  rc_FootprintRatio ratio = rc_footprint_ratio(axes, variances, dFdx(mean), dFdy(mean), options);
+  return rc_pixel_distribution(filtered, ratio, ratio.moments, options);
 }`;
 
-const SURFACES = {
+const DISTRIBUTIONS = {
   lean: {
     textures: ['lean1', 'lean2'],
     code: `
   vec4 texel1 = texture(lean1, texture_coordinates);
   vec4 texel2 = texture(lean2, texture_coordinates);
-  rc_FootprintRatio ratio = footprint(texel2, vec2(textureSize(lean2, 0)));
-  vec3 normal = rc_bump_normal(texel1, packing);
-  rc_SlopeGaussian surface = rc_lean_surface(texel1, texel2, ratio, packing, options);`,
+  rc_Distribution seen = under_pixel(rc_lean_moments(texel1, texel2, packing), vec2(textureSize(lean2, 0)));`,
   },
   clean: {
     textures: ['clean'],
     code: `
   vec4 texel = texture(clean, texture_coordinates);
-  rc_FootprintRatio ratio = footprint(texel, vec2(textureSize(clean, 0)));
-  rc_SlopeGaussian surface = rc_clean_surface(texel, ratio, packing, options);
-  vec3 normal = rc_slope_normal(surface.mean);`,
+  rc_Distribution seen = under_pixel(rc_clean_moments(texel, packing), vec2(textureSize(clean, 0)));`,
   },
 };
 
 function fragmentShader(model, library) {
-  const { textures, code } = SURFACES[model];
+  const { textures, code } = DISTRIBUTIONS[model];
   return `
 ${library}
 ${textures.map((name) => `uniform sampler2D ${name};`).join('\n')}
@@ -73,9 +70,9 @@ void main() {
   vec3 view = normalize((cameraPosition - world_position) * world_from_tangent);
   vec3 light = normalize(towards_light * world_from_tangent);
 ${code}
-  float lobe = rc_${model}_lobe(surface, view, light, options);
+  float lobe = rc_gaussian_lobe(rc_gaussian_surface(seen, options), view, light, options);
   radiance = vec4(
-    rc_diffuse_radiance(normal, albedo, light, irradiance)
+    rc_diffuse_radiance(seen.normal, albedo, light, irradiance)
       + rc_specular_radiance(lobe, specular, view, light, irradiance, options),
     1.0);
 }`;

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use anyhow::{Context, Result};
 use glam::DVec2;
 use roughcast::shading::{Material, Shading};
-use roughcast::{BakeOptions, Bits, Image, Lobe, Samples, SourceOptions, Wrap, normal_from_slope};
+use roughcast::{BakeOptions, Bits, Image, Samples, SourceOptions, Wrap, normal_from_slope};
 use roughcast_gpu::bake::{BakePath, GpuBaker, bake_bandwidth};
 use roughcast_gpu::render::{
-    DEPTH_FORMAT, Detail, DrawOptions, Drawing, Geometry, GpuTextures, RenderTarget, Renderer, ShaderKey,
-    Views, shader_source,
+    DEPTH_FORMAT, DrawOptions, Drawing, Geometry, GpuTextures, LevelOfDetail, RenderTarget, Renderer,
+    ShaderKey, Views, shader_source,
 };
 use roughcast_gpu::wgpu;
 use roughcast_gpu::{Gpu, Span, Timestamps};
@@ -154,7 +154,11 @@ impl Contestant {
         let geometry = Geometry::new(&gpu, &scene.shape, 1).await?;
         let mut drawing = renderer.prepare(&geometry, &textures, &DrawOptions::default()).await?;
         drawing.set_view(renderer, &scene, size).await?;
-        let key = ShaderKey { shading: entrant.shading, lobe: Lobe::Isotropic, detail: Detail::Derivatives };
+        let key = ShaderKey {
+            shading: entrant.shading,
+            reader: textures.reader(),
+            level: LevelOfDetail::Derivatives,
+        };
         let instructions = count(&shader_source(key)?, "radiance")?;
         // Measured in a row of its own: between render passes lavapipe's clock shows a compute pass as if it took no time.
         let bake_nanoseconds = match entrant.maps {
@@ -172,7 +176,7 @@ impl Contestant {
         if self.entrant.maps == Maps::EveryFrame {
             self.baker.run();
         }
-        let views = Views { colour: &canvas.colour, specular: None, depth: &canvas.depth };
+        let views = Views::new(&canvas.colour, &canvas.depth);
         timed(gpu, timestamps, |encoder, span| {
             self.drawing.draw(encoder, &views, Some(span.of_render_pass()));
         })

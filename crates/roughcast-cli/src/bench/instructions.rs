@@ -132,7 +132,8 @@ fn text(words: &[u32]) -> String {
 mod tests {
     use roughcast::Lobe;
     use roughcast::shading::Shading;
-    use roughcast_gpu::render::{Detail, ShaderKey, shader_source};
+    use roughcast::texture::TexelReader;
+    use roughcast_gpu::render::{LevelOfDetail, ShaderKey, shader_source};
 
     use super::*;
 
@@ -170,14 +171,19 @@ mod tests {
         assert!(count("fn", "shade").is_err());
     }
 
+    fn reader(shading: Shading) -> &'static TexelReader {
+        let reader = shading.layout().texel_reader(shading.wanted(), Lobe::Isotropic);
+        reader.expect("every model samples its layout")
+    }
+
     #[test]
     fn models_read_their_textures_and_lean_costs_more_than_blinn_phong() {
         let counted = |shading: Shading| {
-            let key = ShaderKey { shading, lobe: Lobe::Isotropic, detail: Detail::Derivatives };
+            let key = ShaderKey { shading, reader: reader(shading), level: LevelOfDetail::Derivatives };
             count(&shader_source(key).expect("the library has it"), "radiance").expect("it is valid")
         };
         for shading in Shading::ALL {
-            let inputs = shading.inputs(Lobe::Isotropic).len() as u64;
+            let inputs = reader(*shading).inputs.len() as u64;
             assert_eq!(counted(*shading).texture, inputs, "{shading}");
         }
         assert!(counted(Shading::Lean).alu > counted(Shading::BlinnPhong).alu);

@@ -8,9 +8,10 @@ use indicatif::ProgressBar;
 use roughcast::shading::Shading;
 use roughcast_io::picture::Srgb8Picture;
 use roughcast_scene::metrics::{DEFAULT_PIXELS_PER_DEGREE, energy_error, flicker, hdr_flip, rmse};
-use roughcast_scene::render::{Method, ShadingTextures, Truth};
+use roughcast_scene::render::{Method, Truth};
 use roughcast_scene::{
-    Filter, Light, Picture, Reconstruction, Sampler, Scene, Shape, SlopeMap, View, slow_move,
+    BakedTextures, Filter, Light, Picture, Reconstruction, Sampler, Scene, Shape, SlopeDetail, SlopeMap,
+    View, slow_move,
 };
 
 use super::colour_scale::error_picture;
@@ -107,12 +108,15 @@ impl Settings<'_> {
             let arrays =
                 bake_for(models[0], &subject.image, &subject.options, self.shading.texture_options())?;
             for shading in models {
-                let textures = ShadingTextures::new(*shading, &arrays)?;
+                let textures = BakedTextures::of_model(*shading, &arrays)?;
                 for filter in &self.filters {
                     let sampler =
                         Sampler { filter: *filter, wrap: subject.options.wrap, ..Sampler::default() };
-                    let method =
-                        Method { textures: &textures, sampler, options: self.shading.lobe_options() };
+                    let method = Method {
+                        shading: *shading,
+                        detail: &textures.sampled(sampler),
+                        options: self.shading.lobe_options(),
+                    };
                     let frames = self.frames_of(&method, &moves, bar)?;
                     let row = self.row(subject, view, *shading, *filter);
                     trials.push(self.judge(row, &frames, truths.of(*shading), exposure, bar)?);
@@ -131,9 +135,7 @@ impl Settings<'_> {
         let slopes = SlopeMap::of(&subject.image, &subject.options)?;
         let truth = Truth {
             shading: Shading::Lean,
-            slopes: &slopes,
-            reconstruction: self.reconstruction,
-            wrap: subject.options.wrap,
+            detail: &SlopeDetail { slopes, reconstruction: self.reconstruction, wrap: subject.options.wrap },
             options: self.shading.lobe_options(),
             samples: self.samples,
         };

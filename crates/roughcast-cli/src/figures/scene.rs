@@ -7,8 +7,11 @@ use glam::DVec3;
 use roughcast::shading::{LobeOptions, Material, Shading};
 use roughcast::{Bits, Lobe, Wrap};
 use roughcast_scene::pattern::Pattern;
-use roughcast_scene::render::{Method, ShadingTextures, Truth, unwatched};
-use roughcast_scene::{Camera, Filter, Light, Picture, Reconstruction, Sampler, Scene, Shape, SlopeMap};
+use roughcast_scene::render::{Method, Truth, unwatched};
+use roughcast_scene::{
+    BakedTextures, Camera, Filter, Light, Picture, Reconstruction, Sampler, Scene, Shape, SlopeDetail,
+    SlopeMap,
+};
 
 use crate::method::{TextureOptions, bake_for};
 
@@ -62,8 +65,8 @@ impl Stage {
             specular_power: self.options.specular_power,
         };
         let arrays = bake_for(shading, &self.map.heights, &self.map.source_options(), options)?;
-        let textures = ShadingTextures::new(shading, &arrays)?;
-        let method = Method { textures: &textures, sampler, options: self.options };
+        let textures = BakedTextures::of_model(shading, &arrays)?;
+        let method = Method { shading, detail: &textures.sampled(sampler), options: self.options };
         scenes.iter().map(|scene| Ok(method.render(scene, self.size, &unwatched)?)).collect()
     }
 
@@ -77,9 +80,7 @@ impl Stage {
         let slopes = SlopeMap::of(&self.map.heights, &self.map.source_options())?;
         let truth = Truth {
             shading,
-            slopes: &slopes,
-            reconstruction: Reconstruction::Linear,
-            wrap: Wrap::Repeat,
+            detail: &SlopeDetail { slopes, reconstruction: Reconstruction::Linear, wrap: Wrap::Repeat },
             options: self.options,
             samples,
         };

@@ -6,13 +6,13 @@ use naga::back::{glsl, hlsl, msl, spv};
 use naga::proc::BoundsCheckPolicies;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use roughcast::Named;
-use roughcast::shading::wgsl::{library, modules};
+use roughcast::wgsl::{library, modules};
 
 use super::guest::{with_guards, written};
 use super::header::{header, models};
 use super::names::with_plain_names;
 use super::prefix::Prefix;
-use super::stage::fragment_shaders;
+use super::stage::{fragment_shaders, needed_modules};
 use crate::UsageError;
 
 /// A language of shaders.
@@ -77,11 +77,9 @@ pub fn export(names: &[&str], language: Language, prefix: &Prefix) -> Result<Exp
                 let line = "SPIR-V has no libraries, so it is exported as a fragment shader: name a model";
                 return Err(UsageError(line.to_owned()).into());
             }
-            let with_reflectance = library(&[names, &["reflectance"]].concat())?;
-            return Ok(Export::Binary(to_spirv(&format!(
-                "{with_reflectance}\n{}",
-                fragment_shaders(&models)
-            ))?));
+            let library = library(&[names, &needed_modules(&models)].concat())?;
+            let code = [library, fragment_shaders(&models)?].join("\n");
+            return Ok(Export::Binary(to_spirv(&code)?));
         }
     };
     Ok(Export::Text(format!(

@@ -4,7 +4,7 @@
 //! In GLSL, HLSL and Metal's language each module has a guard. A constant that an export does not use is left out of it, so each
 //! has a guard of its own; those of `options` are for the caller, and always there.
 
-use roughcast::shading::wgsl::Module;
+use roughcast::wgsl::Module;
 
 use super::prefix::{CONSTRUCT, Prefix, global_names, is_constant};
 

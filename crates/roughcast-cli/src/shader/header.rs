@@ -1,26 +1,28 @@
 //! The comment with which every exported text starts: naga drops comments, so what a user must know stands here.
 
-use roughcast::shading::Shading;
-use roughcast::shading::wgsl::{CONVENTIONS, Module, Role};
+use roughcast::shading::{Gaussians, Shading};
+use roughcast::wgsl::{self, CONVENTIONS, Module, Role};
 
 use super::export::Language;
 use super::layout::{Rule, in_words, layout, structs};
 use super::prefix::Prefix;
-use super::stage::calls;
+use super::stage::reader_of;
 
 /// Characters of a line, `// ` included.
 const WIDTH: usize = 120;
 
 const PACKING: &[&str] = &[
     "Packing, for textures of scale sc and variance scale vs, as their metadata and `roughcast info` give them:",
-    "  8 or 16 bits   slope (2 sc, -sc), second (sc^2, 0), mixed (2 sc^2, -sc^2), trace (2 sc^2, 0), variance (vs, 0), unit (2, -1)",
+    "  8 or 16 bits   slope (2 sc, -sc), second (sc^2, 0), mixed (2 sc^2, -sc^2), trace (2 sc^2, 0), spread (vs, 0),",
+    "                 signed_spread (2 vs, -vs), unit (2, -1)",
     "  half or float  all (1, 0)",
+    "  base and roughness_stored are MAPS_... and STORED_..., zero for maps without base and for perceptual roughness.",
 ];
 
 /// How the argument `ratio` is made; derivatives are `dpdx` and `dpdy` of WGSL, and called otherwise elsewhere.
 const FOOTPRINT: &[&str] = &[
     "  ratio is the footprint correction: with the texture's size in texels, the derivatives dpdx, dpdy (GLSL dFdx, dFdy; HLSL ddx, ddy;",
-    "  Metal dfdx, dfdy), mean the slope B of the filtered texel, and the sampler's anisotropy and bias,",
+    "  Metal dfdx, dfdy), mean = filtered.first.mean, and the sampler's anisotropy and bias,",
     "    axes = footprint_axes(dpdx(uv) * size, dpdy(uv) * size);  filtered = hardware_variances(axes, max_anisotropy, mip_bias);",
     "    ratio = footprint_ratio(axes, filtered, dpdx(mean), dpdy(mean), options);",
     "  or, without it, ratio = whole_footprint();",
@@ -30,7 +32,7 @@ const FOOTPRINT: &[&str] = &[
 pub fn header(modules: &[&Module], parsed: &naga::Module, language: Language, prefix: &Prefix) -> String {
     let mut lines =
         vec![format!("Shading models of roughcast {}.", env!("CARGO_PKG_VERSION")), String::new()];
-    for module in modules.iter().filter(|module| module.role != Role::Part) {
+    for module in modules.iter().filter(|module| matches!(module.role, Role::Model | Role::Companion)) {
         lines.push(format!("{}: {}.", module.name, module.summary));
         lines.push(format!("  Source: {}.", module.citation));
     }
@@ -48,29 +50,60 @@ pub fn header(modules: &[&Module], parsed: &naga::Module, language: Language, pr
     lines.push(String::new());
     lines.push("How to call them:".to_owned());
     for model in models(modules) {
-        let calls = calls(model);
-        let texels = calls.texels.join(", ");
-        lines.push(format!("  {model}, with the texels {texels}:"));
-        for (name, call) in calls.in_order() {
-            lines.push(format!("    {name} = {};", prefix.apply(call)));
+        let texels =
+            reader_of(model).inputs.iter().map(|input| texel_variable(input.layer)).collect::<Vec<_>>();
+        lines.push(format!("  {model}, with the texels {}:", texels.join(", ")));
+        let calls = model.calls(Gaussians::One);
+        let of_model = [
+            ("surface".to_owned(), format!("{}(distribution, options)", calls.surface)),
+            ("lobe".to_owned(), format!("{}(surface, view, light, options)", calls.lobe)),
+        ];
+        for (name, call) in steps_of_detail(model, &texels).into_iter().chain(of_model) {
+            lines.push(format!("    {name} = {};", prefix.apply(&call)));
         }
-        lines.push(format!("    lobe = {};", prefix.apply(&calls.lobe)));
     }
     if modules.iter().any(|module| module.name == "reflectance") {
-        lines.push(prefix.apply("  radiance = ambient_radiance(albedo, ambient) + diffuse_radiance(normal, albedo, light, irradiance)"));
+        lines.push(prefix.apply("  radiance = ambient_radiance(albedo, ambient)"));
+        lines.push(prefix.apply("    + diffuse_radiance(distribution.normal, albedo, light, irradiance)"));
         lines.push(prefix.apply(
             "    + specular_radiance(lobe, specular, view, light, irradiance, options); the last two for every light",
         ));
-    } else if models(modules).any(|model| calls(model).normal.starts_with("slope_normal")) {
-        lines.push("  slope_normal is of the module reflectance: normalize((slope, 1)).".to_owned());
     }
-    if models(modules).any(|model| model.mean_input().is_some()) {
+    if models(modules).any(|model| reader_of(model).mean_input.is_some()) {
         lines.extend(FOOTPRINT.iter().map(|line| prefix.apply(line)));
     }
     lines.push(String::new());
     lines.extend(notes(language).iter().map(|line| (*line).to_owned()));
     let commented = lines.iter().flat_map(|line| wrapped(line));
     commented.map(|line| format!("// {line}").trim_end().to_owned() + "\n").collect()
+}
+
+/// The variable for the texel of a layer. The normal texture's is called `bump`, beside the normals made of it.
+fn texel_variable(layer: &'static str) -> &'static str {
+    if layer == "normal" { "bump" } else { layer }
+}
+
+/// How a model's texels become a distribution, as named values: the lines of the detail module, with these variables in the place of the
+/// host's functions. The footprint correction has lines of its own.
+fn steps_of_detail(model: Shading, texels: &[&str]) -> Vec<(String, String)> {
+    let source = wgsl::module(reader_of(model).module).expect("every reader has a module").source;
+    let (_, body) = source.split_once("fn detail_distribution(").expect("every detail module has it");
+    let steps = body.lines().skip(1).take_while(|line| *line != "}").filter_map(|line| {
+        let line = line.trim().strip_suffix(';')?;
+        match line.strip_prefix("return ") {
+            Some(value) => Some(("distribution", value)),
+            None => line.strip_prefix("let ")?.split_once(" = "),
+        }
+    });
+    let with_variables = |value: &str| {
+        (0..).zip(texels).fold(value.to_owned(), |value, (place, texel)| {
+            value.replace(&format!("texel{place}(at)"), texel)
+        })
+    };
+    steps
+        .filter(|(name, _)| *name != "ratio")
+        .map(|(name, value)| (name.to_owned(), with_variables(value)))
+        .collect()
 }
 
 /// The models among these modules.

@@ -84,11 +84,12 @@ pub fn in_words(name: &str, layout: &Layout) -> String {
 mod tests {
     use super::*;
     use crate::shader::export::parse;
-    use roughcast::shading::wgsl::{MODULES, library};
+    use roughcast::wgsl::{MODULES, Role, library};
 
     fn whole() -> Module {
-        let names: Vec<_> = MODULES.iter().map(|module| module.name).collect();
-        parse(&library(&names).expect("all modules")).expect("valid WGSL").0
+        let exported = MODULES.iter().filter(|module| !matches!(module.role, Role::Bake | Role::Detail));
+        let names: Vec<_> = exported.map(|module| module.name).collect();
+        parse(&library(&names).expect("they exist")).expect("valid WGSL").0
     }
 
     #[test]
@@ -128,22 +129,24 @@ mod tests {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/shaders.md");
         let manual = std::fs::read_to_string(path).expect("docs/shaders.md is there");
         let module = whole();
-        for name in structs(&module) {
+        let row = |name: &String| {
             let [natural, std140, cbuffer] = [Rule::Natural, Rule::Std140, Rule::Cbuffer]
-                .map(|rule| layout(&module, &name, rule).expect("it is there"));
+                .map(|rule| layout(&module, name, rule).expect("it is there"));
             let cell = |layout: &Layout| {
                 let places: Vec<_> = layout.members.iter().map(|(_, at)| at.to_string()).collect();
                 format!("{}: {}", layout.size, places.join(", "))
             };
             let members: Vec<_> = natural.members.iter().map(|(member, _)| format!("`{member}`")).collect();
-            let row = format!(
+            format!(
                 "| `{name}` | {} | {} | {} | {} |",
                 members.join(", "),
                 cell(&natural),
                 cell(&std140),
                 cell(&cbuffer)
-            );
-            assert!(manual.contains(&row), "docs/shaders.md lacks this row:\n{row}");
-        }
+            )
+        };
+        let rows: Vec<_> = structs(&module).iter().map(row).collect();
+        let missing: Vec<_> = rows.iter().filter(|row| !manual.contains(*row)).cloned().collect();
+        assert!(rows.len() > 7 && missing.is_empty(), "docs/shaders.md lacks:\n{}", missing.join("\n"));
     }
 }

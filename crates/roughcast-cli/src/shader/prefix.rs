@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::str::FromStr;
 use std::sync::LazyLock;
 
-use roughcast::shading::wgsl::MODULES;
+use roughcast::wgsl::{MODULES, Role, map_words};
 
 /// What the names of functions and structs start with; constants take it in capitals.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -54,25 +54,12 @@ impl Prefix {
             return code.to_owned();
         }
         let names = global_names();
-        let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
-        let (mut out, mut rest) = (String::with_capacity(2 * code.len()), code);
-        while let Some(start) = rest.find(is_part) {
-            let (before, from) = rest.split_at(start);
-            let end = from.find(|c| !is_part(c)).unwrap_or(from.len());
-            let (word, after) = from.split_at(end);
-            out.push_str(before);
+        map_words(code, |word, before| {
             let known = names.contains_key(word)
                 || word.strip_prefix(CONSTRUCT).is_some_and(|of| names.contains_key(of));
             // What follows a single dot is a member; what follows `1.` is no word.
-            if known && !before.ends_with('.') && !out.ends_with('.') {
-                out.push_str(&self.of(word));
-            } else {
-                out.push_str(word);
-            }
-            rest = after;
-        }
-        out.push_str(rest);
-        out
+            (known && !before.ends_with('.')).then(|| self.of(word))
+        })
     }
 }
 
@@ -92,7 +79,8 @@ pub fn global_names() -> &'static HashMap<&'static str, &'static str> {
 
 fn read_global_names() -> HashMap<&'static str, &'static str> {
     let mut names = HashMap::new();
-    for module in MODULES {
+    // The modules of baking are not exported, and have names of their own.
+    for module in MODULES.iter().filter(|module| module.role != Role::Bake) {
         for line in module.source.lines() {
             let name = ["const ", "struct ", "fn "].iter().find_map(|keyword| line.strip_prefix(keyword));
             if let Some(name) = name.and_then(|rest| rest.split([':', ' ', '(']).next()) {
@@ -113,8 +101,8 @@ mod tests {
 
     #[test]
     fn names_get_it_and_members_do_not() {
-        let code = "float x = lean_lobe(surface.variance, TWO_PI) * view.lean_lobe; BumpFacet f = ConstructBumpFacet(n, 1.);";
-        let expected = "float x = rc_lean_lobe(surface.variance, RC_TWO_PI) * view.lean_lobe; rc_BumpFacet f = \
+        let code = "float x = mixture_lobe(surface.variance, TWO_PI) * view.mixture_lobe; BumpFacet f = ConstructBumpFacet(n, 1.);";
+        let expected = "float x = rc_mixture_lobe(surface.variance, RC_TWO_PI) * view.mixture_lobe; rc_BumpFacet f = \
                         rc_ConstructBumpFacet(n, 1.);";
         assert_eq!(prefix("rc_").apply(code), expected);
         assert_eq!(prefix("").apply(code), code);
@@ -133,10 +121,10 @@ mod tests {
     #[test]
     fn every_module_is_found_by_its_names() {
         let names = global_names();
-        for module in MODULES {
+        for module in MODULES.iter().filter(|module| !matches!(module.role, Role::Bake | Role::Detail)) {
             assert!(names.values().any(|of| *of == module.name), "{}", module.name);
         }
-        assert_eq!(names["lean_lobe"], "lean");
+        assert_eq!(names["lean_moments"], "lean");
         assert_eq!(names["SlopeGaussian"], "gaussian");
         assert_eq!(names["TWO_PI"], "vector");
     }

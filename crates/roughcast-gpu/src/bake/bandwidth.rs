@@ -8,7 +8,7 @@ use super::target::level_view;
 use super::{BakePath, GpuBaker};
 use crate::{Gpu, GpuError, Span, Timestamps};
 
-const COPY: &str = include_str!("copy.wgsl");
+const COPY: &str = include_str!("wgsl/copy.wgsl");
 
 /// Bytes of a copied texel, and texels along each side of what a workgroup copies.
 const COPY_TEXEL: u64 = 16;
@@ -82,8 +82,7 @@ pub async fn copy_bandwidth(gpu: &Gpu, bytes: u64) -> Result<Bandwidth, GpuError
     let to = gpu.create_texture(what, &descriptor(wgpu::TextureUsages::STORAGE_BINDING)).await?;
     let (from, to) = (level_view(&from, 0), level_view(&to, 0));
     let mut bindings = Bindings::new(wgpu::ShaderStages::COMPUTE);
-    let declaration = "@group(0) @binding(0) var source: texture_2d<u32>;\n";
-    bindings.declared_texture(declaration, wgpu::TextureSampleType::Uint, &from);
+    bindings.sampled_texture("source", "texture_2d<u32>", wgpu::TextureSampleType::Uint, &from);
     bindings.storage_texture("copied", wgpu::TextureFormat::Rgba32Uint, &to);
     let source = [bindings.wgsl(), COPY].concat();
     let (pipeline, bindings) = gpu

@@ -20,8 +20,7 @@ impl<'a> Bindings<'a> {
         Self { layout: Vec::new(), resources: Vec::new(), wgsl: String::new(), visibility }
     }
 
-    /// The number of the next binding.
-    pub fn next(&self) -> u32 {
+    fn next(&self) -> u32 {
         self.layout.len() as u32
     }
 
@@ -49,14 +48,15 @@ impl<'a> Bindings<'a> {
         self.push(buffer_type(wgpu::BufferBindingType::Storage { read_only }), buffer.as_entire_binding());
     }
 
-    /// A texture that the caller has declared, with [`Bindings::next`] as its binding.
-    pub fn declared_texture(
+    /// A texture of this type that is read without filtering.
+    pub fn sampled_texture(
         &mut self,
-        wgsl: &str,
+        name: &str,
+        wgsl_type: &str,
         sample_type: wgpu::TextureSampleType,
         view: &'a wgpu::TextureView,
     ) {
-        self.wgsl += wgsl;
+        self.declare(&format!("var {name}: {wgsl_type}"));
         let view_dimension = wgpu::TextureViewDimension::D2;
         self.push(
             wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false },
@@ -66,8 +66,8 @@ impl<'a> Bindings<'a> {
 
     /// A texture of floats that is read without filtering.
     pub fn texture(&mut self, name: &str, view: &'a wgpu::TextureView) {
-        let wgsl = format!("@group(0) @binding({}) var {name}: texture_2d<f32>;\n", self.next());
-        self.declared_texture(&wgsl, wgpu::TextureSampleType::Float { filterable: false }, view);
+        let sample_type = wgpu::TextureSampleType::Float { filterable: false };
+        self.sampled_texture(name, "texture_2d<f32>", sample_type, view);
     }
 
     pub fn storage_texture(&mut self, name: &str, format: wgpu::TextureFormat, view: &'a wgpu::TextureView) {
@@ -111,6 +111,11 @@ impl<'a> Bindings<'a> {
         });
         (pipeline_layout, group)
     }
+}
+
+/// WGSL of a constant, whose value is given as WGSL writes it.
+pub(super) fn constant(name: &str, value: impl std::fmt::Display) -> String {
+    format!("const {name} = {value};\n")
 }
 
 fn buffer_type(ty: wgpu::BufferBindingType) -> wgpu::BindingType {

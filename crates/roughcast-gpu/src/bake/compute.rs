@@ -1,15 +1,17 @@
 //! The compute path: all levels in two dispatches where sides stay even and the device binds enough storage textures.
 
-use super::bindings::{Access, Bindings};
+use roughcast::wgsl::renamed;
+
+use super::bindings::{Access, Bindings, constant};
 use super::pipelines::Pipelines;
 use super::plan::{Average, Step, steps};
 use super::target::level_view;
 use super::{Job, LIBRARY, SLOPE_LIMIT};
 use crate::{Gpu, GpuError, Span};
 
-const COMMON: &str = include_str!("common.wgsl");
-const FUSED: &str = include_str!("fused.wgsl");
-const WEIGHTED: &str = include_str!("weighted.wgsl");
+const COMMON: &str = include_str!("wgsl/common.wgsl");
+const FUSED: &str = include_str!("wgsl/fused.wgsl");
+const WEIGHTED: &str = include_str!("wgsl/weighted.wgsl");
 
 /// A footprint in a buffer: two vec4f.
 const FOOTPRINT_BYTES: u64 = 32;
@@ -163,30 +165,22 @@ pub(super) fn compute_pipeline(
     })
 }
 
-/// Level 0 is computed from the map. The first dispatch counts what it mends.
+/// Level 0 is computed from the map. The first dispatch counts what it repairs.
 fn input_from_map<'a>(job: &'a Job, bindings: &mut Bindings<'a>, counts: bool) -> String {
     job.bind_map(bindings);
-    let mut note = "";
-    if counts {
+    let input = if counts {
         bindings.storage("counts", "array<atomic<u32>, 4>", Access::ReadWrite, &job.counts);
-        note = "    if mended.fault != FAULT_NONE { atomicAdd(&counts[mended.fault - 1u], 1u); }\n";
-    }
-    format!(
-        "{}fn input_footprint(at: vec2u) -> Footprint {{\n    let mended = map_slope(at);\n{note}    \
-         return footprint_of_slope(mended.slope);\n}}\n",
-        job.target.footprint_wgsl()
-    )
+        include_str!("wgsl/input_map_counted.wgsl")
+    } else {
+        include_str!("wgsl/input_map.wgsl")
+    };
+    job.map_wgsl() + input
 }
 
 /// A later level is read as the dispatch before left it.
 fn input_from_state<'a>(bindings: &mut Bindings<'a>, state: &'a wgpu::Buffer) -> String {
     bindings.storage("state_in", "array<vec4f>", Access::Read, state);
-    "fn input_footprint(at: vec2u) -> Footprint {\n    \
-     let index = 2u * (at.y * params.size.x + at.x);\n    \
-     let low = state_in[index];\n    \
-     let high = state_in[index + 1u];\n    \
-     return Footprint(low.xy, vec3f(low.zw, high.x), high.yzw);\n}\n"
-        .to_owned()
+    include_str!("wgsl/input_buffer.wgsl").to_owned()
 }
 
 fn texture_name(layer: usize, halvings: u32) -> String {
@@ -195,49 +189,32 @@ fn texture_name(layer: usize, halvings: u32) -> String {
 
 /// `store_N`: what becomes of a texel of the level N halvings after the one that is read.
 fn store(job: &Job, halvings: u32, written: bool, state: bool) -> String {
-    let mut body = String::new();
-    if written || state {
-        body += &format!("    if any(at >= level_size({halvings}u)) {{ return; }}\n");
-    }
-    if written {
-        body += "    let stores = unpacked_stores(packed_stores);\n";
-        for (layer, texel) in job.target.texels_wgsl().iter().take(job.textures.len()).enumerate() {
-            let texture = texture_name(layer, halvings);
-            body += &format!("    textureStore({texture}, at, nearest({texel}(footprint, stores)));\n");
-        }
-    }
-    if state {
-        body += &format!(
-            "    let index = 2u * (at.y * level_size({halvings}u).x + at.x);\n    \
-             state_out[index] = vec4f(footprint.mean, footprint.covariance.xy);\n    \
-             state_out[index + 1u] = vec4f(footprint.covariance.z, footprint.normal);\n"
-        );
-    }
-    format!("fn store_{halvings}(at: vec2u, footprint: Footprint) {{\n{body}}}\n")
+    let texels = if written { job.target.store_wgsl() } else { include_str!("wgsl/store_no_texels.wgsl") };
+    let state =
+        if state { include_str!("wgsl/store_state.wgsl") } else { include_str!("wgsl/store_no_state.wgsl") };
+    let numbered = |name: &str| format!("{name}_{halvings}");
+    let names = ["store_texels", "store_state", "store", "texture_0", "texture_1", "HALVINGS"];
+    let names: Vec<(String, String)> =
+        names.iter().map(|name| (format!("{name}_n"), numbered(name))).collect();
+    let names: Vec<(&str, &str)> = names.iter().map(|(from, to)| (from.as_str(), to.as_str())).collect();
+    let wgsl = [texels, state, include_str!("wgsl/store.wgsl")].concat();
+    constant(&numbered("HALVINGS"), format_args!("{halvings}u")) + &renamed(&wgsl, &names)
 }
 
 /// The kernel's text, its entry point, and the workgroups that it takes.
 fn kernel(job: &Job, step: &Step) -> (String, &'static str, (u32, u32)) {
     let (width, height) = job.level_size(step.input);
-    let average = match step.average {
+    let quad = match step.average {
         Average::Weighted => {
-            let entry = format!(
-                "{WEIGHTED}\n@compute @workgroup_size({WEIGHTED_TILE}, {WEIGHTED_TILE})\n\
-                 fn weighted(@builtin(global_invocation_id) id: vec3u) {{\n    \
-                 opaque_zero = params.zero;\n    \
-                 if all(id.xy < level_size(1u)) {{ store_1(id.xy, weighted_footprint(id.xy)); }}\n}}\n"
-            );
+            let tile = constant("WEIGHTED_TILE", format_args!("{WEIGHTED_TILE}u"));
+            let kernel = [&tile, WEIGHTED, include_str!("wgsl/weighted_kernel.wgsl")].concat();
             let (width, height) = job.level_size(step.last);
-            return (entry, "weighted", (width.div_ceil(WEIGHTED_TILE), height.div_ceil(WEIGHTED_TILE)));
+            return (kernel, "weighted", (width.div_ceil(WEIGHTED_TILE), height.div_ceil(WEIGHTED_TILE)));
         }
-        Average::OfFour => "average_of_four",
-        Average::OfFourWeighted => "weighted_average_of_four",
+        Average::OfFour => include_str!("wgsl/quad_of_four.wgsl"),
+        Average::OfFourWeighted => include_str!("wgsl/quad_weighted.wgsl"),
     };
-    let quad = format!(
-        "const HALVINGS: u32 = {}u;\n\
-         fn average_of_quad(a: Footprint, b: Footprint, c: Footprint, d: Footprint) -> Footprint {{\n    \
-         return {average}(a, b, c, d);\n}}\n{FUSED}",
-        step.halvings()
-    );
-    (quad, "fused", (width.div_ceil(FUSED_TILE), height.div_ceil(FUSED_TILE)))
+    let halvings = constant("HALVINGS", format_args!("{}u", step.halvings()));
+    let kernel = [&halvings, quad, FUSED].concat();
+    (kernel, "fused", (width.div_ceil(FUSED_TILE), height.div_ceil(FUSED_TILE)))
 }

@@ -16,6 +16,7 @@ mod target;
 use std::sync::LazyLock;
 
 use roughcast::texture::{TextureArray, TextureInfo};
+use roughcast::wgsl::Role;
 use roughcast::{
     BakeOptions, BakePlan, BaseRoughness, Image, MaxSlope, ScaleChoice, SourceCounts, SourceOptions,
     plan_bake,
@@ -33,10 +34,10 @@ use source::MapFormat;
 use target::{Target, base_variance_of, level_count, level_view};
 
 /// The library's rules in WGSL.
-static LIBRARY: LazyLock<String> = LazyLock::new(|| roughcast::wgsl::ALL.join("\n"));
+static LIBRARY: LazyLock<String> = LazyLock::new(|| roughcast::wgsl::library_of(Role::Bake));
 
 /// The largest slope, once it is known.
-const SLOPE_LIMIT: &str = "fn slope_limit() -> f32 { return packed_stores.unit_scale_limit.w; }\n";
+const SLOPE_LIMIT: &str = include_str!("wgsl/slope_limit.wgsl");
 
 /// How a map is baked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -345,10 +346,15 @@ impl Job {
         self.textures.iter().map(|texture| level_view(texture, level)).collect()
     }
 
-    /// Declares the map and `map_slope`.
+    /// Declares the map.
     fn bind_map<'a>(&'a self, bindings: &mut Bindings<'a>) {
-        let wgsl = self.map_format.wgsl(&self.plan.source, bindings.next());
-        bindings.declared_texture(&wgsl, self.map_format.sample_type(), &self.map_view);
+        let format = self.map_format;
+        bindings.sampled_texture("map", format.wgsl_type(), format.sample_type(), &self.map_view);
+    }
+
+    /// WGSL of `map_slope` and of `footprint_of_slope`, once the map is declared.
+    fn map_wgsl(&self) -> String {
+        self.map_format.wgsl(&self.plan.source) + self.target.footprint_wgsl()
     }
 
     /// WGSL's `Params` for a pass that reads this level.

@@ -12,9 +12,9 @@ use super::target::level_view;
 use super::{Job, LIBRARY, SLOPE_LIMIT};
 use crate::{Gpu, GpuError, Span};
 
-const COMMON: &str = include_str!("common.wgsl");
-const WEIGHTED: &str = include_str!("weighted.wgsl");
-const RASTER: &str = include_str!("raster.wgsl");
+const COMMON: &str = include_str!("wgsl/common.wgsl");
+const WEIGHTED: &str = include_str!("wgsl/weighted.wgsl");
+const RASTER: &str = include_str!("wgsl/raster.wgsl");
 
 const STATE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
@@ -164,54 +164,22 @@ fn input_wgsl<'a>(job: &'a Job, input: Input<'a>, bindings: &mut Bindings<'a>) -
     match input {
         Input::Map => {
             job.bind_map(bindings);
-            format!(
-                "{}fn input_footprint(at: vec2u) -> Footprint {{ return footprint_of_slope(map_slope(at).slope); }}\n",
-                job.target.footprint_wgsl()
-            )
+            job.map_wgsl() + include_str!("wgsl/input_map.wgsl")
         }
         Input::State([low, high]) => {
             bindings.texture("state_low", low);
             bindings.texture("state_high", high);
-            "fn input_footprint(at: vec2u) -> Footprint {\n    \
-             let low = textureLoad(state_low, at, 0);\n    \
-             let high = textureLoad(state_high, at, 0);\n    \
-             return Footprint(low.xy, vec3f(low.zw, high.x), high.yzw);\n}\n"
-                .to_owned()
+            include_str!("wgsl/input_textures.wgsl").to_owned()
         }
     }
 }
 
 fn output_wgsl(job: &Job, output: Output) -> String {
-    let begin = "@fragment\nfn fragment(corner: Corner) -> Output {\n    opaque_zero = params.zero;\n    \
-                 let at = vec2u(corner.position.xy);\n";
-    let state = "struct Output { @location(0) low: vec4f, @location(1) high: vec4f }\n";
-    let end = "    return Output(\n        \
-               vec4f(footprint.mean, footprint.covariance.xy),\n        \
-               vec4f(footprint.covariance.z, footprint.normal),\n    );\n}\n";
+    const STATE: &str = include_str!("wgsl/output_state.wgsl");
     match output {
-        Output::Texels => {
-            let texels = job.target.texels_wgsl();
-            let texels = &texels[..job.textures.len()];
-            let fields = (0..texels.len()).map(|i| format!("@location({i}) texel_{i}: vec4f"));
-            let values = texels.iter().map(|texel| format!("nearest({texel}(footprint, stores))"));
-            format!(
-                "struct Output {{ {} }}\n{}{begin}    let footprint = input_footprint(at);\n    \
-                 let stores = unpacked_stores(packed_stores);\n    return Output({});\n}}\n",
-                fields.collect::<Vec<_>>().join(", "),
-                job.target.nearest_wgsl(),
-                values.collect::<Vec<_>>().join(", "),
-            )
-        }
-        Output::AverageOfFour => format!(
-            "{state}{begin}    let first = 2u * at;\n    let footprint = average_of_four(\n        \
-             input_footprint(first),\n        \
-             input_footprint(first + vec2u(1u, 0u)),\n        \
-             input_footprint(first + vec2u(0u, 1u)),\n        \
-             input_footprint(first + vec2u(1u, 1u)),\n    );\n{end}"
-        ),
-        Output::WeightedAverage => {
-            format!("{WEIGHTED}{state}{begin}    let footprint = weighted_footprint(at);\n{end}")
-        }
+        Output::Texels => [job.target.nearest_wgsl(), job.target.output_wgsl()].concat(),
+        Output::AverageOfFour => [include_str!("wgsl/next_of_four.wgsl"), STATE].concat(),
+        Output::WeightedAverage => [WEIGHTED, include_str!("wgsl/next_weighted.wgsl"), STATE].concat(),
     }
 }
 

@@ -6,8 +6,8 @@ use super::compute::{Dispatch, compute_pipeline};
 use super::{Job, LIBRARY};
 use crate::{Gpu, GpuError};
 
-const COMMON: &str = include_str!("common.wgsl");
-const SCALE: &str = include_str!("scale.wgsl");
+const COMMON: &str = include_str!("wgsl/common.wgsl");
+const SCALE: &str = include_str!("wgsl/scale.wgsl");
 
 /// Texels along each side of what a workgroup looks at.
 const TILE: u32 = 64;
@@ -68,7 +68,8 @@ async fn dispatch(
     bindings.storage("survey", "Survey", Access::ReadWrite, survey);
     bindings.storage("packed_stores", "PackedStores", Access::ReadWrite, &job.stores);
     job.bind_map(&mut bindings);
-    let source = [LIBRARY.as_str(), COMMON, bindings.wgsl(), SCALE].concat();
+    let map = job.map_wgsl();
+    let source = [LIBRARY.as_str(), COMMON, bindings.wgsl(), &map, SCALE].concat();
     let (pipeline, bindings) = gpu
         .checked("the pipeline that finds a scale", |device| {
             let (layout, group) = bindings.make(device);
@@ -85,6 +86,9 @@ mod tests {
     #[test]
     fn the_survey_has_room_for_the_shaders_histogram() {
         let written = format!("const SLOPE_BINS: u32 = {SLOPE_BINS}u;");
-        assert!(roughcast::wgsl::LIMIT.contains(&written), "limit.wgsl lacks '{written}'");
+        assert!(
+            roughcast::wgsl::module("limit").expect("it exists").source.contains(&written),
+            "limit.wgsl lacks '{written}'"
+        );
     }
 }

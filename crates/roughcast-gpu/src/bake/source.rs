@@ -6,9 +6,8 @@ use roughcast::{
     SourceOptions, Wrap,
 };
 
+use super::bindings::constant;
 use crate::{Gpu, GpuError};
-
-const NEUTRAL: &str = include_str!("neutral.wgsl");
 
 /// How a texture's texels arrive in a shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,87 +99,59 @@ impl MapFormat {
         Ok(())
     }
 
-    /// WGSL that declares the map at a binding and defines `map_slope(at)`, the slope of a texel of it, repaired or neutral. Needs
-    /// `slope_limit()`, the largest slope.
-    pub fn wgsl(self, options: &SourceOptions, binding: u32) -> String {
-        let component = match self.texel {
-            Texel::Code(_) => "u32",
-            Texel::Unorm(_) | Texel::Value => "f32",
-        };
-        let load = match self.texel {
-            Texel::Unorm(steps) => format!("round(textureLoad(map, at, 0) * {steps}.0)"),
-            Texel::Code(_) | Texel::Value => "vec4f(textureLoad(map, at, 0))".to_owned(),
-        };
-        let slope = match options.kind {
-            Kind::Normal => self.normal_wgsl(options),
-            Kind::Height => self.height_wgsl(options),
-        };
-        format!(
-            "@group(0) @binding({binding}) var map: texture_2d<{component}>;\n\
-             fn map_texel(at: vec2i) -> vec4f {{ return {load}; }}\n{slope}"
-        )
+    /// WGSL of the map's type, for its declaration.
+    pub fn wgsl_type(self) -> &'static str {
+        match self.texel {
+            Texel::Code(_) => "texture_2d<u32>",
+            Texel::Unorm(_) | Texel::Value => "texture_2d<f32>",
+        }
     }
 
-    fn normal_wgsl(self, options: &SourceOptions) -> String {
-        let component = match (self.texel, options.range) {
-            (Texel::Unorm(steps) | Texel::Code(steps), _) => {
-                format!("component_from_code(stored, {steps}.0)")
-            }
-            (Texel::Value, NormalRange::Unorm) => "2.0 * stored - 1.0".to_owned(),
-            (Texel::Value, NormalRange::Signed) => "stored".to_owned(),
+    /// WGSL of `map_slope(at)`, the slope of a texel of `map`, repaired or neutral. Needs `slope_limit()`, the largest slope.
+    pub fn wgsl(self, options: &SourceOptions) -> String {
+        let (steps, texels) = match self.texel {
+            Texel::Unorm(steps) => (Some(steps), include_str!("wgsl/map_unorm.wgsl")),
+            Texel::Code(steps) => (Some(steps), include_str!("wgsl/map_as_loaded.wgsl")),
+            Texel::Value => (None, include_str!("wgsl/map_as_loaded.wgsl")),
         };
+        let mut wgsl =
+            steps.map_or_else(String::new, |steps| constant("MAP_STEPS", format_args!("{steps}.0")));
+        wgsl += texels;
+        match options.kind {
+            Kind::Normal => self.add_normal(options, &mut wgsl),
+            Kind::Height => self.add_height(options, &mut wgsl),
+        }
+        wgsl
+    }
+
+    fn add_normal(self, options: &SourceOptions, wgsl: &mut String) {
         let (x, y, z) = options.normal_channels.indices();
-        let stored = |channel: usize| format!("map_component(texel[{channel}])");
-        let xy = format!("vec2f({}, {})", stored(x), stored(y));
-        let slope = match z {
-            Some(z) => format!("slope_from_normal(vec3f(rounded2({xy} * factors), {}), ", stored(z)),
-            None => format!("slope_from_normal_xy({xy}, factors, "),
+        for (name, channel) in [("MAP_X", Some(x)), ("MAP_Y", Some(y)), ("MAP_Z", z)] {
+            *wgsl += &channel.map_or_else(String::new, |channel| constant(name, channel));
+        }
+        *wgsl += match (self.texel, options.range) {
+            (Texel::Unorm(_) | Texel::Code(_), _) => include_str!("wgsl/component_of_code.wgsl"),
+            (Texel::Value, NormalRange::Unorm) => include_str!("wgsl/component_unorm.wgsl"),
+            (Texel::Value, NormalRange::Signed) => include_str!("wgsl/component_signed.wgsl"),
         };
-        format!(
-            "fn map_component(stored: f32) -> f32 {{ return {component}; }}\n\
-             fn slope_unless_broken(at: vec2i) -> RepairedSlope {{\n    \
-                 let texel = map_texel(at);\n    \
-                 let factors = vec2f(params.normal_factor_x, params.normal_factor_y);\n    \
-                 return {slope}slope_limit());\n}}\n{NEUTRAL}"
-        )
+        *wgsl += match z {
+            Some(_) => include_str!("wgsl/normal_xyz.wgsl"),
+            None => include_str!("wgsl/normal_xy.wgsl"),
+        };
+        *wgsl += include_str!("wgsl/neutral.wgsl");
     }
 
-    fn height_wgsl(self, options: &SourceOptions) -> String {
-        let height = match self.texel {
-            Texel::Unorm(steps) | Texel::Code(steps) => format!("quotient(stored, {steps}.0)"),
-            Texel::Value => "stored".to_owned(),
+    fn add_height(self, options: &SourceOptions, wgsl: &mut String) {
+        *wgsl += match self.texel {
+            Texel::Unorm(_) | Texel::Code(_) => include_str!("wgsl/height_of_code.wgsl"),
+            Texel::Value => include_str!("wgsl/height_of_value.wgsl"),
         };
-        let gradient = match options.gradient {
-            Gradient::Sobel => {
-                "sobel(map_heights(xs, above), map_heights(xs, at.y), map_heights(xs, below), params.height_scale)"
-            }
-            Gradient::Central => {
-                "central(map_heights(xs, above), map_heights(xs, at.y), map_heights(xs, below), params.height_scale)"
-            }
-            Gradient::Forward => {
-                "forward(map_heights(xs, above), map_heights(xs, at.y), params.height_scale)"
-            }
+        *wgsl += match options.gradient {
+            Gradient::Sobel => include_str!("wgsl/gradient_sobel.wgsl"),
+            Gradient::Central => include_str!("wgsl/gradient_central.wgsl"),
+            Gradient::Forward => include_str!("wgsl/gradient_forward.wgsl"),
         };
-        // A gradient may leave out its own texel: it is then finite also where there is no height.
-        let check_of_hole = match self.texel {
-            Texel::Value => {
-                "if !is_finite(map_height(at)) { return RepairedSlope(vec2f(0.0), FAULT_NON_FINITE); }\n    "
-            }
-            Texel::Unorm(_) | Texel::Code(_) => "",
-        };
-        format!(
-            "fn map_height(at: vec2i) -> f32 {{ let stored = map_texel(at).x; return {height}; }}\n\
-             fn map_heights(xs: vec3i, y: i32) -> vec3f {{\n    \
-                 return vec3f(map_height(vec2i(xs.x, y)), map_height(vec2i(xs.y, y)), map_height(vec2i(xs.z, y)));\n}}\n\
-             fn map_slope(unsigned_at: vec2u) -> RepairedSlope {{\n    \
-                 let at = vec2i(unsigned_at);\n    \
-                 {check_of_hole}\
-                 let size = vec2i(params.size);\n    \
-                 let xs = vec3i(neighbour(at.x - 1, size.x, params.wrap), at.x, neighbour(at.x + 1, size.x, params.wrap));\n    \
-                 let above = neighbour(at.y - 1, size.y, params.wrap);\n    \
-                 let below = neighbour(at.y + 1, size.y, params.wrap);\n    \
-                 return slope_from_gradient({gradient}, slope_limit());\n}}\n"
-        )
+        *wgsl += include_str!("wgsl/height.wgsl");
     }
 }
 

@@ -85,33 +85,37 @@ impl Target {
         Ok(textures)
     }
 
-    /// WGSL that makes each texture's texel of a footprint, as the format holds it.
-    pub fn texels_wgsl(self) -> [&'static str; 2] {
+    /// WGSL of `store_texels_n`, with which a dispatch stores a texel into the layout's textures.
+    pub fn store_wgsl(self) -> &'static str {
         match self.layout {
-            Layout::Lean => ["lean1_from_footprint", "lean2_from_footprint"],
-            _ => ["clean_from_footprint", ""],
+            Layout::Lean => include_str!("wgsl/store_lean.wgsl"),
+            _ => include_str!("wgsl/store_clean.wgsl"),
+        }
+    }
+
+    /// WGSL of a fragment shader that makes a texel of the layout's textures.
+    pub fn output_wgsl(self) -> &'static str {
+        match self.layout {
+            Layout::Lean => include_str!("wgsl/output_lean.wgsl"),
+            _ => include_str!("wgsl/output_clean.wgsl"),
         }
     }
 
     /// WGSL of `nearest(value)`, which rounds as the CPU does.
     pub fn nearest_wgsl(self) -> &'static str {
         match self.sample_type {
-            SampleType::U8 => "fn nearest(value: vec4f) -> vec4f { return unorm_nearest(value, 255.0); }\n",
-            SampleType::U16 => {
-                "fn nearest(value: vec4f) -> vec4f { return unorm_nearest(value, 65535.0); }\n"
-            }
-            _ => "fn nearest(value: vec4f) -> vec4f { return half_nearest(value); }\n",
+            SampleType::U8 => include_str!("wgsl/nearest_unorm8.wgsl"),
+            SampleType::U16 => include_str!("wgsl/nearest_unorm16.wgsl"),
+            _ => include_str!("wgsl/nearest_half.wgsl"),
         }
     }
 
     /// WGSL of `footprint_of_slope(slope)`, a texel of level 0.
-    pub fn footprint_wgsl(self) -> String {
-        let normal = if self.layout == Layout::Lean { "normal_from_slope(slope)" } else { "vec3f(0.0)" };
-        format!(
-            "fn footprint_of_slope(slope: vec2f) -> Footprint {{\n    \
-             let base = params.base_variance;\n    \
-             return Footprint(slope, vec3f(base, base, 0.0), {normal});\n}}\n"
-        )
+    pub fn footprint_wgsl(self) -> &'static str {
+        match self.layout {
+            Layout::Lean => include_str!("wgsl/footprint_with_normal.wgsl"),
+            _ => include_str!("wgsl/footprint_without_normal.wgsl"),
+        }
     }
 
     /// Copies the textures into memory.

@@ -30,7 +30,7 @@ pub async fn render(
     let [colour_view, specular_view, depth_view] =
         [&colour, &specular, &depth].map(|texture| texture.create_view(&Default::default()));
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    let views = Views { colour: &colour_view, specular: Some(&specular_view), depth: &depth_view };
+    let views = Views { specular: Some(&specular_view), ..Views::new(&colour_view, &depth_view) };
     drawing.draw(&mut encoder, &views, None);
     let colour = stage_texture(gpu, &mut encoder, &colour, 0).await?;
     let specular = stage_texture(gpu, &mut encoder, &specular, 0).await?;

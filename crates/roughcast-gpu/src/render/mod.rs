@@ -11,7 +11,7 @@
 //! let mut drawing = renderer.prepare(&geometry, &textures, &DrawOptions::default()).await?;
 //! // every frame
 //! drawing.set_view(&renderer, &scene, (width, height)).await?;
-//! drawing.draw(&mut encoder, &Views { colour, specular: None, depth }, None);
+//! drawing.draw(&mut encoder, &Views::new(&colour, &depth), None);
 //! ```
 //!
 //! [`Picture`]: roughcast_scene::Picture
@@ -23,6 +23,7 @@ mod sampling;
 mod shader;
 mod textures;
 mod uniforms;
+mod views;
 
 use std::collections::HashMap;
 
@@ -31,12 +32,13 @@ use roughcast_scene::{Sampler, Scene};
 
 pub use geometry::Geometry;
 pub use headless::render;
-pub use shader::{Detail, ShaderKey, shader_source};
+pub use shader::{LevelOfDetail, ShaderKey, shader_source};
 pub use textures::GpuTextures;
+pub use views::{Order, Part, Views};
 
 use crate::{Gpu, GpuError};
 use geometry::upload;
-use pipeline::{BindGroups, create_layouts, create_pipeline};
+use pipeline::{BindGroups, MapUniforms, create_layouts, create_pipeline};
 use sampling::Sampling;
 use uniforms::{VIEW_WORDS, light_words, room_for, view_words};
 
@@ -91,23 +93,14 @@ pub struct Renderer {
     pipelines: HashMap<ShaderKey, wgpu::RenderPipeline>,
 }
 
-/// The views of textures that a frame is drawn into, all of one size and of the formats of the renderer's target: wgpu
-/// refuses others.
-#[derive(Clone, Copy, Debug)]
-pub struct Views<'a> {
-    /// The colour target.
-    pub colour: &'a wgpu::TextureView,
-    /// The second target of [`RenderTarget::Parts`]; None for other targets.
-    pub specular: Option<&'a wgpu::TextureView>,
-    /// Of [`DEPTH_FORMAT`].
-    pub depth: &'a wgpu::TextureView,
-}
-
 /// A shape with a model's textures, ready to be drawn.
 #[derive(Debug)]
 pub struct Drawing {
     pipeline: wgpu::RenderPipeline,
     geometry: Geometry,
+    textures: GpuTextures,
+    sampling: Sampling,
+    uniforms: MapUniforms,
     maps: wgpu::BindGroup,
     view: wgpu::Buffer,
     lights: wgpu::Buffer,
@@ -155,18 +148,28 @@ impl Renderer {
         options: &DrawOptions,
     ) -> Result<Drawing, GpuError> {
         let sampling = Sampling::new(&options.sampler)?;
-        let key = ShaderKey { shading: textures.shading, lobe: textures.lobe, detail: sampling.detail };
-        let pipeline = self.pipeline(key).await?;
+        let pipeline = self.pipeline(key(textures, &sampling)).await?;
         let groups = BindGroups { gpu: &self.gpu, view_layout: &self.view_layout };
-        let maps = groups.maps(self.map_layout(textures.views.len()), textures, options, &sampling).await?;
+        let uniforms = MapUniforms::new(&self.gpu, textures, options, &sampling).await?;
+        let maps = groups.maps(self.map_layout(textures.views.len()), textures, &uniforms, &sampling).await?;
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
         let view =
             upload(&self.gpu, "the view of a scene", bytemuck::cast_slice(&[0_u32; VIEW_WORDS]), usage)
                 .await?;
         let lights = self.lights(&light_words(&[])).await?;
         let scene = groups.scene(&view, &lights).await?;
-        let geometry = geometry.clone();
-        Ok(Drawing { pipeline, geometry, maps, view, lights, scene, background: [0.0; 3] })
+        Ok(Drawing {
+            pipeline,
+            geometry: geometry.clone(),
+            textures: textures.clone(),
+            sampling,
+            uniforms,
+            maps,
+            view,
+            lights,
+            scene,
+            background: [0.0; 3],
+        })
     }
 
     fn map_layout(&self, textures: usize) -> &wgpu::BindGroupLayout {
@@ -177,7 +180,7 @@ impl Renderer {
         if let Some(pipeline) = self.pipelines.get(&key) {
             return Ok(pipeline.clone());
         }
-        let layouts = [&self.view_layout, self.map_layout(key.shading.inputs(key.lobe).len())];
+        let layouts = [&self.view_layout, self.map_layout(key.reader.inputs.len())];
         let pipeline = create_pipeline(&self.gpu, key, self.target, layouts).await?;
         self.pipelines.insert(key, pipeline.clone());
         Ok(pipeline)
@@ -193,7 +196,34 @@ impl Renderer {
     }
 }
 
+/// The shader that samples these textures so.
+fn key(textures: &GpuTextures, sampling: &Sampling) -> ShaderKey {
+    ShaderKey { shading: textures.shading, reader: textures.reader, level: sampling.level }
+}
+
 impl Drawing {
+    /// Changes lobe and texture filter of the next frames. Nothing is uploaded again; a shader is compiled only where the renderer
+    /// has none yet for this kind of filter.
+    ///
+    /// # Errors
+    /// As [`Renderer::prepare`]. The drawing is then as it was.
+    pub async fn set_options(
+        &mut self,
+        renderer: &mut Renderer,
+        options: &DrawOptions,
+    ) -> Result<(), GpuError> {
+        let sampling = Sampling::new(&options.sampler)?;
+        if sampling != self.sampling {
+            let pipeline = renderer.pipeline(key(&self.textures, &sampling)).await?;
+            let groups = BindGroups { gpu: &renderer.gpu, view_layout: &renderer.view_layout };
+            let layout = renderer.map_layout(self.textures.views.len());
+            self.maps = groups.maps(layout, &self.textures, &self.uniforms, &sampling).await?;
+            (self.pipeline, self.sampling) = (pipeline, sampling);
+        }
+        self.uniforms.write(&renderer.gpu, &self.textures, options, &sampling);
+        Ok(())
+    }
+
     /// Sets camera, lights, material, repeats and background of the next frames, in a target of `size` pixels. The scene's
     /// shape is that of the geometry; it only tells here where the depths lie.
     ///
@@ -224,7 +254,7 @@ impl Drawing {
         Ok(())
     }
 
-    /// Encodes a pass that clears the views to the background and draws. The time it takes is written where
+    /// Encodes a pass that draws into the views, in the [order](Views::order) that they state. The time it takes is written where
     /// `timestamps` says, such as [`crate::Span::of_render_pass`].
     pub fn draw(
         &self,
@@ -232,32 +262,19 @@ impl Drawing {
         views: &Views<'_>,
         timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) {
-        let [r, g, b] = self.background.map(f64::from);
-        let target = |view, clear| {
-            Some(wgpu::RenderPassColorAttachment {
-                view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
-            })
-        };
-        let mut colours = vec![target(views.colour, wgpu::Color { r, g, b, a: 0.0 })];
-        colours.extend(views.specular.map(|view| target(view, wgpu::Color::TRANSPARENT)));
+        let colours = views.colour_attachments(self.background);
         let descriptor = wgpu::RenderPassDescriptor {
             label: Some("scene"),
             color_attachments: &colours,
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: views.depth,
-                depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(0.0),
-                    store: wgpu::StoreOp::Discard,
-                }),
-                stencil_ops: None,
-            }),
+            depth_stencil_attachment: Some(views.depth_attachment()),
             timestamp_writes: timestamps,
             ..Default::default()
         };
         let mut pass = encoder.begin_render_pass(&descriptor);
+        if let Some(Part { x, y, width, height }) = views.part {
+            pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
+            pass.set_scissor_rect(x, y, width, height);
+        }
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.scene, &[]);
         pass.set_bind_group(1, &self.maps, &[]);

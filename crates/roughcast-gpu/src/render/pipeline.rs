@@ -7,7 +7,7 @@ use super::textures::GpuTextures;
 use super::{DEPTH_FORMAT, DrawOptions, RenderTarget};
 use crate::{Gpu, GpuError};
 
-/// No model samples more textures.
+/// No source of bumps has more textures.
 const MAX_TEXTURES: u32 = 3;
 
 /// The layout of the view's group, and those of the maps' groups with one texture and more.
@@ -106,26 +106,18 @@ impl BindGroups<'_> {
         self.group("the view of a scene", self.view_layout, resources).await
     }
 
-    /// The textures and how they are read.
+    /// The textures, a sampler, and the uniforms that say how they are read.
     pub async fn maps(
         &self,
         layout: &wgpu::BindGroupLayout,
         textures: &GpuTextures,
-        options: &DrawOptions,
+        uniforms: &MapUniforms,
         sampling: &Sampling,
     ) -> Result<wgpu::BindGroup, GpuError> {
-        let usage = wgpu::BufferUsages::UNIFORM;
-        let lobe = textures.options(options.lobe).to_words();
-        let lobe = upload(self.gpu, "the options of a lobe", bytemuck::cast_slice(&lobe), usage).await?;
-        let packing = textures.packing.to_array();
-        let packing =
-            upload(self.gpu, "the packing of textures", bytemuck::cast_slice(&packing), usage).await?;
-        let taps = f32::from(sampling.max_anisotropy);
-        let detail = [sampling.value.to_bits(), textures.roughness_channel, taps.to_bits(), 0];
-        let detail = upload(self.gpu, "the sampling", bytemuck::cast_slice(&detail), usage).await?;
         let descriptor = sampling.descriptor();
         let sampler = self.gpu.checked("a sampler", |device| device.create_sampler(&descriptor)).await?;
-        let fixed = [lobe.as_entire_binding(), packing.as_entire_binding(), detail.as_entire_binding()];
+        let MapUniforms { options, packing, sampling } = uniforms;
+        let fixed = [options, packing, sampling].map(wgpu::Buffer::as_entire_binding);
         let resources = fixed
             .into_iter()
             .chain([wgpu::BindingResource::Sampler(&sampler)])
@@ -146,5 +138,39 @@ impl BindGroups<'_> {
             .collect();
         let descriptor = wgpu::BindGroupDescriptor { label: Some(what), layout, entries: &entries };
         self.gpu.checked(what, |device| device.create_bind_group(&descriptor)).await
+    }
+}
+
+/// The uniforms of the maps' group.
+#[derive(Clone, Debug)]
+pub(super) struct MapUniforms {
+    options: wgpu::Buffer,
+    packing: wgpu::Buffer,
+    sampling: wgpu::Buffer,
+}
+
+impl MapUniforms {
+    pub async fn new(
+        gpu: &Gpu,
+        textures: &GpuTextures,
+        options: &DrawOptions,
+        sampling: &Sampling,
+    ) -> Result<Self, GpuError> {
+        let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        let options = textures.options(options.lobe).to_words();
+        let packing = textures.packing.to_words();
+        let sampling = sampling.words(textures);
+        Ok(Self {
+            options: upload(gpu, "the options of a lobe", bytemuck::cast_slice(&options), usage).await?,
+            packing: upload(gpu, "the packing of textures", bytemuck::cast_slice(&packing), usage).await?,
+            sampling: upload(gpu, "the sampling", bytemuck::cast_slice(&sampling), usage).await?,
+        })
+    }
+
+    /// Writes what may change from frame to frame.
+    pub fn write(&self, gpu: &Gpu, textures: &GpuTextures, options: &DrawOptions, sampling: &Sampling) {
+        let words = textures.options(options.lobe).to_words();
+        gpu.queue.write_buffer(&self.options, 0, bytemuck::cast_slice(&words));
+        gpu.queue.write_buffer(&self.sampling, 0, bytemuck::cast_slice(&sampling.words(textures)));
     }
 }

@@ -3,7 +3,8 @@
 use roughcast::Wrap;
 use roughcast_scene::{Filter, Sampler};
 
-use super::shader::Detail;
+use super::shader::LevelOfDetail;
+use super::textures::GpuTextures;
 use crate::GpuError;
 
 /// Taps that anisotropic filtering may take: as many as WebGPU knows.
@@ -17,7 +18,7 @@ const LAST_LEVEL: f64 = 32.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sampling {
     /// Where the level of detail comes from.
-    pub detail: Detail,
+    pub level: LevelOfDetail,
     /// The level, or what is added to it.
     pub value: f32,
     /// Taps along the footprint that the sampler may take; 0 for the nearest texel alone.
@@ -40,17 +41,23 @@ impl Sampling {
                 )));
             }
         };
-        let (detail, value) = match level {
+        let (level, value) = match level {
             // As on the CPU, what is not a number is the finest level.
-            Some(level) => (Detail::Fixed, if level > 0.0 { level.min(LAST_LEVEL) } else { 0.0 }),
-            None => (Detail::Derivatives, mip_bias.clamp(BIASES.0, BIASES.1)),
+            Some(level) => (LevelOfDetail::Fixed, if level > 0.0 { level.min(LAST_LEVEL) } else { 0.0 }),
+            None => (LevelOfDetail::Derivatives, mip_bias.clamp(BIASES.0, BIASES.1)),
         };
-        let max_anisotropy = match (filter, detail) {
+        let max_anisotropy = match (filter, level) {
             (Filter::Nearest, _) => 0,
-            (Filter::Anisotropic, Detail::Derivatives) => MAX_TAPS,
+            (Filter::Anisotropic, LevelOfDetail::Derivatives) => MAX_TAPS,
             _ => 1,
         };
-        Ok(Self { detail, value: value as f32, max_anisotropy, filter, wrap })
+        Ok(Self { level, value: value as f32, max_anisotropy, filter, wrap })
+    }
+
+    /// WGSL's `Sampling`.
+    pub fn words(&self, textures: &GpuTextures) -> [u32; 4] {
+        let taps = f32::from(self.max_anisotropy);
+        [self.value.to_bits(), textures.roughness_channel, taps.to_bits(), 0]
     }
 
     /// Samplers with anisotropy need derivatives; at a fixed level they are trilinear ones, as on the CPU.
@@ -98,12 +105,12 @@ mod tests {
     #[test]
     fn levels_and_biases_are_those_that_the_hardware_takes() {
         let nearest = sampling(Filter::Nearest, None, 3.0);
-        assert_eq!((nearest.detail, nearest.value), (Detail::Fixed, 0.0));
+        assert_eq!((nearest.level, nearest.value), (LevelOfDetail::Fixed, 0.0));
         assert_eq!(sampling(Filter::Nearest, Some(1.6), 0.0).value, 2.0);
         assert_eq!(sampling(Filter::Trilinear, Some(-1.0), 9.0).value, 0.0);
         assert_eq!(sampling(Filter::Trilinear, Some(f64::NAN), 9.0).value, 0.0);
         let biased = sampling(Filter::Trilinear, None, 1.5);
-        assert_eq!((biased.detail, biased.value), (Detail::Derivatives, 1.5));
+        assert_eq!((biased.level, biased.value), (LevelOfDetail::Derivatives, 1.5));
         assert_eq!(sampling(Filter::Trilinear, None, 1e9).value, 15.99);
     }
 

@@ -1,9 +1,9 @@
 //! A model's textures in the GPU's memory, in the format in which they are stored.
 
 use roughcast::shading::{LobeOptions, Shading};
-use roughcast::texture::{Packing, Texture, TextureArray, TextureInfo};
+use roughcast::texture::{Packing, TexelReader, Texture, TextureArray, TextureInfo};
 use roughcast::{Image, Lobe, SampleType, Samples};
-use roughcast_scene::render::model_inputs;
+use roughcast_scene::{DetailError, model_inputs};
 
 use crate::{Gpu, GpuError};
 
@@ -11,7 +11,7 @@ use crate::{Gpu, GpuError};
 #[derive(Clone, Debug)]
 pub struct GpuTextures {
     pub(super) shading: Shading,
-    pub(super) lobe: Lobe,
+    pub(super) reader: &'static TexelReader,
     pub(super) views: Vec<wgpu::TextureView>,
     pub(super) roughness_channel: u32,
     pub(super) packing: Packing,
@@ -23,7 +23,7 @@ impl GpuTextures {
     /// 8-bit and 16-bit unsigned, half or single floats. Three channels become four.
     ///
     /// # Errors
-    /// [`GpuError::Scene`] where a texture is missing; [`GpuError::Format`] where the device cannot filter what is stored;
+    /// [`GpuError::Detail`] where a texture is missing; [`GpuError::Format`] where the device cannot filter what is stored;
     /// and where the textures are too large.
     pub async fn new(gpu: &Gpu, shading: Shading, arrays: &[TextureArray]) -> Result<Self, GpuError> {
         let inputs = model_inputs(shading, arrays)?;
@@ -33,7 +33,7 @@ impl GpuTextures {
         }
         Ok(Self {
             shading,
-            lobe: inputs.lobe,
+            reader: inputs.reader,
             views,
             roughness_channel: inputs.roughness_channel as u32,
             packing: inputs.packing,
@@ -53,7 +53,10 @@ impl GpuTextures {
         textures: &[wgpu::Texture],
         info: &TextureInfo,
     ) -> Result<Self, GpuError> {
-        let inputs = shading.inputs(Lobe::Isotropic);
+        let layout = shading.layout();
+        let reader =
+            layout.texel_reader(shading.wanted(), Lobe::Isotropic).ok_or(DetailError::NotSampled(layout))?;
+        let inputs = reader.inputs;
         if info.layout != shading.layout() || textures.len() < inputs.len() {
             return Err(GpuError::Shape(format!(
                 "'{shading}' samples {} textures of the layout '{}', not {} of '{}': bake that layout",
@@ -69,7 +72,7 @@ impl GpuTextures {
         }
         Ok(Self {
             shading,
-            lobe: Lobe::Isotropic,
+            reader,
             views: textures.iter().map(|texture| texture.create_view(&Default::default())).collect(),
             roughness_channel: 0,
             packing: Packing::new(info, sample_type(textures[0].format())),
@@ -80,6 +83,11 @@ impl GpuTextures {
     /// The model.
     pub fn shading(&self) -> Shading {
         self.shading
+    }
+
+    /// How their texels are read.
+    pub fn reader(&self) -> &'static TexelReader {
+        self.reader
     }
 
     /// The options with what the textures say of themselves.

@@ -4,8 +4,8 @@ use roughcast::shading::LobeOptions;
 use roughcast::texture::TextureArray;
 use roughcast_gpu::render::{DrawOptions, Geometry, GpuTextures, RenderTarget, Renderer, render};
 use roughcast_gpu::{Gpu, GpuError};
-use roughcast_scene::render::{Method, ShadingTextures, unwatched};
-use roughcast_scene::{Picture, Sampler, Scene, Shape};
+use roughcast_scene::render::{Method, unwatched};
+use roughcast_scene::{BakedTextures, Picture, Sampler, Scene, Shape};
 
 use roughcast::shading::Shading;
 
@@ -17,9 +17,11 @@ pub fn by_cpu(
     options: &DrawOptions,
     size: (u32, u32),
 ) -> Picture {
-    let textures = ShadingTextures::new(shading, maps).expect("the maps are the model's");
+    let textures = BakedTextures::of_model(shading, maps).expect("the maps are the model's");
     let DrawOptions { sampler, lobe } = *options;
-    Method { textures: &textures, sampler, options: lobe }.render(scene, size, &unwatched).expect("a picture")
+    Method { shading, detail: &textures.sampled(sampler), options: lobe }
+        .render(scene, size, &unwatched)
+        .expect("a picture")
 }
 
 /// The same by the GPU; the geometry is the scene's.

@@ -3,8 +3,8 @@
 use roughcast::shading::*;
 
 use crate::harness::{Gives, Twin};
-use crate::inputs::{Inputs, gaussian_words};
-use crate::table::{covariance, covariance_words, facet, gaussian, ggx, one, slope, v3};
+use crate::inputs::Inputs;
+use crate::table::{covariance, covariance_words, facet, gaussian, ggx, one, v3};
 
 fn part(a: &[f32]) -> PixelPart {
     PixelPart { ratio: a[0], linear_trace: a[1] }
@@ -211,17 +211,6 @@ pub fn footprint_twins() -> Vec<Twin> {
             rust: |a, o, _| {
                 let filter = FilterVariances { moments: pair(&a[6..]), variances: pair(&a[8..]) };
                 ratio_words(footprint_ratio(&axes(a), &filter, pair(&a[10..]), pair(&a[12..]), o))
-            },
-        },
-        Twin {
-            name: "moment_surface",
-            gives: Gives::Gaussian,
-            call: "put_gaussian(moment_surface(f2(0u), f3(2u), ratio(5u), part(5u), o()));",
-            arguments: |inputs| [&inputs.slope()[..], &inputs.covariance(), &inputs.ratio()].concat(),
-            rust: |a, o, _| {
-                let ratio = ratio(&a[5..]);
-                let surface = moment_surface(slope(a), covariance(&a[2..]), &ratio, ratio.moments, o);
-                gaussian_words(&surface).to_vec()
             },
         },
     ]

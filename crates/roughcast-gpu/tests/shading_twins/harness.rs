@@ -2,14 +2,15 @@
 
 use std::fmt::Write;
 
-use roughcast::shading::{LobeOptions, wgsl};
+use roughcast::shading::LobeOptions;
 use roughcast::texture::Packing;
+use roughcast::wgsl::{self, Role};
 use roughcast_gpu::Gpu;
 use roughcast_gpu::read_back::read_buffer;
 use wgpu::util::DeviceExt;
 
 /// Words of the packing and of the options before the arguments of a case.
-const PACKING_WORDS: usize = 12;
+const PACKING_WORDS: usize = 16;
 const OPTION_WORDS: usize = 8;
 /// Cases run together.
 const WORKGROUP: u32 = 64;
@@ -36,6 +37,8 @@ pub enum Gives {
     Numbers,
     /// The six words of a Gaussian, whose determinant is a small difference of products.
     Gaussian,
+    /// The words of a mixture's surface: weights, count, and the words of four Gaussians.
+    Mixture,
     /// The six words of a footprint's axes, of which the shorter is a small difference of products where the footprint is long.
     Axes,
     /// The eight words of a footprint's ratio: parts, and what they leave of one.
@@ -51,10 +54,16 @@ pub struct Case {
     pub arguments: Vec<f32>,
 }
 
-/// The whole library as Rust has it.
+/// The modules of shading. Those of detail need a host, and those of baking have a test of their own.
+pub fn modules() -> impl Iterator<Item = &'static wgsl::Module> {
+    let shades = |module: &&wgsl::Module| !matches!(module.role, Role::Bake | Role::Detail);
+    wgsl::MODULES.iter().filter(shades)
+}
+
+/// The library of shading as Rust has it.
 pub fn library() -> String {
-    let names: Vec<&str> = wgsl::MODULES.iter().map(|module| module.name).collect();
-    wgsl::library(&names).expect("these are all modules")
+    let names: Vec<&str> = modules().map(|module| module.name).collect();
+    wgsl::library(&names).expect("these are modules")
 }
 
 /// What a library's twin gives for each case, on the GPU.
@@ -114,7 +123,7 @@ pub async fn run(gpu: &Gpu, library: &str, twin: &Twin, cases: &[Case]) -> Vec<V
 }
 
 fn words(case: &Case) -> Vec<u32> {
-    let packing = case.packing.to_array().map(f32::to_bits);
+    let packing = case.packing.to_words();
     let arguments = case.arguments.iter().map(|value| value.to_bits());
     packing.into_iter().chain(case.options.to_words()).chain(arguments).collect()
 }
@@ -180,12 +189,11 @@ fn cancellation(gives: Gives, wanted: &[f32]) -> Vec<f32> {
     let mut left = vec![0.0; wanted.len()];
     match gives {
         Gives::Numbers => {}
-        Gives::Gaussian => {
-            let [xx, yy, xy] = [wanted[2], wanted[3], wanted[4]];
-            let determinant = unit * (xx * yy + xy * xy).abs();
-            // The repair adds about determinant / trace to the variances.
-            let variance = determinant / (xx + yy).abs().max(f32::MIN_POSITIVE);
-            (left[2], left[3], left[5]) = (variance, variance, 2.0 * determinant);
+        Gives::Gaussian => cancellation_of_gaussian(unit, wanted, &mut left),
+        Gives::Mixture => {
+            for (wanted, left) in wanted[5..].chunks(6).zip(left[5..].chunks_mut(6)) {
+                cancellation_of_gaussian(unit, wanted, left);
+            }
         }
         // The part of the derivatives that is along the shorter axis.
         Gives::Axes => left[4..6].fill(unit * wanted[0].sqrt() / wanted[1]),
@@ -194,6 +202,15 @@ fn cancellation(gives: Gives, wanted: &[f32]) -> Vec<f32> {
         Gives::Ggx => left[4..7].fill(unit / wanted[2]),
     }
     left
+}
+
+/// The same for the words of a Gaussian.
+fn cancellation_of_gaussian(unit: f32, wanted: &[f32], left: &mut [f32]) {
+    let [xx, yy, xy] = [wanted[2], wanted[3], wanted[4]];
+    let determinant = unit * (xx * yy + xy * xy).abs();
+    // The repair adds about determinant / trace to the variances.
+    let variance = determinant / (xx + yy).abs().max(f32::MIN_POSITIVE);
+    (left[2], left[3], left[5]) = (variance, variance, 2.0 * determinant);
 }
 
 /// How far each result moves when the arguments do.

@@ -32,16 +32,26 @@ fn o() -> LobeOptions {
         input_words[i + 3u],
         input_words[i + 4u],
         input_words[i + 5u],
-        input_words[i + 6u],
-        input_words[i + 7u],
+        vec2u(0u),
     );
 }
 
 // And the packing before the options.
 fn p() -> Packing {
     let before = input_at;
-    input_at = before - OPTION_WORDS - 12u;
-    let packing = Packing(f2(0u), f2(2u), f2(4u), f2(6u), f2(8u), f2(10u));
+    let i = before - OPTION_WORDS - 16u;
+    input_at = i;
+    let packing = Packing(
+        f2(0u),
+        f2(2u),
+        f2(4u),
+        f2(6u),
+        f2(8u),
+        f2(10u),
+        f2(12u),
+        input_words[i + 14u],
+        input_words[i + 15u],
+    );
     input_at = before;
     return packing;
 }
@@ -125,4 +135,48 @@ fn gaussian(i: u32) -> SlopeGaussian {
 
 fn ggx(i: u32) -> GgxSurface {
     return GgxSurface(f3(i), f(i + 3u), f3(i + 4u), f(i + 7u));
+}
+
+fn weighted(i: u32) -> WeightedGaussian {
+    return WeightedGaussian(f2(i), f2(i + 2u), f(i + 4u), f(i + 5u));
+}
+
+// The whole numbers are rounded, since the tolerance moves all arguments.
+fn distribution(i: u32) -> Distribution {
+    return Distribution(
+        f3(i),
+        u32(f(i + 3u) + 0.5),
+        u32(f(i + 4u) + 0.5),
+        weighted(i + 5u),
+        weighted(i + 11u),
+        weighted(i + 17u),
+        weighted(i + 23u),
+    );
+}
+
+fn put_weighted(gaussian: WeightedGaussian) {
+    put2(gaussian.mean);
+    put2(gaussian.variance);
+    put(gaussian.covariance);
+    put(gaussian.weight);
+}
+
+fn put_distribution(d: Distribution) {
+    put3(d.normal);
+    put(f32(d.base));
+    put(f32(d.count));
+    put_weighted(d.first);
+    put_weighted(d.second);
+    put_weighted(d.third);
+    put_weighted(d.fourth);
+}
+
+fn put_mixture(surface: MixtureSurface) {
+    put2(surface.weights.xy);
+    put2(surface.weights.zw);
+    put(f32(surface.count));
+    put_gaussian(surface.first);
+    put_gaussian(surface.second);
+    put_gaussian(surface.third);
+    put_gaussian(surface.fourth);
 }

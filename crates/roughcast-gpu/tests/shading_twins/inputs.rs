@@ -3,10 +3,10 @@
 use roughcast::Slope;
 use roughcast::shading::{
     BaseLobe, FootprintModel, Form, LobeOptions, Masking, Repair, SlopeGaussian, bump_facet, ggx_surface,
-    ggx_surface_of_normal, slope_gaussian,
+    slope_gaussian,
 };
-use roughcast::texture::{Base, Packing, RoughnessStored};
-use roughcast::{Covariance, Moments};
+use roughcast::texture::{Base, Packing, RoughnessStored, normal_moments, pbr_moments};
+use roughcast::{Covariance, Distribution, MAX_GAUSSIANS, Moments, WeightedGaussian};
 
 /// A source of arguments, the same in every run.
 pub struct Inputs {
@@ -21,8 +21,10 @@ const SCALED: Packing = Packing {
     second: [4.0, 0.0],
     mixed: [8.0, -4.0],
     trace: [8.0, 0.0],
-    variance: [0.5, 0.0],
+    spread: [0.5, 0.0],
+    signed_spread: [1.0, -0.5],
     unit: [2.0, -1.0],
+    ..Packing::IDENTITY
 };
 
 impl Inputs {
@@ -41,12 +43,49 @@ impl Inputs {
             form: Form::ALL[self.below(3)],
             base: BaseLobe::ALL[self.below(2)],
             repair: Repair::ALL[self.below(2)],
-            base_in_maps: [Base::None, Base::None, Base::Baked][self.below(3)],
-            roughness_stored: RoughnessStored::ALL[self.below(RoughnessStored::ALL.len())],
             masking: Masking::ALL[self.below(2)],
             footprint: FootprintModel::ALL[usize::from(self.below(8) == 0)],
         };
-        self.packing = [Packing::IDENTITY, SCALED][self.below(2)];
+        self.packing = Packing {
+            base: self.base(),
+            roughness_stored: RoughnessStored::ALL[self.below(RoughnessStored::ALL.len())],
+            ..[Packing::IDENTITY, SCALED][self.below(2)]
+        };
+    }
+
+    /// Whether a base is in: of one in three.
+    fn base(&mut self) -> Base {
+        [Base::None, Base::None, Base::Baked][self.below(3)]
+    }
+
+    /// A distribution of one to four Gaussians, with a normal of any length.
+    pub fn distribution(&mut self) -> Distribution {
+        let count = 1 + self.below(4);
+        self.mixture(count)
+    }
+
+    /// A distribution of so many Gaussians.
+    pub fn mixture(&mut self, count: usize) -> Distribution {
+        let mut rest = 1.0;
+        let parts: Vec<WeightedGaussian> = (0..count)
+            .map(|place| {
+                let weight = if place + 1 == count { rest } else { rest * self.unit() };
+                rest -= weight;
+                let ([x, y], [xx, yy, xy]) = (self.slope(), self.covariance());
+                WeightedGaussian { weight, mean: Slope { x, y }, covariance: Covariance { xx, yy, xy } }
+            })
+            .collect();
+        let mixture = Distribution::mixture(&parts).expect("one to four");
+        mixture.with_normal(self.normal().into()).with_base(self.base())
+    }
+
+    /// A distribution of this model's, and directions about the mean of its first Gaussian.
+    pub fn mixture_lobe(&mut self) -> Vec<f32> {
+        let distribution = self.distribution();
+        let first = distribution.gaussians()[0];
+        let width = (first.covariance.trace() + 2.0 / self.options.specular_power).max(0.0).sqrt();
+        let [view, light] = self.directions([first.mean.x, first.mean.y, 1.0], width);
+        [&distribution_words(&distribution)[..], &view, &light].concat()
     }
 
     /// In 0 .. 1 (splitmix64).
@@ -206,13 +245,14 @@ impl Inputs {
 
     /// The words of GGX, and directions.
     pub fn ggx_lobe(&mut self) -> Vec<f32> {
-        let surface = if self.below(2) == 0 {
-            ggx_surface_of_normal(self.normal(), &self.options)
+        let distribution = if self.below(2) == 0 {
+            normal_moments(self.normal())
         } else {
             let words = self.material();
             let [normal, anisotropy] = [0, 5].map(|i| std::array::from_fn(|j| words[i + j]));
-            ggx_surface(normal, words[4], anisotropy, &self.packing, &self.options)
+            pbr_moments(normal, words[4], anisotropy, &self.packing)
         };
+        let surface = ggx_surface(&distribution, &self.options);
         let [view, light] = self.directions(surface.normal, surface.alpha_across);
         let along = [surface.alpha_along];
         [&surface.normal[..], &along, &surface.tangent, &[surface.alpha_across], &view, &light].concat()
@@ -223,7 +263,7 @@ impl Inputs {
         let normal = self.normal();
         let unit = self.packing.unit;
         let z = if self.below(3) == 0 { 0.0 } else { normal[2] };
-        let roughness = match self.options.roughness_stored {
+        let roughness = match self.packing.roughness_stored {
             RoughnessStored::SpecularPower => self.of_any_size(1.0, 1e5).abs(),
             _ => self.unit(),
         };
@@ -257,4 +297,18 @@ impl Inputs {
 pub fn gaussian_words(gaussian: &SlopeGaussian) -> [f32; 6] {
     let SlopeGaussian { mean, covariance, determinant } = *gaussian;
     [mean.x, mean.y, covariance.xx, covariance.yy, covariance.xy, determinant]
+}
+
+pub fn weighted_words(gaussian: &WeightedGaussian) -> [f32; 6] {
+    let WeightedGaussian { weight, mean, covariance } = *gaussian;
+    [mean.x, mean.y, covariance.xx, covariance.yy, covariance.xy, weight]
+}
+
+/// The filtered normal, base and count as numbers, and four Gaussians, of which those beyond the count are zero.
+pub fn distribution_words(distribution: &Distribution) -> Vec<f32> {
+    let parts = distribution.gaussians();
+    let part = |place: usize| parts.get(place).copied().unwrap_or_default();
+    let head = [distribution.base() as u32 as f32, parts.len() as f32];
+    let gaussians = (0..MAX_GAUSSIANS).flat_map(|place| weighted_words(&part(place)));
+    distribution.normal().to_array().into_iter().chain(head).chain(gaussians).collect()
 }

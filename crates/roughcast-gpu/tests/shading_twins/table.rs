@@ -1,12 +1,13 @@
 //! Every function of the WGSL library beside its Rust twin.
 
 use roughcast::shading::*;
-use roughcast::texture::{Packing, RoughnessStored};
-use roughcast::{Covariance, Slope, variance_from_stored};
+use roughcast::{Covariance, Slope};
 
-use crate::footprint_table::{footprint_twins, masking_twins, ratio};
+use crate::distribution_table::{distribution_twins, model_twins};
+use crate::footprint_table::{footprint_twins, masking_twins};
 use crate::harness::{Gives, Twin};
 use crate::inputs::{Inputs, gaussian_words};
+use crate::texel_table::texel_twins;
 
 pub fn v3(a: &[f32]) -> [f32; 3] {
     [a[0], a[1], a[2]]
@@ -32,7 +33,7 @@ pub fn facet(a: &[f32]) -> BumpFacet {
     BumpFacet { normal: v3(a), specular_power: a[3] }
 }
 
-fn facet_words(facet: BumpFacet) -> Vec<f32> {
+pub fn facet_words(facet: BumpFacet) -> Vec<f32> {
     [&facet.normal[..], &[facet.specular_power]].concat()
 }
 
@@ -44,7 +45,7 @@ pub fn ggx(a: &[f32]) -> GgxSurface {
     GgxSurface { normal: v3(a), alpha_along: a[3], tangent: v3(&a[4..]), alpha_across: a[7] }
 }
 
-fn ggx_words(ggx: GgxSurface) -> Vec<f32> {
+pub fn ggx_words(ggx: GgxSurface) -> Vec<f32> {
     [&ggx.normal[..], &[ggx.alpha_along], &ggx.tangent, &[ggx.alpha_across]].concat()
 }
 
@@ -68,30 +69,8 @@ fn axis_and_direction(inputs: &mut Inputs) -> Vec<f32> {
     [&words[..3], &words[4..7], &[exponent]].concat()
 }
 
-fn normal(inputs: &mut Inputs) -> Vec<f32> {
+pub fn normal(inputs: &mut Inputs) -> Vec<f32> {
     inputs.normal().to_vec()
-}
-
-/// Toksvig's texel.
-fn toksvig(inputs: &mut Inputs) -> Vec<f32> {
-    let unit = inputs.packing.unit;
-    let mut words: Vec<f32> = inputs.normal().iter().map(|value| Inputs::stored(*value, unit)).collect();
-    words.push(inputs.unit());
-    words
-}
-
-fn clean(inputs: &mut Inputs) -> Vec<f32> {
-    let ([x, y], Packing { slope, trace, .. }) = (inputs.slope(), inputs.packing);
-    // One in a few is rounded to below the mean's own square.
-    let variance = inputs.of_any_size(1e-6, 1.0).max(-1e-4);
-    let stored = [Inputs::stored(x, slope), Inputs::stored(y, slope)];
-    [&stored[..], &[Inputs::stored(x * x + y * y + variance, trace), 1.0]].concat()
-}
-
-fn variance(inputs: &mut Inputs) -> Vec<f32> {
-    let ([x, y], [xx, yy, _]) = (inputs.slope(), inputs.covariance());
-    let Packing { slope, variance, .. } = inputs.packing;
-    [(x, slope), (y, slope), (xx, variance), (yy, variance)].map(|(v, pair)| Inputs::stored(v, pair)).to_vec()
 }
 
 fn lobe_and_light(inputs: &mut Inputs) -> Vec<f32> {
@@ -101,109 +80,23 @@ fn lobe_and_light(inputs: &mut Inputs) -> Vec<f32> {
 }
 
 fn surface_twins() -> Vec<Twin> {
-    vec![
-        Twin {
-            name: "phong_surface",
-            gives: Gives::Numbers,
-            call: "put_facet(phong_surface(f3(0u), o()));",
-            arguments: normal,
-            rust: |a, o, _| facet_words(phong_surface(v3(a), o)),
+    vec![Twin {
+        name: "ggx_facet",
+        gives: Gives::Ggx,
+        call: "put_ggx(ggx_facet(f3(0u), f2(3u), f(5u), f(6u)));",
+        arguments: |inputs| {
+            let normal = unit_normal(inputs.normal());
+            let direction = inputs.between(-3.2, 3.2).sin_cos();
+            [&normal[..], &[direction.1, direction.0], &[inputs.unit(), inputs.unit()]].concat()
         },
-        Twin {
-            name: "blinn_phong_surface",
-            gives: Gives::Numbers,
-            call: "put_facet(blinn_phong_surface(f3(0u), o()));",
-            arguments: normal,
-            rust: |a, o, _| facet_words(blinn_phong_surface(v3(a), o)),
+        rust: |a, _, _| {
+            let n = [a[0], a[1], a[2]].map(f64::from);
+            let [x, y] = [a[3], a[4]].map(f64::from);
+            let along = n[0] * x + n[1] * y;
+            let tangent = normalized([x - along * n[0], y - along * n[1], -along * n[2]]);
+            [&a[..3], &[a[5]], &tangent, &[a[6]]].concat()
         },
-        Twin {
-            name: "beckmann_surface",
-            gives: Gives::Numbers,
-            call: "put_facet(beckmann_surface(f3(0u), o()));",
-            arguments: normal,
-            rust: |a, o, _| facet_words(beckmann_surface(v3(a), o)),
-        },
-        Twin {
-            name: "off_centre_surface",
-            gives: Gives::Gaussian,
-            call: "put_gaussian(off_centre_surface(f3(0u), o()));",
-            arguments: normal,
-            rust: |a, o, _| gaussian_words(&off_centre_surface(v3(a), o)).to_vec(),
-        },
-        Twin {
-            name: "lean_surface",
-            gives: Gives::Gaussian,
-            call: "put_gaussian(lean_surface(f4(0u), f4(4u), ratio(8u), p(), o()));",
-            arguments: |inputs| [inputs.lean(), inputs.ratio().to_vec()].concat(),
-            rust: |a, o, p| gaussian_words(&lean_surface(v4(a), v4(&a[4..]), &ratio(&a[8..]), p, o)).to_vec(),
-        },
-        Twin {
-            name: "clean_surface",
-            gives: Gives::Gaussian,
-            call: "put_gaussian(clean_surface(f4(0u), ratio(4u), p(), o()));",
-            arguments: |inputs| [clean(inputs), inputs.ratio().to_vec()].concat(),
-            rust: |a, o, p| gaussian_words(&clean_surface(v4(a), &ratio(&a[4..]), p, o)).to_vec(),
-        },
-        Twin {
-            name: "toksvig_normal",
-            gives: Gives::Numbers,
-            call: "put3(toksvig_normal(f4(0u), p()));",
-            arguments: toksvig,
-            rust: |a, _, p| toksvig_normal(v4(a), p).to_vec(),
-        },
-        Twin {
-            name: "toksvig_surface",
-            gives: Gives::Numbers,
-            call: "put_facet(toksvig_surface(f4(0u), p(), o()));",
-            arguments: toksvig,
-            rust: |a, o, p| facet_words(toksvig_surface(v4(a), p, o)),
-        },
-        Twin {
-            name: "variance_surface",
-            gives: Gives::Gaussian,
-            call: "put_gaussian(variance_surface(f4(0u), ratio(4u), p(), o()));",
-            arguments: |inputs| [variance(inputs), inputs.ratio().to_vec()].concat(),
-            rust: |a, o, p| gaussian_words(&variance_surface(v4(a), &ratio(&a[4..]), p, o)).to_vec(),
-        },
-        Twin {
-            name: "ggx_surface",
-            gives: Gives::Ggx,
-            call: "put_ggx(ggx_surface(f4(0u), f(4u), f4(5u), p(), o()));",
-            arguments: Inputs::material,
-            rust: |a, o, p| ggx_words(ggx_surface(v4(a), a[4], v4(&a[5..]), p, o)),
-        },
-        Twin {
-            name: "ggx_surface_of_normal",
-            gives: Gives::Ggx,
-            call: "put_ggx(ggx_surface_of_normal(f3(0u), o()));",
-            arguments: normal,
-            rust: |a, o, _| ggx_words(ggx_surface_of_normal(v3(a), o)),
-        },
-        Twin {
-            name: "ggx_normal",
-            gives: Gives::Numbers,
-            call: "put3(ggx_normal(f4(0u), p()));",
-            arguments: Inputs::material,
-            rust: |a, _, p| ggx_normal(v4(a), p).to_vec(),
-        },
-        Twin {
-            name: "ggx_facet",
-            gives: Gives::Ggx,
-            call: "put_ggx(ggx_facet(f3(0u), f2(3u), f(5u), f(6u)));",
-            arguments: |inputs| {
-                let normal = unit_normal(inputs.normal());
-                [&normal[..], &inputs.slope(), &[inputs.unit(), inputs.unit()]].concat()
-            },
-            rust: |a, _, _| {
-                let n = [a[0], a[1], a[2]].map(f64::from);
-                let [x, y] =
-                    if a[3] == 0.0 && a[4] == 0.0 { [1.0, 0.0] } else { [a[3], a[4]].map(f64::from) };
-                let along = n[0] * x + n[1] * y;
-                let tangent = normalized([x - along * n[0], y - along * n[1], -along * n[2]]);
-                [&a[..3], &[a[5]], &tangent, &[a[6]]].concat()
-            },
-        },
-    ]
+    }]
 }
 
 fn lobe_twins() -> Vec<Twin> {
@@ -233,41 +126,6 @@ fn lobe_twins() -> Vec<Twin> {
             call: "put(beckmann_lobe(facet(0u), f3(4u), f3(7u), o()));",
             arguments: Inputs::facet_lobe,
             rust: |a, o, _| one(beckmann_lobe(&facet(a), v3(&a[4..]), v3(&a[7..]), o)),
-        },
-        Twin {
-            name: "toksvig_lobe",
-            gives: Gives::Numbers,
-            call: "put(toksvig_lobe(facet(0u), f3(4u), f3(7u), o()));",
-            arguments: Inputs::facet_lobe,
-            rust: |a, o, _| one(toksvig_lobe(&facet(a), v3(&a[4..]), v3(&a[7..]), o)),
-        },
-        Twin {
-            name: "off_centre_lobe",
-            gives: Gives::Numbers,
-            call: "put(off_centre_lobe(gaussian(0u), f3(6u), f3(9u), o()));",
-            arguments: Inputs::gaussian_lobe,
-            rust: |a, o, _| one(off_centre_lobe(&gaussian(a), v3(&a[6..]), v3(&a[9..]), o)),
-        },
-        Twin {
-            name: "lean_lobe",
-            gives: Gives::Numbers,
-            call: "put(lean_lobe(gaussian(0u), f3(6u), f3(9u), o()));",
-            arguments: Inputs::gaussian_lobe,
-            rust: |a, o, _| one(lean_lobe(&gaussian(a), v3(&a[6..]), v3(&a[9..]), o)),
-        },
-        Twin {
-            name: "clean_lobe",
-            gives: Gives::Numbers,
-            call: "put(clean_lobe(gaussian(0u), f3(6u), f3(9u), o()));",
-            arguments: Inputs::gaussian_lobe,
-            rust: |a, o, _| one(clean_lobe(&gaussian(a), v3(&a[6..]), v3(&a[9..]), o)),
-        },
-        Twin {
-            name: "variance_lobe",
-            gives: Gives::Numbers,
-            call: "put(variance_lobe(gaussian(0u), f3(6u), f3(9u), o()));",
-            arguments: Inputs::gaussian_lobe,
-            rust: |a, o, _| one(variance_lobe(&gaussian(a), v3(&a[6..]), v3(&a[9..]), o)),
         },
         Twin {
             name: "gaussian_lobe",
@@ -310,13 +168,6 @@ fn part_twins() -> Vec<Twin> {
             rust: |a, _, _| facet_words(bump_facet(v3(a), a[3])),
         },
         Twin {
-            name: "bump_normal",
-            gives: Gives::Numbers,
-            call: "put3(bump_normal(f4(0u), p()));",
-            arguments: |inputs| inputs.lean()[..4].to_vec(),
-            rust: |a, _, p| bump_normal(v4(a), p).to_vec(),
-        },
-        Twin {
             name: "log_one_plus",
             gives: Gives::Numbers,
             call: "put(log_one_plus(f(0u)));",
@@ -345,20 +196,6 @@ fn part_twins() -> Vec<Twin> {
             rust: |a, o, _| covariance_words(base_covariance(slope(a), o)),
         },
         Twin {
-            name: "base_in_map",
-            gives: Gives::Numbers,
-            call: "put(base_in_map(o()));",
-            arguments: |_| vec![0.0],
-            rust: |_, o, _| one(base_in_map(o)),
-        },
-        Twin {
-            name: "base_to_add",
-            gives: Gives::Numbers,
-            call: "put3(base_to_add(f2(0u), o()));",
-            arguments: |inputs| inputs.slope().to_vec(),
-            rust: |a, o, _| covariance_words(base_to_add(slope(a), o)),
-        },
-        Twin {
             name: "positive_semidefinite",
             gives: Gives::Numbers,
             call: "put3(positive_semidefinite(f3(0u)));",
@@ -378,24 +215,6 @@ fn part_twins() -> Vec<Twin> {
             call: "put(squared_deviations(gaussian(0u), f2(6u)));",
             arguments: Inputs::offset_in_gaussian,
             rust: |a, _, _| one(squared_deviations(covariance(&a[2..]), a[5], [a[6], a[7]])),
-        },
-        Twin {
-            name: "variance_from_stored",
-            gives: Gives::Numbers,
-            call: "put(variance_from_stored(f(0u), o().roughness_stored));",
-            arguments: |inputs| vec![inputs.material()[4]],
-            rust: |a, o, _| {
-                let power = o.roughness_stored == RoughnessStored::SpecularPower;
-                let stored = if power { a[0].max(LEAST_STORED_POWER) } else { a[0] };
-                one(variance_from_stored(stored, o.roughness_stored))
-            },
-        },
-        Twin {
-            name: "slope_normal",
-            gives: Gives::Numbers,
-            call: "put3(slope_normal(f2(0u)));",
-            arguments: |inputs| inputs.slope().to_vec(),
-            rust: |a, _, _| slope_normal(slope(a)).to_vec(),
         },
         Twin {
             name: "schlick",
@@ -435,8 +254,17 @@ fn part_twins() -> Vec<Twin> {
 
 /// All twins.
 pub fn twins() -> Vec<Twin> {
-    [part_twins(), masking_twins(), footprint_twins(), surface_twins(), lobe_twins()]
-        .into_iter()
-        .flatten()
-        .collect()
+    [
+        part_twins(),
+        masking_twins(),
+        footprint_twins(),
+        texel_twins(),
+        distribution_twins(),
+        model_twins(),
+        surface_twins(),
+        lobe_twins(),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }

@@ -1,6 +1,5 @@
 //! The CPU renderer: shading methods as a GPU runs them, and the supersampled truth that they are compared with.
 
-mod inputs;
 mod method;
 mod normal_quantile;
 mod shade;
@@ -10,13 +9,12 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use rayon::prelude::*;
-use roughcast::texture::{DecodeError, Part};
 
-pub use inputs::{ModelInputs, model_inputs};
-pub use method::{Method, ShadingTextures};
+pub use method::Method;
+pub(crate) use truth::pixel_filter_quantile;
 pub use truth::{MAX_SAMPLES, PIXEL_FILTER_DEVIATION, PIXEL_FILTER_RADIUS, Truth};
 
-use crate::{CameraError, MipmapError, Picture, Scene};
+use crate::{CameraError, Picture, Scene};
 use shade::Shaded;
 
 /// Most pixels of a picture; 2 GB.
@@ -42,22 +40,6 @@ pub enum RenderError {
     /// The camera shows nothing.
     #[error(transparent)]
     Camera(#[from] CameraError),
-    /// The textures of a model are not complete.
-    #[error(
-        "the textures lack the layer '{layer}' of the part '{part}'; bake the model's layout, without block compression"
-    )]
-    MissingTexture {
-        /// The part.
-        part: Part,
-        /// The layer.
-        layer: &'static str,
-    },
-    /// Textures are not of one shape.
-    #[error(transparent)]
-    Shape(#[from] DecodeError),
-    /// A texture cannot be sampled.
-    #[error(transparent)]
-    Texture(#[from] MipmapError),
     /// A number of samples that is no square, or too large.
     #[error("{0} samples a pixel cannot be stratified; choose a square number from 1 to {MAX_SAMPLES}")]
     Samples(u32),

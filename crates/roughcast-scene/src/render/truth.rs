@@ -3,14 +3,13 @@
 //! Source: LEAN mapping, Figure 14: supersampling with a Gaussian pixel filter.
 
 use glam::DVec2;
-use roughcast::Wrap;
 use roughcast::shading::{LobeOptions, PIXEL_DEVIATION, Shading};
 
 use super::normal_quantile::normal_quantile;
 use super::shade::Shaded;
 use super::{Progress, RenderError, render_rows_of_each};
 use crate::split_mix::{GOLDEN_RATIO, scrambled};
-use crate::{Picture, Ray, Reconstruction, Scene, SlopeMap};
+use crate::{Detail, DetailPoint, Picture, Ray, Scene};
 
 /// Most samples of a pixel.
 pub const MAX_SAMPLES: u32 = 4096;
@@ -26,16 +25,12 @@ const BEYOND: f64 = 3.167_124_183_311_998e-5;
 /// Samples are drawn from the pixel filter itself by its inverse distribution, so that all have the same weight: a square
 /// number of them, one in each cell of a square grid of probabilities, jittered by a hash of pixel and sample. The same
 /// scene gives the same bits.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct Truth<'a> {
     /// The model under test; its [base lobe](Shading::base_lobe) is shaded.
     pub shading: Shading,
-    /// The slopes of level 0.
-    pub slopes: &'a SlopeMap,
-    /// What the surface is between texels.
-    pub reconstruction: Reconstruction,
-    /// What lies beyond the map's edges.
-    pub wrap: Wrap,
+    /// Where the bumps come from; only its exact slopes are asked for.
+    pub detail: &'a dyn Detail,
     /// The lobe. Roughness that maps may hold does not matter here.
     pub options: LobeOptions,
     /// Samples a pixel: a square number, 1 ..= [`MAX_SAMPLES`].
@@ -89,7 +84,7 @@ impl Truth<'_> {
             let background = Shaded::background(scene);
             return sums.iter_mut().for_each(|sum| sum.add(&background));
         };
-        let slope = self.slopes.at(hit.uv * scene.repeats, self.wrap, self.reconstruction);
+        let slope = self.detail.slope(&DetailPoint::new(&hit, scene.repeats));
         for (sum, shading) in sums.iter_mut().zip(shadings) {
             let surface = shading.surface_of_slope(slope, &self.options);
             sum.add(&Shaded::lit(scene, ray, &hit, &surface, &self.options));
@@ -131,12 +126,12 @@ fn sample_places((x, y): (u32, u32), side: u32) -> impl Iterator<Item = DVec2> {
     cells.map(move |(column, row)| {
         let jitter = jitter(x, y, row * side + column);
         let cell = (DVec2::new(f64::from(column), f64::from(row)) + jitter) / f64::from(side);
-        centre + DVec2::new(filter_quantile(cell.x), filter_quantile(cell.y))
+        centre + DVec2::new(pixel_filter_quantile(cell.x), pixel_filter_quantile(cell.y))
     })
 }
 
 /// The place, in pixels from the centre, that the pixel filter stays below with this probability.
-fn filter_quantile(probability: f64) -> f64 {
+pub(crate) fn pixel_filter_quantile(probability: f64) -> f64 {
     PIXEL_FILTER_DEVIATION * normal_quantile(BEYOND + probability * (1.0 - 2.0 * BEYOND))
 }
 
@@ -155,11 +150,12 @@ mod tests {
 
     #[test]
     fn samples_are_drawn_from_the_truncated_filter() {
-        assert!((filter_quantile(0.0) + PIXEL_FILTER_RADIUS).abs() < 1e-6);
-        assert!((filter_quantile(1.0) - PIXEL_FILTER_RADIUS).abs() < 1e-6);
-        assert_eq!(filter_quantile(0.5), 0.0);
+        assert!((pixel_filter_quantile(0.0) + PIXEL_FILTER_RADIUS).abs() < 1e-6);
+        assert!((pixel_filter_quantile(1.0) - PIXEL_FILTER_RADIUS).abs() < 1e-6);
+        assert_eq!(pixel_filter_quantile(0.5), 0.0);
         let count = 100_000;
-        let variance = (0..count).map(|i| filter_quantile((f64::from(i) + 0.5) / f64::from(count)).powi(2));
+        let variance =
+            (0..count).map(|i| pixel_filter_quantile((f64::from(i) + 0.5) / f64::from(count)).powi(2));
         let variance = variance.sum::<f64>() / f64::from(count);
         // What lies beyond four deviations is missing: a thousandth of the variance.
         assert!((variance / PIXEL_FILTER_DEVIATION.powi(2) - 1.0).abs() < 2e-3, "{variance}");

@@ -18,17 +18,41 @@ impl Calls {
     }
 }
 
+/// How many Gaussians the distributions of a source of bumps have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Gaussians {
+    /// One. A shader for one has no code for more.
+    One,
+    /// One to [`crate::MAX_GAUSSIANS`].
+    Several,
+}
+
+impl Gaussians {
+    /// The WGSL modules that shading them needs beside the model's.
+    pub const fn modules(self) -> &'static [&'static str] {
+        match self {
+            Self::One => &[],
+            Self::Several => &["mixture"],
+        }
+    }
+}
+
 impl Shading {
-    /// How the model is called in WGSL.
-    pub const fn calls(self) -> Calls {
-        let (surface, lobe) = match self {
-            Self::Phong => ("phong_surface", "phong_lobe"),
-            Self::BlinnPhong => ("blinn_phong_surface", "blinn_phong_lobe"),
-            Self::Beckmann => ("beckmann_surface", "beckmann_lobe"),
-            Self::OffCentre => ("off_centre_surface", "mixture_lobe"),
-            Self::Lean | Self::Clean | Self::Variance => ("mixture_surface", "mixture_lobe"),
-            Self::Toksvig => ("toksvig_surface", "blinn_phong_lobe"),
-            Self::Ggx => ("ggx_surface", "ggx_lobe"),
+    /// How the model is called in WGSL. Of several Gaussians some models shade only the whole.
+    pub const fn calls(self, gaussians: Gaussians) -> Calls {
+        let (surface, lobe) = match (self, gaussians) {
+            (Self::Phong, _) => ("phong_surface", "phong_lobe"),
+            (Self::BlinnPhong, _) => ("blinn_phong_surface", "blinn_phong_lobe"),
+            (Self::Beckmann, _) => ("beckmann_surface", "beckmann_lobe"),
+            (Self::OffCentre, _) => ("off_centre_surface", "gaussian_lobe"),
+            (Self::Lean | Self::Clean | Self::Variance, Gaussians::One) => {
+                ("gaussian_surface", "gaussian_lobe")
+            }
+            (Self::Lean | Self::Clean | Self::Variance, Gaussians::Several) => {
+                ("mixture_surface", "mixture_lobe")
+            }
+            (Self::Toksvig, _) => ("toksvig_surface", "blinn_phong_lobe"),
+            (Self::Ggx, _) => ("ggx_surface", "ggx_lobe"),
         };
         Calls { surface, lobe }
     }
@@ -42,9 +66,11 @@ mod tests {
     #[test]
     fn the_functions_are_there_with_these_arguments() {
         assert!(!Shading::ALL.is_empty());
-        for model in Shading::ALL {
-            let code = library(&[model.name()]).expect("every model has a module");
-            let Calls { surface, lobe } = model.calls();
+        for (model, gaussians) in
+            Shading::ALL.iter().flat_map(|model| [(model, Gaussians::One), (model, Gaussians::Several)])
+        {
+            let code = library(&[&[model.name()], gaussians.modules()].concat()).expect("they exist");
+            let Calls { surface, lobe } = model.calls(gaussians);
             let made = format!("fn {surface}(distribution: Distribution, options: LobeOptions) -> ");
             let (_, rest) = code.split_once(&made).unwrap_or_else(|| panic!("{model}: no {made}"));
             let of_type = rest.split_whitespace().next().expect("a type");

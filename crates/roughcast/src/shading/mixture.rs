@@ -23,6 +23,12 @@ impl MixtureSurface {
     }
 }
 
+impl From<SlopeGaussian> for MixtureSurface {
+    fn from(gaussian: SlopeGaussian) -> Self {
+        Self { count: 1, weights: [1.0, 0.0, 0.0, 0.0], gaussians: [gaussian; MAX_GAUSSIANS] }
+    }
+}
+
 /// A Gaussian of a distribution, repaired, with its base roughness.
 #[inline]
 pub fn shaded_gaussian(gaussian: &WeightedGaussian, base: Base, options: &LobeOptions) -> SlopeGaussian {
@@ -31,6 +37,12 @@ pub fn shaded_gaussian(gaussian: &WeightedGaussian, base: Base, options: &LobeOp
         Repair::Published => gaussian.covariance,
     };
     slope_gaussian(gaussian.mean, repaired + base_to_add(gaussian.mean, base, options), options)
+}
+
+/// The first Gaussian of a distribution, repaired, with its base roughness: all there is where there is one.
+#[inline]
+pub fn gaussian_surface(distribution: &Distribution, options: &LobeOptions) -> SlopeGaussian {
+    shaded_gaussian(&distribution.gaussians()[0], distribution.base(), options)
 }
 
 /// The Gaussians of a distribution, repaired, each with its base roughness.

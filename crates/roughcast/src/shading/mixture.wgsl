@@ -1,4 +1,4 @@
-// A weighted sum of Gaussians of slopes in the surface frame: what LEAN, CLEAN and stored variances are shaded as.
+// A weighted sum of Gaussians of slopes in the surface frame, for distributions of several.
 
 struct MixtureSurface {
     weights: vec4f,
@@ -7,13 +7,6 @@ struct MixtureSurface {
     second: SlopeGaussian,
     third: SlopeGaussian,
     fourth: SlopeGaussian,
-}
-
-// A Gaussian of a distribution, repaired, with its base roughness.
-fn shaded_gaussian(gaussian: WeightedGaussian, base: u32, options: LobeOptions) -> SlopeGaussian {
-    let stored = vec3f(gaussian.variance, gaussian.covariance);
-    let repaired = select(positive_semidefinite(stored), stored, options.repair == REPAIR_PUBLISHED);
-    return slope_gaussian(gaussian.mean, repaired + base_to_add(gaussian.mean, base, options), options);
 }
 
 fn mixture_surface(distribution: Distribution, options: LobeOptions) -> MixtureSurface {
@@ -50,4 +43,26 @@ fn mixture_lobe(surface: MixtureSurface, view: vec3f, light: vec3f, options: Lob
         lobe += surface.weights.w * gaussian_lobe(surface.fourth, view, light, options);
     }
     return lobe;
+}
+
+// The distribution under a pixel, of one of several Gaussians under a texture filter.
+fn pixel_mixture(
+    filtered: Distribution,
+    ratio: FootprintRatio,
+    part: PixelPart,
+    options: LobeOptions,
+) -> Distribution {
+    let base = base_in_map(filtered.base, options);
+    var seen = filtered;
+    seen.first = pixel_gaussian(filtered.first, ratio, part, base);
+    if filtered.count > 1u {
+        seen.second = pixel_gaussian(filtered.second, ratio, part, base);
+    }
+    if filtered.count > 2u {
+        seen.third = pixel_gaussian(filtered.third, ratio, part, base);
+    }
+    if filtered.count > 3u {
+        seen.fourth = pixel_gaussian(filtered.fourth, ratio, part, base);
+    }
+    return seen;
 }

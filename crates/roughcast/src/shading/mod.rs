@@ -52,7 +52,7 @@ mod vector;
 pub use base::{base_covariance, base_in_map, base_to_add};
 pub use beckmann::{beckmann_lobe, beckmann_surface};
 pub use blinn_phong::{blinn_phong_against_beckmann, blinn_phong_lobe, blinn_phong_surface};
-pub use calls::Calls;
+pub use calls::{Calls, Gaussians};
 pub use facet::{
     BumpFacet, LEAST_COSINE, LEAST_NORMAL_Z, LEAST_VIEW_COSINE, bump_facet, cosine_lobe, cosine_power,
     facet_visible_part, unit_normal,
@@ -69,7 +69,7 @@ pub use ggx::{
     GgxSurface, PrincipalAxes, ggx_lambda, ggx_lobe, ggx_surface, ggx_visible_part, principal_axes,
 };
 pub use masking::{gaussian_lambda, projected_variance, visible_part};
-pub use mixture::{MixtureSurface, mixture_lobe, mixture_surface, shaded_gaussian};
+pub use mixture::{MixtureSurface, gaussian_surface, mixture_lobe, mixture_surface, shaded_gaussian};
 pub use off_centre::off_centre_surface;
 pub use phong::{phong_lobe, phong_surface};
 pub use pixel::pixel_distribution;

@@ -4,11 +4,12 @@
 //! covariance. At the finest level it is LEAN's own lobe.
 
 use super::LobeOptions;
-use super::mixture::{MixtureSurface, mixture_surface};
+use super::gaussian::SlopeGaussian;
+use super::mixture::gaussian_surface;
 use crate::distribution::Distribution;
 use crate::texture::normal_moments;
 
 /// The Gaussian about the slope of a distribution's filtered normal.
-pub fn off_centre_surface(distribution: &Distribution, options: &LobeOptions) -> MixtureSurface {
-    mixture_surface(&normal_moments(distribution.normal().to_array()), options)
+pub fn off_centre_surface(distribution: &Distribution, options: &LobeOptions) -> SlopeGaussian {
+    gaussian_surface(&normal_moments(distribution.normal().to_array()), options)
 }

@@ -12,24 +12,15 @@ fn pixel_gaussian(
     return WeightedGaussian(gaussian.mean, seen.xy, seen.z, gaussian.weight);
 }
 
-// The part is the ratio's for what the texture stores: ratio.moments for LEAN and CLEAN, ratio.variances for variances.
+// Of a distribution of one Gaussian; of several take pixel_mixture. The part is the ratio's for what the texture stores: ratio.moments
+// for LEAN and CLEAN, ratio.variances for variances.
 fn pixel_distribution(
     filtered: Distribution,
     ratio: FootprintRatio,
     part: PixelPart,
     options: LobeOptions,
 ) -> Distribution {
-    let base = base_in_map(filtered.base, options);
     var seen = filtered;
-    seen.first = pixel_gaussian(filtered.first, ratio, part, base);
-    if filtered.count > 1u {
-        seen.second = pixel_gaussian(filtered.second, ratio, part, base);
-    }
-    if filtered.count > 2u {
-        seen.third = pixel_gaussian(filtered.third, ratio, part, base);
-    }
-    if filtered.count > 3u {
-        seen.fourth = pixel_gaussian(filtered.fourth, ratio, part, base);
-    }
+    seen.first = pixel_gaussian(filtered.first, ratio, part, base_in_map(filtered.base, options));
     return seen;
 }

@@ -59,7 +59,7 @@ impl Shading {
             Self::Phong => ModelSurface::Phong(phong_surface(distribution, options)),
             Self::BlinnPhong => ModelSurface::BlinnPhong(blinn_phong_surface(distribution, options)),
             Self::Beckmann => ModelSurface::Beckmann(beckmann_surface(distribution, options)),
-            Self::OffCentre => ModelSurface::Mixture(off_centre_surface(distribution, options)),
+            Self::OffCentre => ModelSurface::Mixture(off_centre_surface(distribution, options).into()),
             Self::Lean | Self::Clean | Self::Variance => {
                 ModelSurface::Mixture(mixture_surface(distribution, options))
             }

@@ -97,6 +97,12 @@ pub fn library(names: &[&str]) -> Result<String, UnknownName> {
     Ok(sources.collect::<Vec<_>>().join("\n"))
 }
 
+/// The source of all modules of one role, without what they need of others.
+pub fn library_of(role: Role) -> String {
+    let sources = MODULES.iter().filter(|module| module.role == role).map(|module| module.source);
+    sources.collect::<Vec<_>>().join("\n")
+}
+
 /// Code in which whole words are replaced: how a host's generic names become those of a model.
 ///
 /// ```
@@ -148,7 +154,7 @@ mod tests {
     #[test]
     fn a_library_holds_what_is_needed_once() {
         let text = library(&["lean", "clean", "lean"]).expect("these modules exist");
-        for once in ["fn lean_lobe(", "fn clean_lobe(", "fn gaussian_lobe(", "struct LobeOptions {"] {
+        for once in ["fn lean_moments(", "fn clean_moments(", "fn gaussian_lobe(", "struct LobeOptions {"] {
             assert_eq!(text.matches(once).count(), 1, "{once}");
         }
         assert!(!text.contains("ggx"));

@@ -165,9 +165,17 @@ pub const MODULES: &[Module] = &[
         role: Role::Part,
     },
     Module {
+        name: "gaussian-surface",
+        source: include_str!("../shading/gaussian_surface.wgsl"),
+        needs: &["distribution", "base", "gaussian"],
+        summary: "from a distribution to the Gaussian that is shaded",
+        citation: "",
+        role: Role::Part,
+    },
+    Module {
         name: "mixture",
         source: include_str!("../shading/mixture.wgsl"),
-        needs: &["distribution", "base", "gaussian"],
+        needs: &["gaussian-surface", "pixel"],
         summary: "a weighted sum of Gaussians of slopes",
         citation: "",
         role: Role::Part,
@@ -215,7 +223,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "off-centre",
         source: include_str!("../shading/off_centre.wgsl"),
-        needs: &["normal", "mixture"],
+        needs: &["normal", "gaussian-surface"],
         summary: "off-centre Beckmann in the surface frame, of the filtered bump's slope",
         citation: "Olano & Baker, LEAN Mapping, 2010, Eq. 1",
         role: Role::Model,
@@ -223,7 +231,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "lean",
         source: include_str!("../texture/texels/lean.wgsl"),
-        needs: &["normal", "pixel", "mixture"],
+        needs: &["normal", "pixel", "gaussian-surface"],
         summary: "LEAN mapping, from filtered moments",
         citation: "Olano & Baker, LEAN Mapping, 2010, Eq. 1, 5 and 6, Figure 16",
         role: Role::Model,
@@ -231,7 +239,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "clean",
         source: include_str!("../texture/texels/clean.wgsl"),
-        needs: &["pixel", "mixture"],
+        needs: &["pixel", "gaussian-surface"],
         summary: "CLEAN mapping, from the filtered trace of the moments",
         citation: "Olano, Shiny and CLEAN, 2011",
         role: Role::Model,
@@ -255,7 +263,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "variance",
         source: include_str!("../texture/texels/variance.wgsl"),
-        needs: &["pixel", "mixture"],
+        needs: &["pixel", "gaussian-surface"],
         summary: "off-centre Beckmann with a stored variance",
         citation: "Olano, Shiny and CLEAN, 2011",
         role: Role::Model,

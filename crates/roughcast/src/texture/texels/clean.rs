@@ -6,6 +6,7 @@
 use super::{Filtered, Input, TexelReader};
 use crate::distribution::Distribution;
 use crate::moments::Covariance;
+use crate::shading::Gaussians;
 use crate::slope::Slope;
 use crate::texture::packing::unpack;
 use crate::texture::{Packing, Part};
@@ -15,6 +16,7 @@ pub(super) const MOMENTS: TexelReader = TexelReader {
     inputs: &[Input { part: Part::Whole, layer: "clean" }],
     mean_input: Some(0),
     filtered: Filtered::Moments,
+    gaussians: Gaussians::One,
     read: |texels, packing, _| clean_moments(texels[0], packing),
 };
 

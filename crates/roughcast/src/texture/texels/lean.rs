@@ -6,6 +6,7 @@ use super::normal::{bump_normal, normal_moments};
 use super::{Filtered, Input, TexelReader};
 use crate::distribution::Distribution;
 use crate::moments::Moments;
+use crate::shading::Gaussians;
 use crate::slope::{Normal, Slope};
 use crate::texture::packing::unpack;
 use crate::texture::{Packing, Part};
@@ -18,6 +19,7 @@ pub(super) const NORMAL: TexelReader = TexelReader {
     inputs: &[LEAN1],
     mean_input: None,
     filtered: Filtered::Other,
+    gaussians: Gaussians::One,
     read: |texels, packing, _| normal_moments(bump_normal(texels[0], packing)),
 };
 
@@ -26,6 +28,7 @@ pub(super) const MOMENTS: TexelReader = TexelReader {
     inputs: &[LEAN1, LEAN2],
     mean_input: Some(1),
     filtered: Filtered::Moments,
+    gaussians: Gaussians::One,
     read: |texels, packing, _| lean_moments(texels[0], texels[1], packing),
 };
 

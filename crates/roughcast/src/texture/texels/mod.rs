@@ -23,7 +23,7 @@ pub use variance::variance_moments;
 use super::{Layout, Packing, Part};
 use crate::distribution::Distribution;
 use crate::options::Lobe;
-use crate::shading::{FootprintRatio, LobeOptions, PixelPart, pixel_distribution};
+use crate::shading::{FootprintRatio, Gaussians, LobeOptions, PixelPart, pixel_distribution};
 
 /// A texture of a layout: which of its files, and which layer of that.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,6 +65,8 @@ pub struct TexelReader {
     pub mean_input: Option<usize>,
     /// What the filter has averaged.
     pub filtered: Filtered,
+    /// How many Gaussians the distributions have.
+    pub gaussians: Gaussians,
     read: fn(&[[f32; 4]], &Packing, &LobeOptions) -> Distribution,
 }
 

@@ -6,7 +6,7 @@
 use super::{Filtered, Input, TexelReader};
 use crate::distribution::Distribution;
 use crate::moments::Covariance;
-use crate::shading::{LEAST_COSINE, unit_normal};
+use crate::shading::{Gaussians, LEAST_COSINE, unit_normal};
 use crate::slope::{Normal, Slope, slope_from_normal};
 use crate::source::variance_from_stored;
 use crate::texture::normal_moments;
@@ -22,6 +22,7 @@ pub(super) const NORMAL: TexelReader = TexelReader {
     inputs: &[NORMAL_INPUT],
     mean_input: None,
     filtered: Filtered::Other,
+    gaussians: Gaussians::One,
     read: |texels, packing, _| normal_moments(pbr_normal(texels[0], packing)),
 };
 
@@ -30,6 +31,7 @@ pub(super) const MOMENTS: TexelReader = TexelReader {
     inputs: &[NORMAL_INPUT, ROUGHNESS],
     mean_input: None,
     filtered: Filtered::Other,
+    gaussians: Gaussians::One,
     read: |texels, packing, _| pbr_moments(texels[0], texels[1][0], ISOTROPIC, packing),
 };
 

@@ -6,6 +6,7 @@ use super::normal::{bump_normal, normal_moments};
 use super::{Filtered, Input, TexelReader};
 use crate::distribution::Distribution;
 use crate::moments::Covariance;
+use crate::shading::Gaussians;
 use crate::slope::{Normal, Slope};
 use crate::texture::packing::unpack;
 use crate::texture::{Factor, Packing, Part};
@@ -19,6 +20,7 @@ pub(super) const NORMAL: TexelReader = TexelReader {
     inputs: &[SCHILLING1],
     mean_input: None,
     filtered: Filtered::Other,
+    gaussians: Gaussians::One,
     read: |texels, packing, _| normal_moments(bump_normal(texels[0], packing)),
 };
 
@@ -28,6 +30,7 @@ pub(super) const MOMENTS: TexelReader = TexelReader {
     inputs: &[SCHILLING1, SCHILLING2],
     mean_input: Some(1),
     filtered: Filtered::Variances,
+    gaussians: Gaussians::One,
     read: |texels, packing, _| schilling_moments(texels[0], texels[1], packing),
 };
 
@@ -36,6 +39,7 @@ pub(super) const ISOTROPIC_MOMENTS: TexelReader = TexelReader {
     inputs: &[Input { part: Part::Whole, layer: "schilling-isotropic" }],
     mean_input: Some(0),
     filtered: Filtered::Variances,
+    gaussians: Gaussians::One,
     read: |texels, packing, _| schilling_isotropic_moments(texels[0], packing),
 };
 

@@ -6,7 +6,7 @@
 use super::{Filtered, Input, TexelReader};
 use crate::distribution::Distribution;
 use crate::moments::Covariance;
-use crate::shading::{LEAST_NORMAL_Z, LobeOptions};
+use crate::shading::{Gaussians, LEAST_NORMAL_Z, LobeOptions};
 use crate::slope::{Normal, Slope};
 use crate::texture::packing::unpack;
 use crate::texture::{Packing, Part};
@@ -16,6 +16,7 @@ pub(super) const MOMENTS: TexelReader = TexelReader {
     inputs: &[Input { part: Part::Whole, layer: "toksvig" }],
     mean_input: None,
     filtered: Filtered::Other,
+    gaussians: Gaussians::One,
     read: |texels, packing, options| toksvig_moments(texels[0], packing, options),
 };
 

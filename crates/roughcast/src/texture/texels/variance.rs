@@ -5,6 +5,7 @@
 use super::{Filtered, Input, TexelReader};
 use crate::distribution::Distribution;
 use crate::moments::Covariance;
+use crate::shading::Gaussians;
 use crate::slope::Slope;
 use crate::texture::packing::unpack;
 use crate::texture::{Packing, Part};
@@ -14,6 +15,7 @@ pub(super) const MOMENTS: TexelReader = TexelReader {
     inputs: &[Input { part: Part::Whole, layer: "variance" }],
     mean_input: Some(0),
     filtered: Filtered::Variances,
+    gaussians: Gaussians::One,
     read: |texels, packing, _| variance_moments(texels[0], packing),
 };
 

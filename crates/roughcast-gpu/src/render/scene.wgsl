@@ -1,5 +1,5 @@
-// What the fragment shaders of all models share. Beside it stand the library's functions, `sampled`, and the model's own
-// `ModelSurface`, `surface_at` and `lobe_of`.
+// The shaders of a scene, for any source of bumps and any model. The host composes them with a detail module
+// (`detail_distribution`), and puts the model's functions in the places of `model_surface` and `model_lobe`.
 
 struct SceneView {
     clip_from_world: mat4x4f,   // depth falls from 1 at the near plane to 0 at the far one
@@ -16,18 +16,8 @@ struct SceneLight {
     irradiance: vec3f,  // on a surface that faces it, of a point at a distance of one
 }
 
-struct Sampling {
-    detail: f32,            // levels added to the hardware's; or the level, where it is fixed
-    roughness_channel: u32, // of the second texture
-    max_anisotropy: f32,    // taps along the footprint; 0 where only the nearest texel is taken
-}
-
 @group(0) @binding(0) var<uniform> scene_view: SceneView;
 @group(0) @binding(1) var<storage, read> scene_lights: array<SceneLight>;
-@group(1) @binding(0) var<uniform> lobe_options: LobeOptions;
-@group(1) @binding(1) var<uniform> map_packing: Packing;
-@group(1) @binding(2) var<uniform> sampling: Sampling;
-@group(1) @binding(3) var map_sampler: sampler;
 
 struct Varyings {
     @builtin(position) clip: vec4f,
@@ -97,7 +87,8 @@ struct Parts {
 }
 
 fn shaded(fragment: Varyings, front: bool) -> Parts {
-    let surface = surface_at(fragment.uv);
+    let distribution = detail_distribution(DetailPoint(fragment.uv, fragment.position));
+    let surface = model_surface(distribution, options);
     let towards_eye = normalize(scene_view.eye - fragment.position);
     let frame = world_from_tangent(fragment, towards_eye, front);
     let view = towards_eye * frame;
@@ -106,10 +97,9 @@ fn shaded(fragment: Varyings, front: bool) -> Parts {
     for (var i = 0u; i < scene_view.light_count; i++) {
         let light = light_at(scene_lights[i], fragment.position);
         let towards = light.towards * frame;
-        let lobe = lobe_of(surface.lobe, view, towards);
-        diffuse += diffuse_radiance(surface.normal, scene_view.albedo, towards, light.irradiance);
-        specular +=
-            specular_radiance(lobe, scene_view.specular, view, towards, light.irradiance, lobe_options);
+        let lobe = model_lobe(surface, view, towards, options);
+        diffuse += diffuse_radiance(distribution.normal, scene_view.albedo, towards, light.irradiance);
+        specular += specular_radiance(lobe, scene_view.specular, view, towards, light.irradiance, options);
     }
     return Parts(vec4f(diffuse + specular, 1.0), vec4f(specular, 1.0));
 }

@@ -1,0 +1,15 @@
+// Toksvig's texture.
+
+@group(0) @binding(4) var toksvig_map: texture_2d<f32>;
+
+fn texel0(at: DetailPoint) -> vec4f {
+    return textureSample(toksvig_map, linear_sampler, at.uv);
+}
+
+fn finest0(at: DetailPoint) -> vec4f {
+    return textureSampleLevel(toksvig_map, linear_sampler, at.uv, 0.0);
+}
+
+fn texture_size() -> vec2f {
+    return vec2f(textureDimensions(toksvig_map));
+}

@@ -1,0 +1,15 @@
+// The variance texture.
+
+@group(0) @binding(5) var variance_map: texture_2d<f32>;
+
+fn texel0(at: DetailPoint) -> vec4f {
+    return textureSample(variance_map, linear_sampler, at.uv);
+}
+
+fn finest0(at: DetailPoint) -> vec4f {
+    return textureSampleLevel(variance_map, linear_sampler, at.uv, 0.0);
+}
+
+fn texture_size() -> vec2f {
+    return vec2f(textureDimensions(variance_map));
+}

@@ -1,0 +1,3 @@
+fn map_gradient(xs: vec3i, ys: vec3i) -> vec2f {
+    return central(map_heights(xs, ys.x), map_heights(xs, ys.y), map_heights(xs, ys.z), params.height_scale);
+}

@@ -1,0 +1,3 @@
+fn average_of_quad(a: Footprint, b: Footprint, c: Footprint, d: Footprint) -> Footprint {
+    return average_of_four(a, b, c, d);
+}

@@ -1,0 +1,5 @@
+fn store_texels_n(at: vec2u, footprint: Footprint) {
+    let stores = unpacked_stores(packed_stores);
+    textureStore(texture_0_n, at, nearest(lean1_from_footprint(footprint, stores)));
+    textureStore(texture_1_n, at, nearest(lean2_from_footprint(footprint, stores)));
+}

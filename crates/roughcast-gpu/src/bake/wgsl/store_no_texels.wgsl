@@ -1,0 +1,2 @@
+fn store_texels_n(at: vec2u, footprint: Footprint) {
+}

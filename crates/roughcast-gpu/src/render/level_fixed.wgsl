@@ -1,0 +1,5 @@
+// A level of detail that is given.
+
+fn filtered(map: texture_2d<f32>, uv: vec2f) -> vec4f {
+    return textureSampleLevel(map, map_sampler, uv, sampling.detail);
+}

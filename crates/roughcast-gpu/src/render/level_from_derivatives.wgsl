@@ -1,0 +1,5 @@
+// The level of detail that the hardware takes from the derivatives of the texture coordinates, plus a bias.
+
+fn filtered(map: texture_2d<f32>, uv: vec2f) -> vec4f {
+    return textureSampleBias(map, map_sampler, uv, sampling.detail);
+}

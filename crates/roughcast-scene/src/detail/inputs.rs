@@ -1,0 +1,114 @@
+//! Which textures of a bake a renderer samples: the same choice for every renderer.
+
+use roughcast::Lobe;
+use roughcast::shading::Shading;
+use roughcast::texture::{
+    DecodeError, Input, Layout, Packing, Part, TexelReader, Texture, TextureArray, TextureInfo, Wanted,
+};
+
+use crate::MipmapError;
+
+/// Why textures are no source of bumps.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DetailError {
+    /// The textures of a layout are not complete.
+    #[error(
+        "the textures lack the layer '{layer}' of the part '{part}'; bake the model's layout, without block compression"
+    )]
+    MissingTexture {
+        /// The part.
+        part: Part,
+        /// The layer.
+        layer: &'static str,
+    },
+    /// A layout whose textures have more channels than a sampler returns.
+    #[error("textures of the layout '{0}' have more channels than a sampler returns; bake another layout")]
+    NotSampled(Layout),
+    /// There are no textures.
+    #[error("there are no textures; give those of a bake")]
+    Empty,
+    /// Textures are not of one shape.
+    #[error(transparent)]
+    Shape(#[from] DecodeError),
+    /// A texture cannot be sampled.
+    #[error(transparent)]
+    Texture(#[from] MipmapError),
+}
+
+/// The textures that a renderer samples, found among the files of a layout.
+#[derive(Clone, Debug)]
+pub struct TextureInputs<'a> {
+    /// How their texels are read.
+    pub reader: &'static TexelReader,
+    /// In the order of the reader's inputs.
+    pub textures: Vec<&'a Texture>,
+    /// The channel of the second texture that takes the place of its first: that of the roughness.
+    pub roughness_channel: usize,
+    /// How texels are unpacked.
+    pub packing: Packing,
+    /// What the first texture's texels mean.
+    pub info: TextureInfo,
+}
+
+/// The textures of the [layout](Shading::layout) that a model is made for.
+///
+/// # Errors
+/// As [`texture_inputs`]; [`DetailError::MissingTexture`] also where the files are those of another layout.
+pub fn model_inputs(shading: Shading, arrays: &[TextureArray]) -> Result<TextureInputs<'_>, DetailError> {
+    inputs_of(shading.layout(), shading.wanted(), arrays)
+}
+
+/// The textures of any layout that tell what is wanted. Roughness may be in the first channel of its texture, in the second, or
+/// packed with occlusion and metalness.
+///
+/// # Errors
+/// [`DetailError::MissingTexture`] where one is not there, [`DetailError::Shape`] where one lacks levels,
+/// [`DetailError::NotSampled`] where no sampler returns its channels.
+pub fn texture_inputs(wanted: Wanted, arrays: &[TextureArray]) -> Result<TextureInputs<'_>, DetailError> {
+    let first = arrays.first().ok_or(DetailError::Empty)?;
+    inputs_of(first.info.layout, wanted, arrays)
+}
+
+fn inputs_of(
+    layout: Layout,
+    wanted: Wanted,
+    arrays: &[TextureArray],
+) -> Result<TextureInputs<'_>, DetailError> {
+    arrays.iter().try_for_each(TextureArray::check)?;
+    let lobe = match array(Part::Anisotropy, arrays) {
+        Some(_) => Lobe::Anisotropic,
+        None => Lobe::Isotropic,
+    };
+    let reader = layout.texel_reader(wanted, lobe).ok_or(DetailError::NotSampled(layout))?;
+    let first = array(reader.inputs[0].part, arrays).ok_or_else(|| missing(reader.inputs[0]))?;
+    if first.info.layout != layout {
+        return Err(missing(reader.inputs[0]));
+    }
+    let mut roughness_channel = 0;
+    let mut textures = Vec::with_capacity(reader.inputs.len());
+    for input in reader.inputs {
+        let layer = |texture: &&Texture| texture.name == input.layer;
+        let found = array(input.part, arrays).filter(|array| array.layers.iter().any(|t| layer(&t)));
+        let packed = array(Part::OcclusionRoughnessMetallic, arrays);
+        let (found, texture) = match (found, packed) {
+            (Some(array), _) => (array, array.layers.iter().find(layer)),
+            (None, Some(packed)) if input.part == Part::Roughness => (packed, packed.layers.first()),
+            _ => return Err(missing(*input)),
+        };
+        if input.part == Part::Roughness {
+            roughness_channel = found.info.roughness_texture.roughness_channel();
+        }
+        textures.push(texture.ok_or(missing(*input))?);
+    }
+    let packing = Packing::new(&first.info, first.layers[0].sample_type());
+    Ok(TextureInputs { reader, textures, roughness_channel, packing, info: first.info })
+}
+
+fn array(part: Part, arrays: &[TextureArray]) -> Option<&TextureArray> {
+    arrays.iter().find(|array| array.info.part == part)
+}
+
+fn missing(input: Input) -> DetailError {
+    DetailError::MissingTexture { part: input.part, layer: input.layer }
+}

@@ -1,0 +1,54 @@
+//! The slopes of a map at level 0 as a source of bumps: what ground truth is made of.
+
+use roughcast::shading::LobeOptions;
+use roughcast::{Covariance, Distribution, Moments, Normal, Slope, Wrap, normal_from_slope};
+
+use super::{Detail, DetailPoint, Reconstruction, SlopeMap};
+use crate::render::pixel_filter_quantile;
+
+/// Samples along each side of a pixel of [`SlopeDetail`]'s distribution.
+const SIDE: u32 = 16;
+
+/// The slopes of a map, and what lies between its texels and beyond its edges.
+#[derive(Clone, Debug)]
+pub struct SlopeDetail {
+    /// The slopes of level 0.
+    pub slopes: SlopeMap,
+    /// What the surface is between texels.
+    pub reconstruction: Reconstruction,
+    /// What lies beyond the map's edges.
+    pub wrap: Wrap,
+}
+
+impl Detail for SlopeDetail {
+    #[inline]
+    fn slope(&self, at: &DetailPoint<'_>) -> Slope {
+        self.slopes.at(at.uv(), self.wrap, self.reconstruction)
+    }
+
+    /// Mean and covariance of 256 slopes, drawn from the pixel filter, a Gaussian: what the textures of a bake approximate. Footprints of
+    /// more than a few dozen texels want more samples; ground truth takes them one by one.
+    fn distribution(&self, at: &DetailPoint<'_>, _options: &LobeOptions) -> Distribution {
+        let (uv, footprint) = (at.uv(), at.footprint());
+        let offset = |cell: u32| pixel_filter_quantile((f64::from(cell) + 0.5) / f64::from(SIDE));
+        let (mut moments, mut normal) = ([0.0_f64; 5], [0.0_f64; 3]);
+        for (x, y) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))) {
+            let there = uv + footprint.dx * offset(x) + footprint.dy * offset(y);
+            let slope = self.slopes.at(there, self.wrap, self.reconstruction);
+            let Moments { mean, xx, yy, xy } = Moments::of_slope(slope);
+            let of_slope = [mean.x, mean.y, xx, yy, xy];
+            moments.iter_mut().zip(of_slope).for_each(|(sum, value)| *sum += f64::from(value));
+            let of_slope = normal_from_slope(slope).to_array();
+            normal.iter_mut().zip(of_slope).for_each(|(sum, value)| *sum += f64::from(value));
+        }
+        let count = f64::from(SIDE * SIDE);
+        let [x, y, xx, yy, xy] = moments.map(|sum| sum / count);
+        let covariance = Covariance {
+            xx: (xx - x * x).max(0.0) as f32,
+            yy: (yy - y * y).max(0.0) as f32,
+            xy: (xy - x * y) as f32,
+        };
+        let mean = Slope { x: x as f32, y: y as f32 };
+        Distribution::new(Normal::from(normal.map(|sum| (sum / count) as f32)), mean, covariance)
+    }
+}

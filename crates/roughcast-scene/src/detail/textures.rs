@@ -1,0 +1,108 @@
+//! Baked textures of any layout as a source of bumps.
+
+use roughcast::shading::{FootprintRatio, LobeOptions, Shading};
+use roughcast::texture::{Packing, TexelReader, TextureArray, TextureInfo, Wanted};
+use roughcast::{Distribution, Slope};
+
+use super::inputs::{DetailError, TextureInputs, model_inputs, texture_inputs};
+use super::{Detail, DetailPoint};
+use crate::{Filter, Footprint, Mipmap, Sampler};
+
+/// The place of a material's roughness among its textures.
+const ROUGHNESS: usize = 1;
+/// No layout has more textures.
+const MAX_TEXTURES: usize = 3;
+
+/// The textures of a layout as a sampler sees them, and what their texels mean.
+#[derive(Clone, Debug)]
+pub struct BakedTextures {
+    reader: &'static TexelReader,
+    textures: Vec<Mipmap>,
+    packing: Packing,
+    info: TextureInfo,
+}
+
+impl BakedTextures {
+    /// The textures out of the files of any layout. Roughness may be packed with occlusion and metalness.
+    ///
+    /// # Errors
+    /// [`DetailError::MissingTexture`] where one is not there, [`DetailError::Shape`] where one lacks levels.
+    pub fn new(wanted: Wanted, arrays: &[TextureArray]) -> Result<Self, DetailError> {
+        Self::of_inputs(texture_inputs(wanted, arrays)?)
+    }
+
+    /// The textures of the [layout](Shading::layout) that a model is made for, and no more of them than it needs.
+    ///
+    /// # Errors
+    /// As [`BakedTextures::new`]; [`DetailError::MissingTexture`] also where the files are those of another layout.
+    pub fn of_model(shading: Shading, arrays: &[TextureArray]) -> Result<Self, DetailError> {
+        Self::of_inputs(model_inputs(shading, arrays)?)
+    }
+
+    fn of_inputs(inputs: TextureInputs<'_>) -> Result<Self, DetailError> {
+        let mut textures =
+            inputs.textures.iter().map(|texture| Mipmap::of(texture)).collect::<Result<Vec<_>, _>>()?;
+        if inputs.roughness_channel != 0 {
+            let packed = textures.remove(ROUGHNESS);
+            textures.insert(ROUGHNESS, packed.with_first_channel(inputs.roughness_channel));
+        }
+        Ok(Self { reader: inputs.reader, textures, packing: inputs.packing, info: inputs.info })
+    }
+
+    /// Width and height of level 0.
+    pub fn size(&self) -> (usize, usize) {
+        self.textures[0].size()
+    }
+
+    /// The textures through a sampler: a source of bumps.
+    pub fn sampled(&self, sampler: Sampler) -> TextureDetail<'_> {
+        TextureDetail { textures: self, sampler }
+    }
+}
+
+/// Baked textures, read through a sampler.
+#[derive(Clone, Copy, Debug)]
+pub struct TextureDetail<'a> {
+    /// The textures.
+    pub textures: &'a BakedTextures,
+    /// The texture filter.
+    pub sampler: Sampler,
+}
+
+impl Detail for TextureDetail<'_> {
+    /// The mean slope of level 0, interpolated between texels.
+    fn slope(&self, at: &DetailPoint<'_>) -> Slope {
+        let finest = Sampler { filter: Filter::Trilinear, level: Some(0.0), ..self.sampler };
+        let BakedTextures { reader, textures, packing, .. } = self.textures;
+        let texels = sample_all(&finest, textures, at, &Footprint::default());
+        let read = reader.read(&texels[..textures.len()], packing, &self.options(LobeOptions::default()));
+        read.whole().mean
+    }
+
+    fn distribution(&self, at: &DetailPoint<'_>, options: &LobeOptions) -> Distribution {
+        let BakedTextures { reader, textures, packing, .. } = self.textures;
+        let texels = sample_all(&self.sampler, textures, at, at.footprint());
+        let ratio = reader.mean_input.map_or(FootprintRatio::WHOLE, |input| {
+            self.sampler.footprint_ratio(&textures[input], packing.slope, texels[input], at, options)
+        });
+        reader.read_pixel(&texels[..textures.len()], &ratio, packing, options)
+    }
+
+    fn options(&self, options: LobeOptions) -> LobeOptions {
+        options.for_maps(&self.textures.info)
+    }
+}
+
+/// A filtered texel of each texture.
+fn sample_all(
+    sampler: &Sampler,
+    textures: &[Mipmap],
+    at: &DetailPoint<'_>,
+    footprint: &Footprint,
+) -> [[f32; 4]; MAX_TEXTURES] {
+    let mut texels = [[0.0; 4]; MAX_TEXTURES];
+    for (texel, texture) in texels.iter_mut().zip(textures) {
+        *texel = sampler.sample(texture, at.uv(), footprint);
+    }
+    texels
+}
