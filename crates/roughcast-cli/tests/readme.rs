@@ -192,7 +192,11 @@ fn every_command_of_the_program_is_marked() {
     }
     assert!(marked >= 25, "only {marked} commands: was the mark changed?");
     let first = blocks(&read("README.md")).swap_remove(0).lines;
-    assert_eq!(first, ["cargo run --release -- bake examples/rock_normal.png -o baked.ktx2"], "a newcomer's first command");
+    assert_eq!(
+        first,
+        ["cargo run --release -- bake examples/rock_normal.png -o baked.ktx2"],
+        "a newcomer's first command"
+    );
 }
 
 #[test]
@@ -232,9 +236,13 @@ fn links_lead_to_files_and_headings() {
             let target = if file.is_empty() { path.clone() } else { path.with_file_name(file) };
             assert!(target.exists(), "{document} links to {link}, which is not there");
             if !anchor.is_empty() {
-                let text = std::fs::read_to_string(&target).expect("a link with an anchor leads to a document");
+                let text =
+                    std::fs::read_to_string(&target).expect("a link with an anchor leads to a document");
                 let anchor = anchor.to_owned();
-                assert!(anchors(&text).contains(&anchor), "{document} links to {link}: there is no such heading");
+                assert!(
+                    anchors(&text).contains(&anchor),
+                    "{document} links to {link}: there is no such heading"
+                );
             }
             count += 1;
         }
@@ -253,7 +261,10 @@ fn the_index_names_every_chapter() {
     let index = read("docs/README.md");
     for chapter in documents_of("docs/") {
         let name = chapter.trim_start_matches("docs/");
-        assert!(name == "README.md" || index.contains(&format!("]({name})")), "docs/README.md does not name {name}");
+        assert!(
+            name == "README.md" || index.contains(&format!("]({name})")),
+            "docs/README.md does not name {name}"
+        );
     }
 }
 
@@ -263,7 +274,10 @@ fn every_layout_is_in_the_tables() {
     let chapter = read("docs/layouts.md");
     let headings: Vec<&str> = prose(&chapter).filter(|line| line.starts_with("## ")).collect();
     for layout in Layout::ALL {
-        assert!(readme.contains(&format!("\n| `{layout}`")), "'{layout}' is missing in the first page's table");
+        assert!(
+            readme.contains(&format!("\n| `{layout}`")),
+            "'{layout}' is missing in the first page's table"
+        );
         let name = layout.to_string();
         let described = headings.iter().any(|heading| heading[3..].split(", ").any(|title| title == name));
         assert!(described, "docs/layouts.md has no heading for '{layout}'");
