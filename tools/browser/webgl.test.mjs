@@ -1,4 +1,4 @@
-// WebGL 2 without three.js, in headless Chromium: the example of examples/webgl2, and README's shader snippets against the exports.
+// WebGL 2 without three.js, in headless Chromium: the example of examples/webgl2, and the shader snippets of docs/layouts.md against the exports.
 
 import assert from 'node:assert/strict';
 import { cpSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
@@ -54,14 +54,14 @@ test('the WebGL 2 example draws a highlight', async () => {
   assert.deepEqual(complaints(), []);
 });
 
-// A float of the snippet's test for each pixel: what README's code gives, and what the exported functions give.
+// A float of the snippet's test for each pixel: what the manual's code gives, and what the exported functions give.
 const SIDE = 32;
 
-/** README's GLSL blocks: those before the layouts, and the one of a layout's section. */
-function snippets(readme) {
+/** The chapter's GLSL blocks: those before the layouts, and the one of a layout's section. */
+function snippets(chapter) {
   const blocks = (text) => [...text.matchAll(/```glsl\n(.*?)```/gs)].map((match) => match[1]);
-  const section = (name) => readme.split(`\n### ${name}\n`)[1].split('\n### ')[0];
-  return { common: blocks(readme.split('\n### lean\n')[0]).join('\n'), of: (layout) => blocks(section(layout))[0] };
+  const section = (name) => chapter.split(`\n## ${name}\n`)[1].split('\n## ')[0];
+  return { common: blocks(chapter.split('\n## lean\n')[0]).join('\n'), of: (layout) => blocks(section(layout))[0] };
 }
 
 // How each layout's snippet is given its texels, and what the exports make of the same.
@@ -80,8 +80,8 @@ const LAYOUTS = {
   },
 };
 
-function shader(readme, layout, library) {
-  const { common, of } = snippets(readme);
+function shader(chapter, layout, library) {
+  const { common, of } = snippets(chapter);
   const { texels, moments } = LAYOUTS[layout];
   // Sampling is the test's own.
   const code = of(layout).split('\n').filter((line) => !line.includes('texture(')).join('\n');
@@ -128,10 +128,10 @@ void main() {
 }
 
 /** The largest relative difference between the snippet and the exports, where there is light. */
-async function worstOf(readme, layout) {
+async function worstOf(chapter, layout) {
   const { page, complaints } = await browser.open(server.url);
   const library = roughcast('shader', layout, 'reflectance', '--lang', 'glsl-es300');
-  const pixels = await page.evaluate(drawPixels, [shader(readme, layout, library), SIDE]);
+  const pixels = await page.evaluate(drawPixels, [shader(chapter, layout, library), SIDE]);
   await page.close();
   let [worst, lit] = [0, 0];
   for (let i = 0; i < pixels.length; i += 4) {
@@ -173,19 +173,19 @@ function drawPixels([fragment, side]) {
 
 // Single floats: the moments lose up to four digits of the covariance, of which the lobe's flank makes ten times as much.
 const SAME = 0.01;
-const README = readFileSync(here('../../README.md'), 'utf8');
+const LAYOUTS_CHAPTER = readFileSync(here('../../docs/layouts.md'), 'utf8');
 
 for (const layout of Object.keys(LAYOUTS)) {
-  test(`README's ${layout} gives the brightness of the exported functions`, async () => {
-    const worst = await worstOf(README, layout);
+  test(`the manual's ${layout} gives the brightness of the exported functions`, async () => {
+    const worst = await worstOf(LAYOUTS_CHAPTER, layout);
     assert(worst < SAME, `${worst}`);
   });
 }
 
 test('another form, or a forgotten constant, is seen', async () => {
   for (const [from, to] of [['4.0*v.z', '4.0*l.z'], ['6.2831853 * sqrt(det)', 'sqrt(det)'], ['- B, S + vec3(1.0/s, 1.0/s, 0.0)', '- B, S']]) {
-    assert(README.includes(from), from);
-    const worst = await worstOf(README.replace(from, to), 'lean');
+    assert(LAYOUTS_CHAPTER.includes(from), from);
+    const worst = await worstOf(LAYOUTS_CHAPTER.replace(from, to), 'lean');
     assert(worst > 10 * SAME, `${from}: ${worst}`);
   }
 });

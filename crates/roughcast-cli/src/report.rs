@@ -212,7 +212,7 @@ impl FileReport {
         scale.into_iter().chain(variance_scale).collect()
     }
 
-    /// The report as JSON; its keys are documented in the README.
+    /// The report as JSON; docs/reports.md explains its keys.
     pub fn json(&self) -> Value {
         let report = &self.report;
         let levels: Vec<Value> = report

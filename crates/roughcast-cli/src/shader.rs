@@ -66,7 +66,7 @@ const OTHER_NAMES: &[(&str, &str)] = &[
     ("gltf", "the model for glTF's textures is called 'ggx'"),
     (
         "schilling",
-        "there is no shading model for the layout 'schilling' yet; the README's snippet decodes it for 'off-centre'",
+        "there is no shading model for the layout 'schilling' yet; the snippet in docs/layouts.md decodes it for 'off-centre'",
     ),
     (
         "schilling-isotropic",

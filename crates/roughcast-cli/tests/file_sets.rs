@@ -149,7 +149,7 @@ fn the_sidecar_says_what_a_shader_needs() {
     }
     assert!((sidecar["specular_power"].as_f64().expect("a number") - 50.0).abs() < 1e-4);
     assert!(sidecar["conventions"].as_str().expect("words").contains("y up"));
-    // value = stored * pair[0] + pair[1]: 0 and 1 are the ends of the ranges in the README.
+    // value = stored * pair[0] + pair[1]: 0 and 1 are the ends of the ranges in docs/layouts.md.
     let pair = |kind: &str| [0, 1].map(|i| sidecar["packing"][kind][i].as_f64().expect("a number"));
     /// Numbers are floats, written in full.
     const FLOAT: f64 = 1e-6;
