@@ -1,9 +1,11 @@
 //! The textures that a bake writes into.
 
 use crate::Image;
-use crate::options::{AnisotropyOutput, BakeOptions, Blocks, RoughnessTexture};
-use crate::pyramid::{LevelOut, PartOut, SamplesMut, level_sizes};
-use crate::texture::{self, LayerSpec, Layout, Part, Texture, TextureArray, TextureInfo};
+use crate::levels::level_sizes;
+use crate::options::BakeOptions;
+use crate::pyramid::{LevelOut, PartOut, SamplesMut};
+use crate::roughness::RoughnessTexture;
+use crate::texture::{self, AnisotropyOutput, Blocks, LayerSpec, Layout, Part, Texture, TextureArray, TextureInfo};
 
 /// Textures of all of a layout's files, taken from `earlier` where these have the right shape.
 pub(super) fn allocate(

@@ -2,9 +2,10 @@
 
 use super::BakeError;
 use crate::SampleType;
-use crate::options::{BakeOptions, Blocks, MaxSlope, PyramidFilter, ScaleChoice, SourceOptions};
+use crate::options::{BakeOptions, MaxSlope, PyramidFilter, ScaleChoice, SourceOptions};
+use crate::roughness::{Base, RoughnessStored};
 use crate::source::BaseRoughness;
-use crate::texture::{Base, Layout, RoughnessStored};
+use crate::texture::{Blocks, Layout};
 
 /// Half floats end here; second moments are squares of slopes.
 const LARGEST_SLOPE_IN_HALF: f32 = 255.0;

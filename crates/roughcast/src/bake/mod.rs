@@ -10,13 +10,15 @@ pub use check::refuse_filter;
 pub use plan::{BakePlan, plan_bake};
 
 use crate::moments::Moments;
-use crate::options::{BakeOptions, Blocks, SourceOptions};
-use crate::pyramid::{self, LevelStats, PyramidOptions, level_sizes};
+use crate::levels::level_sizes;
+use crate::options::{BakeOptions, SourceOptions};
+use crate::pyramid::{self, LevelStats, PyramidOptions};
+use crate::roughness::{Base, RoughnessStored};
 use crate::source::{BaseRoughness, BaseSource, MapSource, RoughnessMap, SourceError, UseOfBase};
 use crate::survey::survey_of_some_rows;
 use crate::texture::codec::Units;
 use crate::texture::orient::orient;
-use crate::texture::{self, Base, Bounds, EncoderShape, Layout, Part, Peaks, RoughnessStored, TextureArray};
+use crate::texture::{self, Blocks, Bounds, EncoderShape, Layout, Part, Peaks, TextureArray};
 use crate::{Image, SourceCounts};
 use allocate::{allocate, level_outs};
 use limit::{Ranges, find_ranges};

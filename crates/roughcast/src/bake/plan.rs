@@ -2,7 +2,9 @@
 
 use super::check::{check_options, limit_slopes};
 use super::{BakeError, base_of, base_variance, first_part};
-use crate::options::{BakeOptions, NormalRange, RoughnessTexture, SourceOptions};
+use crate::convention::NormalRange;
+use crate::options::{BakeOptions, SourceOptions};
+use crate::roughness::RoughnessTexture;
 use crate::source::{BaseRoughness, check_numbers};
 use crate::texture::{Layout, TextureInfo};
 

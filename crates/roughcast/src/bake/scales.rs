@@ -2,8 +2,9 @@
 
 use super::ScaleAdvice;
 use crate::SampleType;
+use crate::levels::level_sizes;
 use crate::options::{BakeOptions, ScaleChoice};
-use crate::pyramid::{self, LevelOut, PyramidOptions, level_sizes};
+use crate::pyramid::{self, LevelOut, PyramidOptions};
 use crate::row::RowSource;
 use crate::source::MapSource;
 use crate::survey::Survey;

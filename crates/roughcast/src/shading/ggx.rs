@@ -11,7 +11,7 @@ use super::gaussian::LEAST_VARIANCE;
 use super::masking::visible_part;
 use super::vector::{Vector, cross, dot, half_vector, normalize, scaled, sum};
 use super::{Form, LobeOptions};
-use crate::source::variance_from_stored;
+use crate::roughness::variance_from_stored;
 use crate::texture::packing::unpack;
 use crate::texture::{Base, Packing, RoughnessStored};
 

@@ -14,7 +14,7 @@ use super::toksvig::{toksvig_lobe, toksvig_normal, toksvig_surface};
 use super::variance::{variance_lobe, variance_surface};
 use super::vector::normalize;
 use super::{Input, LobeOptions, Shading};
-use crate::options::Lobe;
+use crate::roughness::Lobe;
 use crate::slope::{Normal, Slope, normal_from_slope};
 use crate::texture::{Packing, Part};
 

@@ -6,11 +6,12 @@ mod height_map;
 mod normal_map;
 mod resize;
 
-pub use base::{BaseRoughness, RoughnessMap, stored_from_variance, variance_from_stored};
+pub use base::{BaseRoughness, RoughnessMap};
 pub(crate) use base::{BaseSource, UseOfBase};
 pub(crate) use resize::resized;
 
-use crate::options::{Kind, MaxSlope, SourceOptions, Wrap};
+use crate::convention::{Kind, Wrap};
+use crate::options::{MaxSlope, SourceOptions};
 use crate::row::{Extra, Row, RowSource, SourceScratch};
 use crate::slope::{Slope, SourceCounts, repaired_slope};
 use crate::vectorised::vectorised;

@@ -8,8 +8,9 @@ use std::collections::BTreeMap;
 
 use super::layers_of;
 use crate::SampleType;
+use crate::convention::{NormalRange, Wrap};
 use crate::named::named_enum;
-use crate::options::{NormalRange, RoughnessTexture, Wrap};
+use crate::roughness::{Base, Brdf, RoughnessStored, RoughnessTexture};
 
 named_enum! {
     /// The layouts in which moments are stored, one file each in [`crate::texture`].
@@ -96,44 +97,6 @@ impl Layout {
     /// Whether texels of this type hold variances or standard deviations over [`TextureInfo::variance_scale`].
     pub fn uses_variance_scale(self, sample_type: SampleType) -> bool {
         self.stores_variance() && !sample_type.is_float()
-    }
-}
-
-named_enum! {
-    /// Whether the base roughness of the material is in the second moments already.
-    pub enum Base: "base" {
-        /// Not in: add it once, at shading.
-        None = "none",
-        /// Folded in when the map was made (LEAN Eq. 6): add nothing at shading.
-        Baked = "baked",
-    }
-}
-
-named_enum! {
-    /// The lobe for which a stored roughness is meant.
-    pub enum Brdf: "BRDF" {
-        /// GGX, by the convention `alpha^2 = alpha0^2 + 2 sigma^2`: it has no finite slope variance of its own.
-        Ggx = "ggx",
-        /// Beckmann, where `alpha^2 = 2 sigma^2` exactly.
-        Beckmann = "beckmann",
-        /// Blinn-Phong, where `sigma^2 = 1 / s`.
-        BlinnPhong = "blinn-phong",
-    }
-}
-
-named_enum! {
-    /// The quantity by which a roughness is stored. `alpha` is the width of the lobe.
-    pub enum RoughnessStored: "way to store roughness" {
-        /// glTF's perceptual roughness, `sqrt(alpha)`.
-        Perceptual = "perceptual",
-        /// The width itself.
-        Alpha = "alpha",
-        /// The square of the width.
-        AlphaSquared = "alpha-squared",
-        /// One minus the perceptual roughness.
-        Gloss = "gloss",
-        /// A Blinn-Phong exponent, `2 / alpha^2`.
-        SpecularPower = "specular-power",
     }
 }
 

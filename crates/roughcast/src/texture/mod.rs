@@ -21,16 +21,18 @@ mod split;
 mod toksvig;
 mod variance;
 
-pub use codec::{Bounds, LayerSpec, Peaks};
+pub use crate::roughness::{Base, Brdf, RoughnessStored};
+pub use codec::{Blocks, Bounds, LayerSpec, Peaks};
 pub use decode::{DecodeError, MomentLevel, decode};
-pub use info::{Base, Brdf, InfoError, Layout, Part, RoughnessStored, TextureInfo};
+pub use info::{InfoError, Layout, Part, TextureInfo};
 pub use packing::Packing;
+pub use pbr::AnisotropyOutput;
 pub use schilling::Factor;
 pub(crate) use set_id::set_id;
 pub use split::{join_layers, mark_set, split_infos, split_layers};
 
 use crate::moments::Moments;
-use crate::options::{AnisotropyOutput, RoughnessTexture};
+use crate::roughness::RoughnessTexture;
 use crate::row::Extra;
 use crate::{Image, SampleType};
 use codec::Units;

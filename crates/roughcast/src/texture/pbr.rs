@@ -22,12 +22,22 @@
 //! any viewer shows them.
 
 use super::codec::{LayerSpec, OPAQUE, RowEncoder, Units, map1};
-use super::{RoughnessStored, TextureInfo};
+use super::TextureInfo;
 use crate::moments::{Covariance, Moments};
-use crate::options::{AnisotropyOutput, RoughnessTexture};
+use crate::named::named_enum;
+use crate::roughness::{RoughnessStored, RoughnessTexture, stored_from_variance, variance_from_stored};
 use crate::row::RowView;
 use crate::slope::{Normal, Slope, normal_from_slope, slope_from_normal};
-use crate::source::{stored_from_variance, variance_from_stored};
+
+named_enum! {
+    /// How `pbr` says in which direction a roughness is larger.
+    pub enum AnisotropyOutput: "form of anisotropy" {
+        /// Direction and strength, as KHR_materials_anisotropy has them; the roughness is the one across.
+        Khr = "khr",
+        /// The widths of the lobe along the x and the y axis of the tangent frame, each in a file of one channel.
+        Alpha = "alpha",
+    }
+}
 
 pub(super) const NORMAL_LAYERS: &[LayerSpec] =
     &[LayerSpec { name: "normal", channels: &["R", "G", "B", OPAQUE] }];

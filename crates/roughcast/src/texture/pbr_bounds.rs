@@ -3,9 +3,9 @@
 //! All speak of widths up to 1, the roughest that the stored forms can say.
 
 use super::codec::{Affine, Bounds, Peaks, Units};
-use super::pbr::FLATTEST;
-use super::{Base, EncoderShape, RoughnessStored, TextureInfo};
-use crate::options::AnisotropyOutput;
+use super::pbr::{AnisotropyOutput, FLATTEST};
+use super::{EncoderShape, TextureInfo};
+use crate::roughness::{Base, RoughnessStored};
 
 /// Bounds of all parts together.
 pub(super) fn bounds(units: Units, info: &TextureInfo, shape: EncoderShape, peaks: &Peaks) -> Bounds {

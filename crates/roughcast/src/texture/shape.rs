@@ -1,7 +1,7 @@
 //! Whether textures have the shape that all code relies on.
 
 use super::{DecodeError, Texture, TextureArray};
-use crate::level_sizes;
+use crate::levels::level_sizes;
 
 impl TextureArray {
     /// Checks that there are layers, that all have the same levels, each `max(1, floor(n / 2))` of the one before, and that the
