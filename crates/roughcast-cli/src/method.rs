@@ -2,7 +2,9 @@
 
 use roughcast::shading::Shading;
 use roughcast::texture::TextureArray;
-use roughcast::{BakeError, BakeOptions, BaseRoughness, Bits, Image, Lobe, SourceOptions, bake};
+use roughcast::{
+    AnisotropyOutput, BakeError, BakeOptions, BaseRoughness, Bits, Image, Lobe, PbrOptions, SourceOptions, bake,
+};
 
 /// How a model's textures are made.
 #[derive(Clone, Copy, Debug)]
@@ -25,10 +27,11 @@ pub fn bake_for(
     source: &SourceOptions,
     options: TextureOptions,
 ) -> Result<Vec<TextureArray>, BakeError> {
+    let anisotropy = (options.lobe == Lobe::Anisotropic).then_some(AnisotropyOutput::Khr);
     let bake_options = BakeOptions {
         layout: shading.layout(),
         bits: options.bits,
-        lobe: options.lobe,
+        pbr: PbrOptions { anisotropy, ..PbrOptions::default() },
         ..BakeOptions::default()
     };
     let stores_base = matches!(shading, Shading::Toksvig | Shading::Ggx);

@@ -7,7 +7,7 @@ use common::pictures::{Apart, GpuPictures, apart, by_cpu, inside, options, well_
 use common::scenes::{SIDE, SIZE, SPECULAR_POWER, maps, maps_with, scene, scenes};
 use roughcast::shading::{BaseLobe, Form, LobeOptions, Shading};
 use roughcast::texture::TextureArray;
-use roughcast::{BakeOptions, Bits, Lobe, RoughnessTexture, Wrap};
+use roughcast::{AnisotropyOutput, BakeOptions, Bits, PbrOptions, RoughnessTexture, Wrap};
 use roughcast_gpu::render::DrawOptions;
 use roughcast_scene::{Filter, Picture, Plane, Sampler, Scene, Shape, Sphere, Torus, View};
 
@@ -60,9 +60,13 @@ fn with_filter(filter: Filter) -> DrawOptions {
 fn models() -> Vec<(Shading, Vec<TextureArray>)> {
     let mut models: Vec<_> = Shading::ALL.iter().map(|s| (*s, maps(*s, Bits::Half))).collect();
     let pbr = BakeOptions { layout: Shading::Ggx.layout(), bits: Bits::Eight, ..BakeOptions::default() };
-    models.push((Shading::Ggx, maps_with(BakeOptions { lobe: Lobe::Anisotropic, ..pbr })));
-    models
-        .push((Shading::Ggx, maps_with(BakeOptions { roughness_texture: RoughnessTexture::Packed, ..pbr })));
+    let plain = PbrOptions::default();
+    for choices in [
+        PbrOptions { anisotropy: Some(AnisotropyOutput::Khr), ..plain },
+        PbrOptions { roughness_texture: RoughnessTexture::Packed, ..plain },
+    ] {
+        models.push((Shading::Ggx, maps_with(BakeOptions { pbr: choices, ..pbr })));
+    }
     models
 }
 

@@ -98,4 +98,4 @@ pub use roughness::{Lobe, RoughnessTexture, stored_from_variance, variance_from_
 pub use slope::{Normal, Slope, SourceCounts, normal_from_slope, repaired_slope, slope_from_normal};
 pub use source::{BaseRoughness, RoughnessMap, SourceError};
 pub use survey::survey_stride;
-pub use texture::{AnisotropyOutput, Blocks};
+pub use texture::{AnisotropyOutput, Blocks, PbrOptions};

@@ -3,8 +3,8 @@
 use crate::SampleType;
 use crate::convention::{Green, HeightSense, Kind, NormalChannels, NormalRange, Red, Wrap};
 use crate::named::named_enum;
-use crate::roughness::{Base, Brdf, Lobe, RoughnessStored, RoughnessTexture};
-use crate::texture::{AnisotropyOutput, Blocks, Layout};
+use crate::roughness::{Base, Brdf};
+use crate::texture::{Blocks, Layout, PbrOptions};
 
 named_enum! {
     /// How a height map's gradient is estimated. All are in texels of level 0.
@@ -170,27 +170,12 @@ pub struct BakeOptions {
     pub base: Base,
     /// The lobe for which roughness is meant.
     pub brdf: Brdf,
-    /// How `pbr` stores roughness.
-    pub roughness_stored: RoughnessStored,
-    /// One roughness or two, for `pbr`.
-    pub lobe: Lobe,
-    /// How `pbr` says two roughnesses.
-    pub anisotropy_output: AnisotropyOutput,
-    /// The channels of `pbr`'s roughness.
-    pub roughness_texture: RoughnessTexture,
-    /// How `pbr` stores the components of unit vectors in floats; unsigned types always hold `v / 2 + 1/2`.
-    pub normal_range: NormalRange,
+    /// The choices of [`Layout::Pbr`]; no other layout reads them.
+    pub pbr: PbrOptions,
     /// Shaped for block compression or not.
     pub blocks: Blocks,
     /// The kernel of the pyramid.
     pub filter: PyramidFilter,
-}
-
-impl BakeOptions {
-    /// What `pbr` says of directions; `None` for one roughness.
-    pub fn anisotropy(&self) -> Option<AnisotropyOutput> {
-        (self.layout == Layout::Pbr && self.lobe == Lobe::Anisotropic).then_some(self.anisotropy_output)
-    }
 }
 
 impl Default for BakeOptions {
@@ -202,11 +187,7 @@ impl Default for BakeOptions {
             scale: ScaleChoice::Auto,
             base: Base::None,
             brdf: Brdf::Ggx,
-            roughness_stored: RoughnessStored::Perceptual,
-            lobe: Lobe::Isotropic,
-            anisotropy_output: AnisotropyOutput::Khr,
-            roughness_texture: RoughnessTexture::Green,
-            normal_range: NormalRange::Unorm,
+            pbr: PbrOptions::default(),
             blocks: Blocks::None,
             filter: PyramidFilter::Box,
         }

@@ -8,8 +8,8 @@ use common::maps::{self, Random};
 use common::{baked_with, options, pyramid_oracle, real_files, slope_oracle};
 use roughcast::texture::{Base, Layout, RoughnessStored};
 use roughcast::{
-    BakeOptions, BakeReport, Baked, BaseRoughness, Bits, Blocks, Image, Kind, Lobe, PyramidFilter,
-    RoughnessTexture, SourceOptions,
+    AnisotropyOutput, BakeOptions, BakeReport, Baked, BaseRoughness, Bits, Blocks, Image, Kind, PbrOptions,
+    PyramidFilter, RoughnessTexture, SourceOptions,
 };
 
 /// Float moments are made in single floats: this many roundings of a texel's rms come on top of a bound.
@@ -97,14 +97,16 @@ fn material_cases(options: BakeOptions) -> Vec<Case> {
         if *stored == RoughnessStored::SpecularPower && !options.bits.sample_type().is_float() {
             continue;
         }
-        for lobe in Lobe::ALL {
+        for anisotropy in [None, Some(AnisotropyOutput::Khr)] {
             for base in [None, Some(0.01)] {
-                let options = BakeOptions { roughness_stored: *stored, lobe: *lobe, ..options };
+                let pbr = PbrOptions { roughness_stored: *stored, anisotropy, ..PbrOptions::default() };
+                let options = BakeOptions { pbr, ..options };
                 cases.push(Case { options, base });
             }
         }
     }
-    let packed = BakeOptions { roughness_texture: RoughnessTexture::Packed, ..options };
+    let pbr = PbrOptions { roughness_texture: RoughnessTexture::Packed, ..PbrOptions::default() };
+    let packed = BakeOptions { pbr, ..options };
     cases.push(Case { options: packed, base: None });
     cases
 }
@@ -119,7 +121,7 @@ struct Promise {
 
 /// Widths above one cannot be stored in 0 ..= 1; the bounds speak of what can.
 fn storable(case: &Case, variance: f64) -> f64 {
-    let unlimited = case.options.roughness_stored == RoughnessStored::SpecularPower;
+    let unlimited = case.options.pbr.roughness_stored == RoughnessStored::SpecularPower;
     if unlimited { variance } else { variance.min(0.5) }
 }
 
@@ -134,7 +136,7 @@ fn promised(case: &Case, texel: Texel, normal: [f64; 3]) -> Promise {
         Layout::Variance => plain(vec![c[0], c[1]], None),
         Layout::Clean => plain(vec![half_trace], None),
         Layout::SchillingIsotropic => plain(vec![eigenvalues(c).0], None),
-        Layout::Pbr if case.options.lobe == Lobe::Isotropic => plain(vec![storable(case, half_trace)], None),
+        Layout::Pbr if case.options.pbr.anisotropy.is_none() => plain(vec![storable(case, half_trace)], None),
         // Strength is a ratio of widths up to one.
         Layout::Pbr if eigenvalues(c).0 <= 0.5 => plain(vec![c[0], c[1]], Some(c)),
         Layout::Pbr => plain(vec![], None),
@@ -151,7 +153,7 @@ fn given(case: &Case, texel: Texel, promise: &Promise) -> Vec<f64> {
     let c = texel.covariance();
     match case.options.layout {
         Layout::Clean | Layout::SchillingIsotropic | Layout::Toksvig => vec![c[0]],
-        Layout::Pbr if case.options.lobe == Lobe::Isotropic => vec![storable(case, c[0])],
+        Layout::Pbr if case.options.pbr.anisotropy.is_none() => vec![storable(case, c[0])],
         _ => c[..promise.variances.len()].to_vec(),
     }
 }
@@ -207,7 +209,7 @@ fn check(
 
 /// Factors by which bounds may exceed the worst error on some map, each at most twice what is measured.
 fn loosest(case: &Case) -> Worst {
-    let BakeOptions { bits, layout, lobe, roughness_stored, .. } = case.options;
+    let BakeOptions { bits, layout, pbr, .. } = case.options;
     let slope = match bits {
         // Some texel is half a code off.
         Bits::Eight => 1.1,
@@ -218,7 +220,7 @@ fn loosest(case: &Case) -> Worst {
     };
     let variance = match (layout, bits) {
         // The bound on a variance adds those of all that it is computed of; no texel has all of them at once.
-        (Layout::Pbr, _) => material_variance(lobe, roughness_stored, bits),
+        (Layout::Pbr, _) => material_variance(&pbr, bits),
         (_, Bits::Half | Bits::Float) => 4.0,
         _ => 2.5,
     };
@@ -227,17 +229,17 @@ fn loosest(case: &Case) -> Worst {
 }
 
 /// The bounds of a material take the roughness between zero and one that is off most, which no map here has on its own.
-fn material_variance(lobe: Lobe, stored: RoughnessStored, bits: Bits) -> f64 {
+fn material_variance(pbr: &PbrOptions, bits: Bits) -> f64 {
     let half = matches!(bits, Bits::Half | Bits::Float);
-    match (lobe, stored) {
+    match (pbr.anisotropy, pbr.roughness_stored) {
         // The bound takes a half float's coarsest rounding, near a gloss of one, and the fastest change of the variance,
         // near zero. No gloss has both.
-        (Lobe::Isotropic, RoughnessStored::Gloss) if half => 12.0,
-        (Lobe::Isotropic, _) => 4.5,
+        (None, RoughnessStored::Gloss) if half => 12.0,
+        (None, _) => 4.5,
         // The bound takes the root of a half float's rounding, which only the width of a mirror is off by.
-        (Lobe::Anisotropic, RoughnessStored::AlphaSquared) if half => 20.0,
-        (Lobe::Anisotropic, RoughnessStored::SpecularPower) => 12.0,
-        (Lobe::Anisotropic, _) => 7.0,
+        (Some(_), RoughnessStored::AlphaSquared) if half => 20.0,
+        (Some(_), RoughnessStored::SpecularPower) => 12.0,
+        (Some(_), _) => 7.0,
     }
 }
 

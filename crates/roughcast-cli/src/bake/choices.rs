@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use roughcast::texture::{Brdf, Layout, Part, RoughnessStored, TextureInfo};
-use roughcast::{AnisotropyOutput, BakeOptions, Bits, Blocks, Lobe, Named, NormalRange, RoughnessTexture};
+use roughcast::{BakeOptions, Bits, Blocks, Named, NormalRange, PbrOptions, RoughnessTexture};
 
 use super::{Args, Supercompress};
 use crate::UsageError;
@@ -47,11 +47,12 @@ impl Args {
             scale: self.scale,
             base: self.roughness.base,
             brdf: self.roughness.brdf,
-            roughness_stored: stored,
-            lobe: if self.anisotropy.is_some() { Lobe::Anisotropic } else { Lobe::Isotropic },
-            anisotropy_output: self.anisotropy.unwrap_or(AnisotropyOutput::Khr),
-            roughness_texture: self.roughness_texture(container, roughness),
-            normal_range: self.normal_range.unwrap_or(NormalRange::Unorm),
+            pbr: PbrOptions {
+                roughness_stored: stored,
+                anisotropy: self.anisotropy,
+                roughness_texture: self.roughness_texture(container, roughness),
+                normal_range: self.normal_range.unwrap_or(NormalRange::Unorm),
+            },
             blocks: self.compress,
             filter: self.filter,
         }

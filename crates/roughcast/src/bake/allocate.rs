@@ -17,11 +17,11 @@ pub(super) fn allocate(
     let mut parts = vec![info.part];
     match (options.layout, options.blocks) {
         (Layout::Pbr, _) => {
-            parts.push(match options.roughness_texture {
+            parts.push(match options.pbr.roughness_texture {
                 RoughnessTexture::Alone | RoughnessTexture::Green => Part::Roughness,
                 RoughnessTexture::Packed => Part::OcclusionRoughnessMetallic,
             });
-            match options.anisotropy() {
+            match options.pbr.anisotropy {
                 Some(AnisotropyOutput::Khr) => parts.push(Part::Anisotropy),
                 Some(AnisotropyOutput::Alpha) => parts.extend([Part::AlphaX, Part::AlphaY]),
                 None => {}

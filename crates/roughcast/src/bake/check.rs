@@ -29,7 +29,7 @@ pub(super) fn check_options(options: &BakeOptions, has_roughness: bool) -> Resul
                 .to_owned(),
         );
     }
-    if layout == Layout::Pbr && options.roughness_stored == RoughnessStored::SpecularPower && !float {
+    if layout == Layout::Pbr && options.pbr.roughness_stored == RoughnessStored::SpecularPower && !float {
         return refuse(
             "specular powers do not fit into 0 to 1: say --bits half, or store another roughness with \
              --roughness-stored"

@@ -152,8 +152,8 @@ pub fn bake_reusing(
     set_scales(&mut info, &needed, options);
     let mut arrays = allocate(textures, &info, options, (image.width(), image.height()));
     let shape = EncoderShape {
-        anisotropy: options.anisotropy(),
-        roughness_texture: options.roughness_texture,
+        anisotropy: options.pbr.anisotropy,
+        roughness_texture: options.pbr.roughness_texture,
         normal_channels: if options.blocks == Blocks::Bc { 2 } else { 4 },
     };
     let encoder = texture::encoder(&info, sample_type, shape);
@@ -220,7 +220,7 @@ fn source_of<'a>(
         (_, Base::None) => UseOfBase::Apart,
     };
     let base = roughness.map(|roughness| BaseSource::new(roughness, use_of_base)).transpose()?;
-    let extras = texture::extras_of(options.layout, options.roughness_texture);
+    let extras = texture::extras_of(options.layout, options.pbr.roughness_texture);
     Ok(MapSource::new(image, source_options, base, extras)?)
 }
 

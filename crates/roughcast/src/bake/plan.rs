@@ -35,11 +35,11 @@ pub fn plan_bake(
         base: base_of(options, roughness.is_some()),
         base_variance: base_variance(roughness),
         brdf: options.brdf,
-        roughness_stored: options.roughness_stored,
+        roughness_stored: options.pbr.roughness_stored,
         wrap: source.wrap,
         normal_range: normal_range(options),
         roughness_texture: match options.layout {
-            Layout::Pbr => options.roughness_texture,
+            Layout::Pbr => options.pbr.roughness_texture,
             _ => RoughnessTexture::Alone,
         },
         ..TextureInfo::new(options.layout, first_part(options))
@@ -51,7 +51,7 @@ pub fn plan_bake(
 fn normal_range(options: &BakeOptions) -> NormalRange {
     match options.layout {
         _ if !options.bits.sample_type().is_float() => NormalRange::Unorm,
-        Layout::Pbr => options.normal_range,
+        Layout::Pbr => options.pbr.normal_range,
         _ => NormalRange::Signed,
     }
 }

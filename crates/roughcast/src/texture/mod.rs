@@ -26,7 +26,7 @@ pub use codec::{Blocks, Bounds, LayerSpec, Peaks};
 pub use decode::{DecodeError, MomentLevel, decode};
 pub use info::{InfoError, Layout, Part, TextureInfo};
 pub use packing::Packing;
-pub use pbr::AnisotropyOutput;
+pub use pbr::{AnisotropyOutput, PbrOptions};
 pub use schilling::Factor;
 pub(crate) use set_id::set_id;
 pub use split::{join_layers, mark_set, split_infos, split_layers};

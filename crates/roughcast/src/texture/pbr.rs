@@ -23,6 +23,7 @@
 
 use super::codec::{LayerSpec, OPAQUE, RowEncoder, Units, map1};
 use super::TextureInfo;
+use crate::convention::NormalRange;
 use crate::moments::{Covariance, Moments};
 use crate::named::named_enum;
 use crate::roughness::{RoughnessStored, RoughnessTexture, stored_from_variance, variance_from_stored};
@@ -36,6 +37,31 @@ named_enum! {
         Khr = "khr",
         /// The widths of the lobe along the x and the y axis of the tangent frame, each in a file of one channel.
         Alpha = "alpha",
+    }
+}
+
+/// The choices of [`Layout::Pbr`](super::Layout::Pbr). No other layout reads them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct PbrOptions {
+    /// How roughness is stored.
+    pub roughness_stored: RoughnessStored,
+    /// How the direction in which the roughness is larger is stored; `None` for one roughness in every direction.
+    pub anisotropy: Option<AnisotropyOutput>,
+    /// The channels of the roughness.
+    pub roughness_texture: RoughnessTexture,
+    /// How floats hold the components of unit vectors; unsigned types always hold `v / 2 + 1/2`.
+    pub normal_range: NormalRange,
+}
+
+impl Default for PbrOptions {
+    /// As glTF reads it: one perceptual roughness, in green.
+    fn default() -> Self {
+        Self {
+            roughness_stored: RoughnessStored::Perceptual,
+            anisotropy: None,
+            roughness_texture: RoughnessTexture::Green,
+            normal_range: NormalRange::Unorm,
+        }
     }
 }
 
