@@ -3,7 +3,8 @@
 use roughcast::shading::Shading;
 use roughcast::texture::TextureArray;
 use roughcast::{
-    AnisotropyOutput, BakeError, BakeOptions, BaseRoughness, Bits, Image, Lobe, PbrOptions, SourceOptions, bake,
+    AnisotropyOutput, BakeError, BakeOptions, BaseRoughness, Bits, Image, Lobe, PbrOptions, SourceOptions,
+    bake,
 };
 
 /// How a model's textures are made.

@@ -160,10 +160,8 @@ fn grooves_point_their_direction_across_themselves() {
 fn a_packed_texture_keeps_occlusion_and_metalness() {
     let (image, source) = gentle_map(53, 37);
     let material = material_map(53, 37);
-    let packed = with_choices(
-        Bits::Float,
-        PbrOptions { roughness_texture: RoughnessTexture::Packed, ..floats().pbr },
-    );
+    let packed =
+        with_choices(Bits::Float, PbrOptions { roughness_texture: RoughnessTexture::Packed, ..floats().pbr });
     let map = |image, channel| {
         BaseRoughness::Map(RoughnessMap { image, channel, stored: RoughnessStored::Perceptual })
     };

@@ -8,8 +8,8 @@ use common::maps;
 use common::{baked, baked_with, options, pyramid_oracle, slope_oracle};
 use roughcast::texture::{Base, Layout, RoughnessStored};
 use roughcast::{
-    BakeError, BakeOptions, Baked, BaseRoughness, Bits, Blocks, Image, MaxSlope, NormalChannels,
-    PbrOptions, PyramidFilter, RoughnessMap, SampleType, Samples, ScaleChoice, SourceError, SourceOptions, bake,
+    BakeError, BakeOptions, Baked, BaseRoughness, Bits, Blocks, Image, MaxSlope, NormalChannels, PbrOptions,
+    PyramidFilter, RoughnessMap, SampleType, Samples, ScaleChoice, SourceError, SourceOptions, bake,
 };
 
 const UNSIGNED: [Bits; 2] = [Bits::Eight, Bits::Sixteen];
@@ -356,8 +356,7 @@ fn combinations_that_make_no_sense_are_refused() {
     let fixed = |scale| BakeOptions { scale: ScaleChoice::Fixed(scale), ..plain };
     let blocks = |layout, bits| BakeOptions { blocks: Blocks::Bc, ..with(layout, bits) };
     let folded = BakeOptions { base: Base::Baked, ..plain };
-    let powers =
-        PbrOptions { roughness_stored: RoughnessStored::SpecularPower, ..PbrOptions::default() };
+    let powers = PbrOptions { roughness_stored: RoughnessStored::SpecularPower, ..PbrOptions::default() };
     let power = BakeOptions { pbr: powers, ..with(Layout::Pbr, Bits::Eight) };
     let limited = |limit| SourceOptions { max_slope: MaxSlope::Limit(limit), ..source };
     let steep = limited(300.0);

@@ -4,8 +4,7 @@ use crate::Image;
 use crate::levels::level_sizes;
 use crate::options::BakeOptions;
 use crate::pyramid::{LevelOut, PartOut, SamplesMut};
-use crate::roughness::RoughnessTexture;
-use crate::texture::{self, AnisotropyOutput, Blocks, LayerSpec, Layout, Part, Texture, TextureArray, TextureInfo};
+use crate::texture::{self, Blocks, LayerSpec, Part, Texture, TextureArray, TextureInfo};
 
 /// Textures of all of a layout's files, taken from `earlier` where these have the right shape.
 pub(super) fn allocate(
@@ -14,22 +13,6 @@ pub(super) fn allocate(
     options: &BakeOptions,
     size: (usize, usize),
 ) -> Vec<TextureArray> {
-    let mut parts = vec![info.part];
-    match (options.layout, options.blocks) {
-        (Layout::Pbr, _) => {
-            parts.push(match options.pbr.roughness_texture {
-                RoughnessTexture::Alone | RoughnessTexture::Green => Part::Roughness,
-                RoughnessTexture::Packed => Part::OcclusionRoughnessMetallic,
-            });
-            match options.pbr.anisotropy {
-                Some(AnisotropyOutput::Khr) => parts.push(Part::Anisotropy),
-                Some(AnisotropyOutput::Alpha) => parts.extend([Part::AlphaX, Part::AlphaY]),
-                None => {}
-            }
-        }
-        (Layout::Toksvig, Blocks::Bc) => parts.push(Part::Gloss),
-        _ => {}
-    }
     let sample_type = options.bits.sample_type();
     let mut earlier = earlier.into_iter().flat_map(|array| array.layers);
     let mut texture = |spec: &LayerSpec, channels: usize| {
@@ -46,6 +29,7 @@ pub(super) fn allocate(
         };
         Texture { name: spec.name, channels: spec.channels[..channels].to_vec(), levels }
     };
+    let parts = options.layout.parts_written(options.blocks, &options.pbr);
     parts
         .into_iter()
         .map(|part| {

@@ -5,7 +5,8 @@ use crate::SampleType;
 use crate::options::{BakeOptions, MaxSlope, PyramidFilter, ScaleChoice, SourceOptions};
 use crate::roughness::{Base, RoughnessStored};
 use crate::source::BaseRoughness;
-use crate::texture::{Blocks, Layout};
+use crate::texture::rules::Stores;
+use crate::texture::{BaseRole, BlockCompression, Blocks};
 
 /// Half floats end here; second moments are squares of slopes.
 const LARGEST_SLOPE_IN_HALF: f32 = 255.0;
@@ -14,7 +15,7 @@ pub(super) fn check_options(options: &BakeOptions, has_roughness: bool) -> Resul
     let refuse = |line: String| Err(BakeError::Options(line));
     let float = options.bits.sample_type().is_float();
     let layout = options.layout;
-    if matches!(layout, Layout::Moments | Layout::BumpSlopes) && !float {
+    if !layout.sample_types().contains(&options.bits.sample_type()) {
         return refuse(format!("the layout '{layout}' holds floats: say --bits half or --bits float"));
     }
     if options.base == Base::Baked && !has_roughness {
@@ -22,14 +23,15 @@ pub(super) fn check_options(options: &BakeOptions, has_roughness: bool) -> Resul
             "--base baked needs a roughness to fold in: add --specular-power or --roughness".to_owned(),
         );
     }
-    if layout == Layout::Toksvig && !has_roughness {
+    if layout.base_role() == BaseRole::Apart && !has_roughness {
         return refuse(
             "the layout 'toksvig' stores a gloss factor, which depends on the shininess: add --specular-power or \
              --roughness"
                 .to_owned(),
         );
     }
-    if layout == Layout::Pbr && options.pbr.roughness_stored == RoughnessStored::SpecularPower && !float {
+    if layout.reads_pbr_options() && options.pbr.roughness_stored == RoughnessStored::SpecularPower && !float
+    {
         return refuse(
             "specular powers do not fit into 0 to 1: say --bits half, or store another roughness with \
              --roughness-stored"
@@ -37,7 +39,7 @@ pub(super) fn check_options(options: &BakeOptions, has_roughness: bool) -> Resul
         );
     }
     if let ScaleChoice::Fixed(scale) = options.scale {
-        if matches!(layout, Layout::Pbr | Layout::Toksvig) {
+        if layout.rules().stores() == Stores::Normals {
             return refuse(format!("the layout '{layout}' stores normals, not slopes: leave --scale out"));
         }
         if float {
@@ -55,19 +57,17 @@ pub(super) fn check_options(options: &BakeOptions, has_roughness: bool) -> Resul
 
 fn check_blocks(options: &BakeOptions) -> Result<(), BakeError> {
     let refuse = |line: String| Err(BakeError::Options(line));
-    match options.layout {
-        Layout::Pbr | Layout::Variance | Layout::Toksvig if options.bits.sample_type() == SampleType::U8 => {
-            Ok(())
-        }
-        Layout::Pbr | Layout::Variance | Layout::Toksvig => {
+    let layout = options.layout;
+    match layout.block_compression() {
+        BlockCompression::FromEightBits if options.bits.sample_type() == SampleType::U8 => Ok(()),
+        BlockCompression::FromEightBits => {
             refuse("blocks are compressed from 8 bits: leave --bits out, or say --bits 8".to_owned())
         }
-        Layout::Lean | Layout::Clean => refuse(format!(
-            "the layout '{}' cannot be block-compressed: its variance is a small difference of large numbers, and \
-             the blocks' errors are larger than it. Use --as variance or --as pbr with --compress bc",
-            options.layout
+        BlockCompression::WouldLoseVariance => refuse(format!(
+            "the layout '{layout}' cannot be block-compressed: its variance is a small difference of large numbers, and \
+             the blocks' errors are larger than it. Use --as variance or --as pbr with --compress bc"
         )),
-        layout => refuse(format!(
+        BlockCompression::Undefined => refuse(format!(
             "the layout '{layout}' cannot be block-compressed: use --as variance, --as pbr or --as toksvig"
         )),
     }
@@ -80,8 +80,7 @@ pub(super) fn limit_slopes(
     roughness: Option<BaseRoughness<'_>>,
     options: &BakeOptions,
 ) -> Result<(), BakeError> {
-    let stores_squares =
-        matches!(options.layout, Layout::Lean | Layout::Clean | Layout::Moments | Layout::BumpSlopes);
+    let stores_squares = options.layout.rules().stores() == Stores::RawMoments;
     let asked = source.max_slope.before_a_look();
     if options.bits.sample_type() == SampleType::F16 && stores_squares && asked > LARGEST_SLOPE_IN_HALF {
         return Err(BakeError::Options(format!(

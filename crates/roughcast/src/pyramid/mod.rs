@@ -14,9 +14,9 @@ pub(crate) mod weights;
 
 pub(crate) use level_out::{LevelOut, PartOut, SamplesMut, largest, largest_component_and_square};
 
-use crate::moments::Moments;
 use crate::convention::Wrap;
 use crate::levels::level_sizes;
+use crate::moments::Moments;
 use crate::options::PyramidFilter;
 use crate::row::RowSource;
 use crate::slope::SourceCounts;

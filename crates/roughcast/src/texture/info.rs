@@ -6,35 +6,10 @@ mod words;
 
 use std::collections::BTreeMap;
 
-use super::layers_of;
-use crate::SampleType;
+use super::{Layout, layers_of};
 use crate::convention::{NormalRange, Wrap};
 use crate::named::named_enum;
 use crate::roughness::{Base, Brdf, RoughnessStored, RoughnessTexture};
-
-named_enum! {
-    /// The layouts in which moments are stored, one file each in [`crate::texture`].
-    pub enum Layout: "layout" {
-        /// LEAN mapping: mean normal, mean slope and second moments in two RGBA layers.
-        Lean = "lean",
-        /// CLEAN mapping: mean slope and the trace of the second moments.
-        Clean = "clean",
-        /// Schilling's bump and roughness pyramid: mean slope and a triangular factor of the covariance.
-        Schilling = "schilling",
-        /// Schilling's isotropic pyramid: mean slope and the larger standard deviation.
-        SchillingIsotropic = "schilling-isotropic",
-        /// Mean slope and the variance along each axis.
-        Variance = "variance",
-        /// Toksvig: the unnormalised averaged normal and its gloss factor.
-        Toksvig = "toksvig",
-        /// The six channels of OpenImageIO's and RenderMan's bump slopes.
-        BumpSlopes = "bump-slopes",
-        /// Normal and roughness textures of a physically based material.
-        Pbr = "pbr",
-        /// The moments themselves, as floats.
-        Moments = "moments",
-    }
-}
 
 named_enum! {
     /// Which of a layout's files this is; layouts whose textures share one format have a single part.
@@ -57,46 +32,6 @@ named_enum! {
         AlphaX = "alpha-x",
         /// The width of the lobe along the y axis.
         AlphaY = "alpha-y",
-    }
-}
-
-impl Layout {
-    /// The parts that files of this layout can be.
-    pub const fn parts(self) -> &'static [Part] {
-        match self {
-            Layout::Pbr => &[
-                Part::Normal,
-                Part::Roughness,
-                Part::OcclusionRoughnessMetallic,
-                Part::Anisotropy,
-                Part::AlphaX,
-                Part::AlphaY,
-            ],
-            Layout::Toksvig => &[Part::Whole, Part::Normal, Part::Gloss],
-            Layout::Variance => &[Part::Whole, Part::Split],
-            Layout::Lean
-            | Layout::Clean
-            | Layout::Schilling
-            | Layout::SchillingIsotropic
-            | Layout::BumpSlopes
-            | Layout::Moments => &[Part::Whole],
-        }
-    }
-
-    /// Whether the layout holds variances or standard deviations themselves.
-    pub const fn stores_variance(self) -> bool {
-        matches!(self, Layout::Schilling | Layout::SchillingIsotropic | Layout::Variance)
-    }
-
-    /// Whether texels of this type hold slopes or their moments over [`TextureInfo::scale`]. Floats hold the values themselves.
-    pub fn uses_scale(self, sample_type: SampleType) -> bool {
-        let stores_slopes = matches!(self, Layout::Lean | Layout::Clean) || self.stores_variance();
-        stores_slopes && !sample_type.is_float()
-    }
-
-    /// Whether texels of this type hold variances or standard deviations over [`TextureInfo::variance_scale`].
-    pub fn uses_variance_scale(self, sample_type: SampleType) -> bool {
-        self.stores_variance() && !sample_type.is_float()
     }
 }
 
@@ -186,11 +121,7 @@ impl TextureInfo {
             set: 0,
             layer: None,
             wrap: Wrap::Repeat,
-            normal_range: if matches!(layout, Layout::Pbr) {
-                NormalRange::Unorm
-            } else {
-                NormalRange::Signed
-            },
+            normal_range: if layout.reads_pbr_options() { NormalRange::Unorm } else { NormalRange::Signed },
             roughness_texture: before_there_was_a_choice(part),
         }
     }
@@ -222,7 +153,7 @@ impl TextureInfo {
             (NORMAL_RANGE, self.normal_range.name().to_owned()),
             (CONVENTIONS, CONVENTIONS_OF_ALL_FILES.to_owned()),
         ];
-        let layout = (self.layout == Layout::Pbr)
+        let layout = (self.layout.reads_pbr_options())
             .then(|| (ROUGHNESS_LAYOUT, self.roughness_texture.name().to_owned()));
         let power = self.specular_power().map(|power| (SPECULAR_POWER, power.to_string()));
         let set = (self.set != 0).then(|| (SET, format!("{:016x}", self.set)));
@@ -320,9 +251,10 @@ impl TextureInfo {
             return Err(InfoError::Invalid { key: BASE_VARIANCE, value: self.base_variance.to_string() });
         }
         // Only pbr has the choice, and text does not name it elsewhere: words that do are read like the text.
-        let roughness_texture = match self.layout {
-            Layout::Pbr => self.roughness_texture,
-            _ => before_there_was_a_choice(self.part),
+        let roughness_texture = if self.layout.reads_pbr_options() {
+            self.roughness_texture
+        } else {
+            before_there_was_a_choice(self.part)
         };
         Ok(Self { roughness_texture, ..self })
     }

@@ -2,16 +2,18 @@
 //!
 //! All speak of widths up to 1, the roughest that the stored forms can say.
 
+use super::TextureInfo;
 use super::codec::{Affine, Bounds, Peaks, Units};
 use super::pbr::{AnisotropyOutput, FLATTEST};
-use super::{EncoderShape, TextureInfo};
+use super::rules::Storage;
 use crate::roughness::{Base, RoughnessStored};
 
 /// Bounds of all parts together.
-pub(super) fn bounds(units: Units, info: &TextureInfo, shape: EncoderShape, peaks: &Peaks) -> Bounds {
-    let slope = slope_error(units, shape.normal_channels, peaks);
+pub(super) fn bounds(storage: &Storage<'_>, peaks: &Peaks) -> Bounds {
+    let (units, info) = (storage.units(), storage.info);
+    let slope = slope_error(units, storage.normal_channels(), peaks);
     let variance = variance_error(units, info.roughness_stored, peaks);
-    match shape.anisotropy {
+    match storage.pbr.anisotropy {
         None => Bounds { slope, variance, eigenvalue: variance },
         Some(AnisotropyOutput::Alpha) => {
             let variance = variance_error(units, RoughnessStored::Alpha, peaks);
