@@ -10,11 +10,12 @@ use clap::ValueHint;
 use roughcast::texture::{Base, Layout, TextureArray, mark_set};
 use roughcast::{
     AnisotropyOutput, BakeError, BakeOptions, BakeReport, Baked, Bits, Blocks, NormalRange, PyramidFilter,
-    RoughnessTexture, ScaleChoice, bake, refuse_filter,
+    RoughnessTexture, ScaleChoice, bake,
 };
 use roughcast_io::material_names::{MaterialRole, role_of};
 use roughcast_io::{BlockFormat, FileInfo, Supercompression, compress, decompress};
 
+use crate::advice::{filter_refusal, with_options};
 use crate::args::{READING, REPORT, SourceArgs, one_of, positive};
 use crate::batch;
 use crate::fault::guarded;
@@ -184,7 +185,7 @@ fn scale(text: &str) -> Result<ScaleChoice, String> {
 }
 
 fn filter(name: &str) -> Result<PyramidFilter, String> {
-    name.parse::<PyramidFilter>().map_err(|unknown| match refuse_filter(name) {
+    name.parse::<PyramidFilter>().map_err(|unknown| match filter_refusal(name) {
         Some(reason) => reason.to_owned(),
         None => unknown.to_string(),
     })
@@ -359,8 +360,8 @@ fn unused_roughness_warning(args: &Args) -> Option<String> {
 /// Options that contradict each other are a fault of the command line, not of the map.
 pub fn usage_where_options(error: BakeError) -> anyhow::Error {
     match error {
-        BakeError::Options(line) => UsageError(line).into(),
-        error => error.into(),
+        BakeError::Source(_) => error.into(),
+        error => UsageError(with_options(&error)).into(),
     }
 }
 

@@ -84,7 +84,6 @@ pub mod wgsl;
 
 pub use bake::{
     BakeError, BakePlan, BakeReport, Baked, ScaleAdvice, SlopeLimit, bake, bake_reusing, plan_bake,
-    refuse_filter,
 };
 pub use convention::{Green, HeightSense, Kind, NormalChannels, NormalRange, Red, Wrap};
 pub use distribution::{Distribution, MAX_GAUSSIANS, WeightedGaussian};

@@ -2,7 +2,7 @@
 
 use roughcast::texture::{self, Layout, Texture, TextureArray, TextureInfo};
 use roughcast::{
-    BakeError, BakeOptions, Bits, Blocks, Image, PyramidFilter, SampleType, Samples, level_sizes,
+    BakeError, BakeOptions, Bits, Blocks, Image, PyramidFilter, SampleType, Samples, SourceError, level_sizes,
 };
 
 use crate::read_back::{Staged, stage_texture};
@@ -183,10 +183,9 @@ pub(super) fn base_variance_of(
         {
             Ok(variance)
         }
-        (_, Some(roughcast::BaseRoughness::Variance(variance))) => Err(BakeError::Options(format!(
-            "the base roughness gives a slope variance of {variance}: it must be finite and not negative"
-        ))
-        .into()),
+        (_, Some(roughcast::BaseRoughness::Variance(variance))) => {
+            Err(BakeError::Source(SourceError::BaseVariance { variance }).into())
+        }
         (_, Some(roughcast::BaseRoughness::Map(_))) => Err(GpuError::OnlyOnCpu(
             "the GPU folds in one roughness for the whole map, not a map of it: bake on the CPU".to_owned(),
         )),

@@ -2,11 +2,12 @@
 
 mod allocate;
 mod check;
+mod error;
 mod limit;
 mod plan;
 mod scales;
 
-pub use check::refuse_filter;
+pub use error::BakeError;
 pub use plan::{BakePlan, plan_bake};
 
 use crate::levels::level_sizes;
@@ -14,7 +15,7 @@ use crate::moments::Moments;
 use crate::options::{BakeOptions, SourceOptions};
 use crate::pyramid::{self, LevelStats, PyramidOptions};
 use crate::roughness::{Base, RoughnessStored};
-use crate::source::{BaseRoughness, BaseSource, MapSource, RoughnessMap, SourceError, UseOfBase};
+use crate::source::{BaseRoughness, BaseSource, MapSource, RoughnessMap, UseOfBase};
 use crate::survey::survey_of_some_rows;
 use crate::texture::rules::Storage;
 use crate::texture::{self, BaseRole, Bounds, Peaks, TextureArray};
@@ -22,17 +23,6 @@ use crate::{Image, SourceCounts};
 use allocate::{allocate, level_outs};
 use limit::{Ranges, find_ranges};
 use scales::{advice, peaks_of_most, set_scales};
-
-/// Why a map could not be baked. One line, with the mend.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum BakeError {
-    /// The map cannot be read as slopes.
-    #[error(transparent)]
-    Source(#[from] SourceError),
-    /// The options do not go together.
-    #[error("{0}")]
-    Options(String),
-}
 
 /// Advice on a scale that a few steep texels have made much larger than the rest needs.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -106,9 +106,7 @@ impl<'a> BaseSource<'a> {
         if let BaseRoughness::Variance(variance) = roughness
             && !(variance.is_finite() && variance >= 0.0)
         {
-            return Err(SourceError::Option(format!(
-                "the base roughness gives a slope variance of {variance}: it must be finite and not negative"
-            )));
+            return Err(SourceError::BaseVariance { variance });
         }
         Ok(Self { roughness, use_of_base })
     }

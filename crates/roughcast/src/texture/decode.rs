@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::codec::Units;
-use super::{Layout, Part, TextureArray, TextureInfo, join_layers};
+use super::{Layout, Part, ShapeFault, TextureArray, TextureInfo, join_layers};
 use crate::moments::Moments;
 
 /// A level of moments, row by row from the top.
@@ -19,6 +19,7 @@ pub struct MomentLevel {
 
 /// Why textures do not decode.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DecodeError {
     /// There is nothing to decode.
     #[error("there are no textures: give at least one file of a layout")]
@@ -55,7 +56,7 @@ pub enum DecodeError {
         /// The layout.
         layout: Layout,
         /// What does not fit.
-        fault: String,
+        fault: ShapeFault,
     },
 }
 
@@ -105,10 +106,8 @@ impl<'a> Files<'a> {
             return Err(DecodeError::MissingPart { layout, part });
         }
         if let Some(foreign) = arrays.iter().find(|array| !parts.contains(&array.info.part)) {
-            return Err(DecodeError::Shape {
-                layout,
-                fault: format!("it has no part '{}'", foreign.info.part),
-            });
+            let fault = ShapeFault::ForeignPart { part: foreign.info.part };
+            return Err(DecodeError::Shape { layout, fault });
         }
         files.0.iter().try_for_each(|array| files.check(array, layout))?;
         Ok(files)
@@ -116,27 +115,27 @@ impl<'a> Files<'a> {
 
     /// The size and the channels of a file fit, so that decoding a texel cannot fail.
     fn check(&self, array: &TextureArray, layout: Layout) -> Result<(), DecodeError> {
-        let fault = |fault: String| Err(DecodeError::Shape { layout, fault });
+        let fault = |fault| Err(DecodeError::Shape { layout, fault });
         let main = self.main();
         if array.info.set != main.info.set {
             return Err(DecodeError::OtherSet { part: array.info.part, first: main.info.part });
         }
         if array.info.layout != layout {
-            return fault(format!("one file holds '{}'", array.info.layout));
+            return fault(ShapeFault::OtherLayout { other: array.info.layout });
         }
         if array.size() != main.size() || array.level_count() != main.level_count() {
-            return fault("the files differ in size or in number of levels".to_owned());
+            return fault(ShapeFault::FileSizes);
         }
         let wanted = super::layers_of(&array.info);
         if array.layers.len() != wanted.len() {
-            return fault(format!("{} layers instead of {}", array.layers.len(), wanted.len()));
+            return fault(ShapeFault::LayerCount { got: array.layers.len(), wanted: wanted.len() });
         }
         for (layer, spec) in array.layers.iter().zip(wanted) {
-            let channels = layer.levels[0].channels();
+            let (got, wanted) = (layer.levels[0].channels(), spec.channels.len());
             // A block-compressed normal has lost its third channel and the filler; nothing else may be missing.
-            let short_normal = array.info.part == Part::Normal && channels == 2;
-            if channels < spec.channels.len() && !short_normal {
-                return fault(format!("{channels} channels instead of {}", spec.channels.len()));
+            let short_normal = array.info.part == Part::Normal && got == 2;
+            if got < wanted && !short_normal {
+                return fault(ShapeFault::ChannelCount { got, wanted });
             }
         }
         Ok(())

@@ -69,7 +69,8 @@ pub struct TextureInfo {
 }
 
 /// Why the metadata of a file could not be read.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum InfoError {
     /// It is not a file of ours, or its metadata was stripped.
     #[error(

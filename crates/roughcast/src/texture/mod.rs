@@ -34,6 +34,7 @@ pub use pbr::{AnisotropyOutput, PbrOptions};
 pub use rules::{BaseRole, BlockCompression};
 pub use schilling::Factor;
 pub(crate) use set_id::set_id;
+pub use shape::ShapeFault;
 pub use split::{join_layers, mark_set, split_infos, split_layers};
 
 use crate::moments::Moments;
