@@ -185,7 +185,7 @@ impl Findings {
         self.put("brdf", json!(info.brdf.name()), info.brdf.name().to_owned());
         let stored = info.roughness_stored.name();
         self.put("roughness_stored", json!(stored), stored.to_owned());
-        if info.layout == Layout::Pbr {
+        if info.layout.reads_pbr_options() {
             let layout = info.roughness_texture.name();
             self.put("roughness_layout", json!(layout), layout.to_owned());
         }

@@ -1,7 +1,7 @@
 //! The textures of a shading model, baked from a map in memory.
 
 use roughcast::shading::Shading;
-use roughcast::texture::TextureArray;
+use roughcast::texture::{BaseRole, TextureArray};
 use roughcast::{
     AnisotropyOutput, BakeError, BakeOptions, BaseRoughness, Bits, Image, Lobe, PbrOptions, SourceOptions,
     bake,
@@ -35,7 +35,7 @@ pub fn bake_for(
         pbr: PbrOptions { anisotropy, ..PbrOptions::default() },
         ..BakeOptions::default()
     };
-    let stores_base = matches!(shading, Shading::Toksvig | Shading::Ggx);
+    let stores_base = shading.layout().base_role() != BaseRole::OnRequest;
     let base = stores_base.then_some(BaseRoughness::Variance(1.0 / options.specular_power));
     Ok(bake(map, source, base, &bake_options)?.arrays)
 }

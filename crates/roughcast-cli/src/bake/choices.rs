@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use roughcast::texture::{Brdf, Layout, Part, RoughnessStored, TextureInfo};
+use roughcast::texture::{Brdf, Layout, RoughnessStored, TextureInfo};
 use roughcast::{BakeOptions, Bits, Blocks, Named, NormalRange, PbrOptions, RoughnessTexture};
 
 use super::{Args, Supercompress};
@@ -84,7 +84,7 @@ impl Args {
             (self.normal_range.is_some(), "--normal-range"),
             (self.roughness.roughness_output.is_some(), "--roughness-output"),
         ] {
-            if given && self.layout != Layout::Pbr {
+            if given && !self.layout.reads_pbr_options() {
                 return Err(UsageError(format!(
                     "{option} is for --as pbr, and the layout is '{}': leave it out",
                     self.layout
@@ -107,12 +107,8 @@ impl Args {
 
     /// What the first file that is written contains.
     pub(super) fn first_file(&self, container: Container) -> TextureInfo {
-        let part = match (self.layout, self.compress) {
-            (Layout::Pbr, _) | (Layout::Toksvig, Blocks::Bc) => Part::Normal,
-            (Layout::Variance, Blocks::Bc) => Part::Split,
-            _ => Part::Whole,
-        };
-        let info = TextureInfo::new(self.layout, part);
+        let parts = self.layout.parts_written(self.compress, &self.options(container, None).pbr);
+        let info = TextureInfo::new(self.layout, parts[0]);
         if self.splits(container) { roughcast::texture::split_infos(&info)[0] } else { info }
     }
 }

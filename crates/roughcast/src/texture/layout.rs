@@ -1,7 +1,10 @@
 //! The registry of layouts: their names, and where each is described.
 
 use super::rules::{BaseRole, BlockCompression, LayoutRules, Stores};
-use super::{Blocks, Part, PbrOptions, bump_slopes, clean, lean, moments, pbr, schilling, toksvig, variance};
+use super::{
+    Blocks, Part, PbrOptions, TextureInfo, bump_slopes, clean, lean, moments, pbr, schilling, toksvig,
+    variance,
+};
 use crate::SampleType;
 use crate::named::named_enum;
 
@@ -70,6 +73,13 @@ impl Layout {
         self.rules().default_sample_type()
     }
 
+    /// The most channels that one texture of the layout has.
+    pub fn most_channels(self) -> usize {
+        let infos = self.parts().iter().map(|part| TextureInfo::new(self, *part));
+        let channels = infos.flat_map(|info| self.rules().layers(&info)).map(|layer| layer.channels.len());
+        channels.max().unwrap_or(0)
+    }
+
     /// What the layout makes of the base roughness.
     pub fn base_role(self) -> BaseRole {
         self.rules().base_role()
@@ -91,14 +101,14 @@ impl Layout {
     }
 
     /// Whether texels of this type hold slopes or their moments over
-    /// [`TextureInfo::scale`](super::TextureInfo::scale). Floats hold the values themselves.
+    /// [`TextureInfo::scale`]. Floats hold the values themselves.
     pub fn uses_scale(self, sample_type: SampleType) -> bool {
         let is_possible = self.sample_types().contains(&sample_type);
         self.rules().stores() != Stores::Normals && !sample_type.is_float() && is_possible
     }
 
     /// Whether texels of this type hold variances or standard deviations over
-    /// [`TextureInfo::variance_scale`](super::TextureInfo::variance_scale).
+    /// [`TextureInfo::variance_scale`].
     pub fn uses_variance_scale(self, sample_type: SampleType) -> bool {
         self.stores_variance() && !sample_type.is_float()
     }
@@ -131,7 +141,7 @@ mod tests {
                 assert_eq!(layout.rules().missing_part(&written), None, "{layout}");
                 for part in written {
                     assert!(layout.parts().contains(&part), "{layout}: {part}");
-                    let info = super::super::TextureInfo::new(*layout, part);
+                    let info = TextureInfo::new(*layout, part);
                     assert!(!layout.rules().layers(&info).is_empty(), "{layout}: {part}");
                 }
             }
