@@ -93,14 +93,14 @@ pub fn filter_refusal(name: &str) -> Option<&'static str> {
 
 #[cfg(test)]
 mod tests {
-    use roughcast::Bits;
+    use roughcast::SampleType;
     use roughcast::texture::Layout;
 
     use super::*;
 
     #[test]
     fn every_fault_of_options_names_the_option() {
-        let (bits, layout) = (Bits::Sixteen, Layout::Moments);
+        let (bits, layout) = (SampleType::U16, Layout::Moments);
         let undefined = BlockCompression::Undefined;
         let lost = BlockCompression::WouldLoseVariance;
         for (error, option) in [

@@ -9,8 +9,8 @@ use anyhow::{Context, Result, anyhow};
 use clap::ValueHint;
 use roughcast::texture::{Base, BaseRole, Layout, TextureArray, mark_set};
 use roughcast::{
-    AnisotropyOutput, BakeError, BakeOptions, BakeReport, Baked, Bits, Blocks, NormalRange, PyramidFilter,
-    RoughnessTexture, ScaleChoice, bake,
+    AnisotropyOutput, BakeError, BakeOptions, BakeReport, Baked, Blocks, NormalRange, PyramidFilter,
+    RoughnessTexture, SampleType, ScaleChoice, bake,
 };
 use roughcast_io::material_names::{MaterialRole, role_of};
 use roughcast_io::{BlockFormat, FileInfo, Supercompression, compress, decompress};
@@ -51,8 +51,8 @@ pub struct Args {
 
     /// Bits of each number stored [default: half for .exr, but float for moments; 8 for pbr, toksvig and --compress bc;
     /// else 16]
-    #[arg(long, value_parser = one_of::<Bits>())]
-    pub bits: Option<Bits>,
+    #[arg(long, value_parser = one_of::<SampleType>())]
+    pub bits: Option<SampleType>,
 
     /// Steepest slope that 8 and 16 bits can hold: auto (the smallest that is safe) or a number, to which steeper texels
     /// are scaled back and counted

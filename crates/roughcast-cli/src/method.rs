@@ -3,15 +3,15 @@
 use roughcast::shading::Shading;
 use roughcast::texture::{BaseRole, TextureArray};
 use roughcast::{
-    AnisotropyOutput, BakeError, BakeOptions, BaseRoughness, Bits, Image, Lobe, PbrOptions, SourceOptions,
-    bake,
+    AnisotropyOutput, BakeError, BakeOptions, BaseRoughness, Image, Lobe, PbrOptions, SampleType,
+    SourceOptions, bake,
 };
 
 /// How a model's textures are made.
 #[derive(Clone, Copy, Debug)]
 pub struct TextureOptions {
-    /// Bits of their texels.
-    pub bits: Bits,
+    /// The type of their texels.
+    pub bits: SampleType,
     /// One roughness or two, for `ggx`.
     pub lobe: Lobe,
     /// The exponent of the base roughness, which `toksvig` and `ggx` store; the other models add it as they shade.

@@ -64,7 +64,7 @@ impl Container {
     /// Refuses what this container cannot hold, before any work is done for it.
     pub fn check(self, options: &BakeOptions) -> Result<(), UsageError> {
         let (layout, bits) = (options.layout, options.bits);
-        let float = bits.sample_type().is_float();
+        let float = bits.is_float();
         let line = match self {
             Container::Exr | Container::Png if options.blocks == Blocks::Bc => {
                 format!("{self} cannot hold compressed blocks: write .ktx2 or .dds, or leave --compress out")

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use glam::DVec3;
 use roughcast::shading::{Form, LobeOptions, Material, Shading};
 use roughcast::texture::{Part, TextureArray};
-use roughcast::{BakeOptions, BaseRoughness, Bits, PbrOptions, RoughnessTexture, Wrap, bake};
+use roughcast::{BakeOptions, BaseRoughness, PbrOptions, RoughnessTexture, SampleType, Wrap, bake};
 use roughcast_scene::metrics::{energy_error, flicker, rmse};
 use roughcast_scene::pattern::{self, Pattern};
 use roughcast_scene::render::{Method, RenderError, ShadingTextures, Truth, unwatched};
@@ -31,9 +31,10 @@ impl Map {
     }
 
     fn baked(&self, shading: Shading, specular_power: f32) -> Vec<TextureArray> {
-        let options = BakeOptions { layout: shading.layout(), bits: Bits::Float, ..BakeOptions::default() };
+        let options =
+            BakeOptions { layout: shading.layout(), bits: SampleType::F32, ..BakeOptions::default() };
         let options = match shading {
-            Shading::Ggx | Shading::Toksvig => BakeOptions { bits: Bits::Sixteen, ..options },
+            Shading::Ggx | Shading::Toksvig => BakeOptions { bits: SampleType::U16, ..options },
             _ => options,
         };
         let roughness = Some(BaseRoughness::Variance(1.0 / specular_power));

@@ -91,7 +91,7 @@ pub use image::{Image, ImageError, SampleType, Samples};
 pub use levels::level_sizes;
 pub use moments::{Covariance, Moments, SlopeMatrix};
 pub use named::{Named, UnknownName};
-pub use options::{BakeOptions, Bits, Gradient, MaxSlope, PyramidFilter, ScaleChoice, SourceOptions};
+pub use options::{BakeOptions, Gradient, MaxSlope, PyramidFilter, ScaleChoice, SourceOptions};
 pub use pyramid::{LevelStats, levels_of_four};
 pub use roughness::{Lobe, RoughnessTexture, stored_from_variance, variance_from_stored};
 pub use slope::{Normal, Slope, SourceCounts, normal_from_slope, repaired_slope, slope_from_normal};

@@ -122,32 +122,6 @@ impl Default for SourceOptions {
     }
 }
 
-named_enum! {
-    /// The type in which texels are stored.
-    pub enum Bits: "number of bits" {
-        /// 8-bit unsigned normalised.
-        Eight = "8",
-        /// 16-bit unsigned normalised.
-        Sixteen = "16",
-        /// Half float.
-        Half = "half",
-        /// Single float.
-        Float = "float",
-    }
-}
-
-impl Bits {
-    /// The sample type of an image with these bits.
-    pub fn sample_type(self) -> SampleType {
-        match self {
-            Bits::Eight => SampleType::U8,
-            Bits::Sixteen => SampleType::U16,
-            Bits::Half => SampleType::F16,
-            Bits::Float => SampleType::F32,
-        }
-    }
-}
-
 /// The range of slopes that unsigned texels cover.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ScaleChoice {
@@ -163,7 +137,7 @@ pub struct BakeOptions {
     /// The layout.
     pub layout: Layout,
     /// The type of its texels.
-    pub bits: Bits,
+    pub bits: SampleType,
     /// The range of its slopes, for unsigned types.
     pub scale: ScaleChoice,
     /// Whether base roughness is folded into the second moments.
@@ -183,7 +157,7 @@ impl Default for BakeOptions {
     fn default() -> Self {
         Self {
             layout: Layout::Lean,
-            bits: Bits::Sixteen,
+            bits: SampleType::U16,
             scale: ScaleChoice::Auto,
             base: Base::None,
             brdf: Brdf::Ggx,

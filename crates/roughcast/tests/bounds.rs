@@ -8,8 +8,8 @@ use common::maps::{self, Random};
 use common::{baked_with, options, pyramid_oracle, real_files, slope_oracle};
 use roughcast::texture::{Base, Layout, RoughnessStored};
 use roughcast::{
-    AnisotropyOutput, BakeOptions, BakeReport, Baked, BaseRoughness, Bits, Blocks, Image, Kind, PbrOptions,
-    PyramidFilter, RoughnessTexture, SourceOptions,
+    AnisotropyOutput, BakeOptions, BakeReport, Baked, BaseRoughness, Blocks, Image, Kind, PbrOptions,
+    PyramidFilter, RoughnessTexture, SampleType, SourceOptions,
 };
 
 /// Float moments are made in single floats: this many roundings of a texel's rms come on top of a bound.
@@ -67,10 +67,10 @@ struct Case {
 
 fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
-    for bits in Bits::ALL {
+    for bits in SampleType::ALL {
         for layout in Layout::ALL {
             let float_only = matches!(layout, Layout::Moments | Layout::BumpSlopes);
-            if float_only && !bits.sample_type().is_float() {
+            if float_only && !bits.is_float() {
                 continue;
             }
             let options = options(*layout, *bits);
@@ -85,7 +85,7 @@ fn cases() -> Vec<Case> {
         }
     }
     for layout in [Layout::Variance, Layout::Toksvig, Layout::Pbr] {
-        let options = BakeOptions { blocks: Blocks::Bc, ..options(layout, Bits::Eight) };
+        let options = BakeOptions { blocks: Blocks::Bc, ..options(layout, SampleType::U8) };
         cases.push(Case { options, base: (layout != Layout::Variance).then_some(0.01) });
     }
     cases
@@ -94,7 +94,7 @@ fn cases() -> Vec<Case> {
 fn material_cases(options: BakeOptions) -> Vec<Case> {
     let mut cases = Vec::new();
     for stored in RoughnessStored::ALL {
-        if *stored == RoughnessStored::SpecularPower && !options.bits.sample_type().is_float() {
+        if *stored == RoughnessStored::SpecularPower && !options.bits.is_float() {
             continue;
         }
         for anisotropy in [None, Some(AnisotropyOutput::Khr)] {
@@ -212,16 +212,16 @@ fn loosest(case: &Case) -> Worst {
     let BakeOptions { bits, layout, pbr, .. } = case.options;
     let slope = match bits {
         // Some texel is half a code off.
-        Bits::Eight => 1.1,
+        SampleType::U8 => 1.1,
         // The bound counts roundings of the float pyramid, too.
-        Bits::Sixteen => 1.5,
+        SampleType::U16 => 1.5,
         // A half float's rounding follows the value; the bound is that of the largest that the scale allows.
-        Bits::Half | Bits::Float => 3.0,
+        SampleType::F16 | SampleType::F32 => 3.0,
     };
     let variance = match (layout, bits) {
         // The bound on a variance adds those of all that it is computed of; no texel has all of them at once.
         (Layout::Pbr, _) => material_variance(&pbr, bits),
-        (_, Bits::Half | Bits::Float) => 4.0,
+        (_, SampleType::F16 | SampleType::F32) => 4.0,
         _ => 2.5,
     };
     // Both variances and the mixed term are off at once.
@@ -229,8 +229,8 @@ fn loosest(case: &Case) -> Worst {
 }
 
 /// The bounds of a material take the roughness between zero and one that is off most, which no map here has on its own.
-fn material_variance(pbr: &PbrOptions, bits: Bits) -> f64 {
-    let half = matches!(bits, Bits::Half | Bits::Float);
+fn material_variance(pbr: &PbrOptions, bits: SampleType) -> f64 {
+    let half = matches!(bits, SampleType::F16 | SampleType::F32);
     match (pbr.anisotropy, pbr.roughness_stored) {
         // The bound takes a half float's coarsest rounding, near a gloss of one, and the fastest change of the variance,
         // near zero. No gloss has both.
@@ -270,7 +270,7 @@ fn bounds_that_are_too_wide_are_found() {
         );
         // A bound of twice the error is found where half a code is what counts.
         let doubled = Worst { slope: 0.5, variance: 0.5, eigenvalue: 0.5 };
-        if case.options.bits == Bits::Eight {
+        if case.options.bits == SampleType::U8 {
             assert_eq!(wide_bound(&case, doubled), Some("slope"), "{case:?}");
         }
     }
@@ -331,9 +331,7 @@ fn what_files_give_back_is_within_the_bounds_and_the_bounds_are_near() {
             worst.eigenvalue = worst.eigenvalue.max(here.eigenvalue);
         }
     }
-    for (case, worst) in
-        cases.iter().zip(&worst).filter(|(case, _)| !case.options.bits.sample_type().is_float())
-    {
+    for (case, worst) in cases.iter().zip(&worst).filter(|(case, _)| !case.options.bits.is_float()) {
         assert_eq!(wide_bound(case, *worst), None, "{case:?}: {worst:?}");
     }
 }

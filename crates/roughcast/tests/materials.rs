@@ -8,7 +8,7 @@ use common::maps::{self, gentle_map, material_map, variances};
 use common::{baked_with, options, oracle_of, pyramid_oracle};
 use roughcast::texture::{Base, Layout, Part, RoughnessStored, TextureArray, decode};
 use roughcast::{
-    AnisotropyOutput, BakeOptions, BaseRoughness, Bits, Image, NormalRange, PbrOptions, PyramidFilter,
+    AnisotropyOutput, BakeOptions, BaseRoughness, Image, NormalRange, PbrOptions, PyramidFilter,
     RoughnessMap, RoughnessTexture, SampleType,
 };
 
@@ -21,7 +21,7 @@ const SIZES: [(usize, usize); 3] = [(64, 64), (53, 37), (96, 40)];
 /// Floats that hold all numbers as they are, with roughness in a texture of its own.
 fn floats() -> BakeOptions {
     with_choices(
-        Bits::Float,
+        SampleType::F32,
         PbrOptions {
             roughness_texture: RoughnessTexture::Alone,
             normal_range: NormalRange::Signed,
@@ -31,7 +31,7 @@ fn floats() -> BakeOptions {
 }
 
 /// The layout `pbr` with these choices.
-fn with_choices(bits: Bits, pbr: PbrOptions) -> BakeOptions {
+fn with_choices(bits: SampleType, pbr: PbrOptions) -> BakeOptions {
     BakeOptions { pbr, ..options(Layout::Pbr, bits) }
 }
 
@@ -160,8 +160,10 @@ fn grooves_point_their_direction_across_themselves() {
 fn a_packed_texture_keeps_occlusion_and_metalness() {
     let (image, source) = gentle_map(53, 37);
     let material = material_map(53, 37);
-    let packed =
-        with_choices(Bits::Float, PbrOptions { roughness_texture: RoughnessTexture::Packed, ..floats().pbr });
+    let packed = with_choices(
+        SampleType::F32,
+        PbrOptions { roughness_texture: RoughnessTexture::Packed, ..floats().pbr },
+    );
     let map = |image, channel| {
         BaseRoughness::Map(RoughnessMap { image, channel, stored: RoughnessStored::Perceptual })
     };
@@ -191,7 +193,7 @@ fn a_packed_texture_keeps_occlusion_and_metalness() {
 #[test]
 fn roughness_is_where_its_layout_says() {
     let (image, source) = gentle_map(16, 16);
-    for bits in [Bits::Eight, Bits::Sixteen, Bits::Half] {
+    for bits in [SampleType::U8, SampleType::U16, SampleType::F16] {
         let baked = |roughness_texture| {
             let options = with_choices(bits, PbrOptions { roughness_texture, ..PbrOptions::default() });
             baked_with(&image, &source, Some(BaseRoughness::Variance(0.01)), &options).arrays
@@ -221,7 +223,7 @@ fn roughness_is_where_its_layout_says() {
 #[test]
 fn floats_hold_normals_in_the_range_that_their_info_says() {
     let (image, source) = gentle_map(16, 16);
-    for bits in [Bits::Half, Bits::Float] {
+    for bits in [SampleType::F16, SampleType::F32] {
         let baked = |normal_range| {
             let anisotropy = Some(AnisotropyOutput::Khr);
             let pbr = PbrOptions { normal_range, anisotropy, ..PbrOptions::default() };
@@ -230,7 +232,7 @@ fn floats_hold_normals_in_the_range_that_their_info_says() {
         let (unorm, signed) = (baked(NormalRange::Unorm), baked(NormalRange::Signed));
         assert_eq!(PbrOptions::default().normal_range, NormalRange::Unorm);
         // Three roundings to the type's 11 or 24 bits: of both stored numbers, and of half of one.
-        let rounding = if bits == Bits::Half { 1.5 / 1024.0 } else { 3.0 * f32::EPSILON };
+        let rounding = if bits == SampleType::F16 { 1.5 / 1024.0 } else { 3.0 * f32::EPSILON };
         for name in [Part::Normal, Part::Anisotropy] {
             let levels = |arrays| part(arrays, name).layers[0].levels.clone();
             for (unorm, signed) in levels(&unorm).iter().zip(levels(&signed)) {
@@ -315,7 +317,7 @@ fn directions_of_a_brushed_disc_survive_filtering() {
         })
         .collect();
     let (image, source) = maps::slope_map(SIDE, SIDE, &slopes);
-    for bits in [Bits::Eight, Bits::Sixteen, Bits::Half] {
+    for bits in [SampleType::U8, SampleType::U16, SampleType::F16] {
         let anisotropy = Some(AnisotropyOutput::Khr);
         let bake_options = with_choices(bits, PbrOptions { anisotropy, ..PbrOptions::default() });
         let arrays = baked_with(&image, &source, Some(BaseRoughness::Variance(0.001)), &bake_options).arrays;
@@ -362,7 +364,7 @@ fn toksvigs_variance_comes_back_from_its_parts_whatever_the_base() {
         stored: RoughnessStored::Perceptual,
     });
     for base in [BaseRoughness::Variance(1.0 / 64.0), varies] {
-        let bits = Bits::Eight;
+        let bits = SampleType::U8;
         let whole = baked_with(&image, &source, Some(base), &options(Layout::Toksvig, bits));
         let shaped = BakeOptions { blocks: Blocks::Bc, ..options(Layout::Toksvig, bits) };
         let parts = baked_with(&image, &source, Some(base), &shaped);

@@ -3,8 +3,8 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use roughcast::texture::{Brdf, Layout, RoughnessStored, TextureInfo};
-use roughcast::{BakeOptions, Bits, Blocks, Named, NormalRange, PbrOptions, RoughnessTexture};
+use roughcast::texture::{Brdf, RoughnessStored, TextureInfo};
+use roughcast::{BakeOptions, Blocks, Named, NormalRange, PbrOptions, RoughnessTexture, SampleType};
 
 use super::{Args, Supercompress};
 use crate::UsageError;
@@ -27,18 +27,18 @@ impl Args {
 
     /// The library's options; where nothing was said, those that suit the container.
     pub(super) fn options(&self, container: Container, roughness: Option<&Roughness>) -> BakeOptions {
-        let bits = self.bits.unwrap_or(match (container, self.layout, self.compress) {
-            (_, _, Blocks::Bc) => Bits::Eight,
-            (Container::Exr, Layout::Moments, _) => Bits::Float,
-            (Container::Exr, ..) | (_, Layout::BumpSlopes | Layout::Moments, _) => Bits::Half,
-            (_, Layout::Pbr | Layout::Toksvig, _) => Bits::Eight,
-            (Container::Ktx2 | Container::Dds, ..) if self.target != Target::Desktop => Bits::Half,
-            _ => Bits::Sixteen,
+        let bits = self.bits.unwrap_or(match (container, self.layout.default_sample_type(), self.compress) {
+            (_, _, Blocks::Bc) => SampleType::U8,
+            (Container::Exr, SampleType::U8 | SampleType::U16, _) => SampleType::F16,
+            (Container::Ktx2 | Container::Dds, SampleType::U16, _) if self.target != Target::Desktop => {
+                SampleType::F16
+            }
+            (_, suited, _) => suited,
         });
         // Blinn-Phong renderers want exponents, which only floats hold.
         let stored = match (self.roughness.roughness_output, self.roughness.brdf) {
             (Some(stored), _) => stored,
-            (None, Brdf::BlinnPhong) if bits.sample_type().is_float() => RoughnessStored::SpecularPower,
+            (None, Brdf::BlinnPhong) if bits.is_float() => RoughnessStored::SpecularPower,
             (None, _) => RoughnessStored::Perceptual,
         };
         BakeOptions {
@@ -91,7 +91,7 @@ impl Args {
                 )));
             }
         }
-        if self.normal_range.is_some() && !options.bits.sample_type().is_float() {
+        if self.normal_range.is_some() && !options.bits.is_float() {
             return Err(UsageError(format!(
                 "--normal-range is for floats, and {} bits always hold n/2 + 1/2: leave it out, or say --bits half",
                 options.bits

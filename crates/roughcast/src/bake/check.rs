@@ -2,7 +2,7 @@
 
 use super::BakeError;
 use crate::SampleType;
-use crate::options::{BakeOptions, Bits, MaxSlope, ScaleChoice, SourceOptions};
+use crate::options::{BakeOptions, MaxSlope, ScaleChoice, SourceOptions};
 use crate::roughness::{Base, RoughnessStored};
 use crate::source::BaseRoughness;
 use crate::texture::rules::Stores;
@@ -13,8 +13,8 @@ const LARGEST_SLOPE_IN_HALF: f32 = 255.0;
 
 pub(super) fn check_options(options: &BakeOptions, has_roughness: bool) -> Result<(), BakeError> {
     let BakeOptions { layout, bits, .. } = *options;
-    let is_float = bits.sample_type().is_float();
-    if !layout.sample_types().contains(&bits.sample_type()) {
+    let is_float = bits.is_float();
+    if !layout.sample_types().contains(&bits) {
         return Err(BakeError::FloatsOnly { layout, bits });
     }
     if options.base == Base::Baked && !has_roughness {
@@ -40,7 +40,7 @@ pub(super) fn check_options(options: &BakeOptions, has_roughness: bool) -> Resul
     }
     match (options.blocks, layout.block_compression()) {
         (Blocks::None, _) => Ok(()),
-        (Blocks::Bc, BlockCompression::FromEightBits) if bits == Bits::Eight => Ok(()),
+        (Blocks::Bc, BlockCompression::FromEightBits) if bits == SampleType::U8 => Ok(()),
         (Blocks::Bc, BlockCompression::FromEightBits) => Err(BakeError::BlocksNeedEightBits { bits }),
         (Blocks::Bc, reason) => Err(BakeError::NotCompressible { layout, reason }),
     }
@@ -55,7 +55,7 @@ pub(super) fn limit_slopes(
 ) -> Result<(), BakeError> {
     let stores_squares = options.layout.rules().stores() == Stores::RawMoments;
     let asked = source.max_slope.before_a_look();
-    if options.bits.sample_type() == SampleType::F16 && stores_squares && asked > LARGEST_SLOPE_IN_HALF {
+    if options.bits == SampleType::F16 && stores_squares && asked > LARGEST_SLOPE_IN_HALF {
         return Err(BakeError::SlopeBeyondHalf { max_slope: asked, largest: LARGEST_SLOPE_IN_HALF });
     }
     if let ScaleChoice::Fixed(scale) = options.scale {
@@ -77,5 +77,5 @@ pub(super) fn limit_slopes(
 
 /// Whether texels hold slopes or variances over a range that follows from the map.
 fn has_range_of_the_map(options: &BakeOptions) -> bool {
-    options.scale == ScaleChoice::Auto && options.layout.uses_scale(options.bits.sample_type())
+    options.scale == ScaleChoice::Auto && options.layout.uses_scale(options.bits)
 }

@@ -1,6 +1,6 @@
 //! Why a bake is refused.
 
-use crate::options::Bits;
+use crate::SampleType;
 use crate::source::SourceError;
 use crate::texture::{BlockCompression, Layout};
 
@@ -17,7 +17,7 @@ pub enum BakeError {
         /// The layout.
         layout: Layout,
         /// The type asked for.
-        bits: Bits,
+        bits: SampleType,
     },
     /// The base roughness was to be folded in, and there is none.
     #[error("folding in the base roughness needs a roughness: give one")]
@@ -32,7 +32,7 @@ pub enum BakeError {
     #[error("specular powers do not fit into 0 to 1: choose floats, or another way to store roughness")]
     SpecularPowersNeedFloats {
         /// The type asked for.
-        bits: Bits,
+        bits: SampleType,
     },
     /// A scale was chosen for a layout without slopes.
     #[error("the layout '{layout}' stores normals, not slopes: it has no scale to choose")]
@@ -44,7 +44,7 @@ pub enum BakeError {
     #[error("float texels hold slopes as they are: they have no scale to choose")]
     ScaleOfFloats {
         /// The type asked for.
-        bits: Bits,
+        bits: SampleType,
     },
     /// A scale is not above zero, or not finite.
     #[error("the scale must be above zero, not {scale}")]
@@ -56,7 +56,7 @@ pub enum BakeError {
     #[error("blocks are compressed from 8 bits, not from {bits}")]
     BlocksNeedEightBits {
         /// The type asked for.
-        bits: Bits,
+        bits: SampleType,
     },
     /// The layout cannot be block-compressed.
     #[error("the layout '{layout}' cannot be block-compressed{}", in_words(*reason))]

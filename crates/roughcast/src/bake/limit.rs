@@ -29,7 +29,7 @@ pub(super) fn find_ranges(
     pyramid_options: PyramidOptions,
     options: &BakeOptions,
 ) -> Ranges {
-    let is_open = !options.bits.sample_type().is_float() && options.scale == ScaleChoice::Auto;
+    let is_open = !options.bits.is_float() && options.scale == ScaleChoice::Auto;
     let looked_at = is_open.then(|| survey(&source.slopes_only()));
     let stores_variance = options.layout.stores_variance();
     let variance = stores_variance.then(|| largest_variance(&source.slopes_only(), pyramid_options));

@@ -137,7 +137,7 @@ pub fn bake_reusing(
     let extras = options.layout.rules().extras(&info).to_vec();
     let mut source = MapSource::new(image, source_options, base, extras)?;
     let pyramid_options = PyramidOptions { filter: options.filter, wrap: source_options.wrap };
-    let sample_type = options.bits.sample_type();
+    let sample_type = options.bits;
     let Ranges { looked_at, needed, limit } =
         find_ranges(&mut source, source_options.max_slope, pyramid_options, options);
     set_scales(&mut info, &needed, options);

@@ -50,7 +50,7 @@ pub fn plan_bake(
 
 /// How unit vectors are stored. Only `pbr` has a choice, and only in floats.
 fn normal_range(options: &BakeOptions) -> NormalRange {
-    match options.bits.sample_type().is_float() {
+    match options.bits.is_float() {
         false => NormalRange::Unorm,
         true if options.layout.reads_pbr_options() => options.pbr.normal_range,
         true => NormalRange::Signed,

@@ -34,7 +34,7 @@ pub(super) struct NeededRange {
 
 /// Chooses the scales of unsigned texels.
 pub(super) fn set_scales(info: &mut TextureInfo, needed: &NeededRange, options: &BakeOptions) {
-    if options.bits.sample_type().is_float() {
+    if options.bits.is_float() {
         return;
     }
     info.scale = match (options.scale, &needed.peaks) {
