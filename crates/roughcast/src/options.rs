@@ -26,7 +26,7 @@ named_enum! {
         Box = "box",
         /// Tent over two texels of the coarser level each way.
         Triangle = "triangle",
-        /// The B-spline of order three, a Gaussian's shape with a deviation of half a texel of the coarser level.
+        /// The B-spline of order three, a Gaussian's shape with a standard deviation of half a texel of the coarser level.
         Gaussian = "gaussian",
     }
 }

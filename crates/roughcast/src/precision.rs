@@ -59,7 +59,7 @@ pub fn measure(image: &Image, source: &SourceOptions) -> Result<Vec<Precision>, 
     Ok(measured)
 }
 
-/// The pyramid's own covariance, of which nothing has been subtracted: a deviation's square is exact to f32.
+/// The pyramid's own covariance, of which nothing has been subtracted: a standard deviation's square is exact to f32.
 fn reference(image: &Image, source: &SourceOptions, max_slope: f32) -> Result<Vec<TextureArray>, BakeError> {
     let source = SourceOptions { max_slope: MaxSlope::Limit(max_slope), ..*source };
     let options = BakeOptions { layout: Layout::Schilling, bits: SampleType::F32, ..BakeOptions::default() };
@@ -94,7 +94,7 @@ fn larger_of_both(a: (f32, f32), b: (f32, f32)) -> (f32, f32) {
     (a.0.max(b.0), a.1.max(b.1))
 }
 
-/// Errors of a texel's variances and of its smaller eigenvalue, before anything is mended.
+/// Errors of a texel's variances and of its smaller eigenvalue, before anything is repaired.
 fn errors_at(
     stored: &TextureArray,
     reference: &TextureArray,
@@ -162,7 +162,7 @@ mod tests {
 
     #[test]
     fn the_published_figures_come_out() {
-        // 0.4 % for the text's rounding step of R / 2^(n+1), where an 8-bit code's is R / (2 (2^n - 1)); 3 % for the f32
+        // 0.4 % for the paper's rounding step of R / 2^(n+1), where an 8-bit code's is R / (2 (2^n - 1)); 3 % for the f32
         // arithmetic on the way into a code of 16 bits, which the bound counts too.
         const NOT_COUNTED_IN_THE_TEXT: f32 = 0.035;
         for (bits, slope, power) in [

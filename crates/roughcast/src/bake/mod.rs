@@ -47,13 +47,13 @@ pub struct SlopeLimit {
 /// What was done, in numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BakeReport {
-    /// Texels that had to be mended.
+    /// Texels that had to be repaired.
     pub counts: SourceCounts,
     /// Texels of level 0.
     pub texels: u64,
     /// Range of the stored slopes; 1 for float types.
     pub scale: f32,
-    /// Range of the stored variances or deviations; 1 where there are none.
+    /// Range of the stored variances or standard deviations; 1 where there are none.
     pub variance_scale: f32,
     /// The largest slope allowed: that of the options, what a fixed scale can hold, or what
     /// [`MaxSlope::Auto`](crate::MaxSlope::Auto) has found.

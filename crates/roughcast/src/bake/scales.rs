@@ -28,7 +28,7 @@ pub(super) fn largest_variance(source: &MapSource<'_>, options: PyramidOptions) 
 pub(super) struct NeededRange {
     /// Of level 0, where the scale of slopes is to be found.
     pub peaks: Option<Peaks>,
-    /// The largest variance of any level, where a layout stores variances or deviations.
+    /// The largest variance of any level, where a layout stores variances or standard deviations.
     pub variance: Option<f32>,
 }
 

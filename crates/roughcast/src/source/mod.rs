@@ -253,7 +253,7 @@ fn is_usable(x: f32, y: f32, max_squared: f32) -> bool {
 }
 
 vectorised! {
-    /// Number of texels in a row that `mend` would have to look at; vectorises.
+    /// Number of texels in a row that `repair` would have to look at; vectorises.
     fn count_unusable(bx: &[f32], by: &[f32], max_slope: f32) -> u32 {
         let max_squared = max_slope * max_slope;
         bx.iter().zip(by).map(|(x, y)| u32::from(!is_usable(*x, *y, max_squared))).sum()

@@ -100,7 +100,7 @@ impl Units {
         self.unsigned(2.0 * self.scale * self.scale)
     }
 
-    /// A variance or a deviation, over 0 ..= variance_scale.
+    /// A variance or a standard deviation, over 0 ..= variance_scale.
     pub fn variance(self) -> Affine {
         self.unsigned(self.variance_scale)
     }

@@ -44,7 +44,7 @@ pub struct TextureInfo {
     pub part: Part,
     /// Slopes are stored over `-scale ..= scale`, second moments over `scale^2`. One in float files, which hold values as they are.
     pub scale: f32,
-    /// Full scale of a stored variance, or of a stored deviation for Schilling's layouts. One in float files.
+    /// Full scale of a stored variance, or of a stored standard deviation for Schilling's layouts. One in float files.
     pub variance_scale: f32,
     /// Whether base roughness is in the second moments.
     pub base: Base,
@@ -251,7 +251,7 @@ impl TextureInfo {
         if self.base_variance < 0.0 || self.base_variance.is_infinite() {
             return Err(InfoError::Invalid { key: BASE_VARIANCE, value: self.base_variance.to_string() });
         }
-        // Only pbr has the choice, and text does not name it elsewhere: words that do are read like the text.
+        // Only pbr has the choice, and pairs do not name it elsewhere: DDS words that do are read like the pairs.
         let roughness_texture = if self.layout.reads_pbr_options() {
             self.roughness_texture
         } else {

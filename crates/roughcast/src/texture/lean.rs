@@ -1,6 +1,6 @@
 //! LEAN mapping: mean slope and raw second moments, in two RGBA textures.
 //!
-//! Source: Olano & Baker, "LEAN Mapping", 2010, Eq. 3 to 6, Figures 15 and 16, with the listing's two faults mended
+//! Source: Olano & Baker, "LEAN Mapping", 2010, Eq. 3 to 6, Figures 15 and 16, with the listing's two faults repaired
 //! (a base roughness is added before the scale is divided out; the scale covers the second moments too).
 //!
 //! | texture | R | G | B | A |

@@ -106,7 +106,7 @@ pub(crate) trait LayoutRules: Sync {
         ANY_TYPE
     }
 
-    /// The sample type for whom none is better known to suit: the smallest that does for common materials.
+    /// The sample type to store in where nothing speaks for another: the smallest that suits common materials.
     fn default_sample_type(&self) -> SampleType {
         SampleType::U16
     }

@@ -1,7 +1,7 @@
-//! Schilling's bump and roughness pyramids: mean slope and a factor of the covariance, or its larger deviation.
+//! Schilling's bump and roughness pyramids: mean slope and a factor of the covariance, or its larger standard deviation.
 //!
 //! Source: Schilling, "Antialiasing of Bump-Maps", 1997, "The roughness pyramid". `K = D Dᵀ` with D upper triangular,
-//! so the stored numbers are deviations, of even accuracy over their range, and D is what filters an environment map.
+//! so the stored numbers are standard deviations, of even accuracy over their range, and D is what filters an environment map.
 //!
 //! `schilling`, two textures:
 //!
@@ -14,7 +14,7 @@
 //! bound.
 //!
 //! Unsigned types hold `B / (2 sc) + 1/2`, `d1 / vs`, `d3 / vs`, `σ1 / vs` and `d2 / (2 vs) + 1/2`, where vs is the
-//! largest deviation of any level.
+//! largest standard deviation of any level.
 
 use super::TextureInfo;
 use super::codec::{Bounds, LayerSpec, NORMAL, OPAQUE, Peaks, RowEncoder, Units, map1};
@@ -173,7 +173,7 @@ fn bounds(units: Units, peaks: &Peaks) -> Bounds {
     let deviation = peaks.variance.sqrt();
     let unsigned = units.error(units.variance(), deviation);
     let signed = units.error(units.signed_variance(), deviation);
-    // (d + e)² - d² for each square of a sum; xx has two of them, and |(d1, d2)| is the deviation itself.
+    // (d + e)² - d² for each square of a sum; xx has two of them, and |(d1, d2)| is the standard deviation itself.
     let length = unsigned.hypot(signed);
     let variance = 2.0 * deviation * length + length * length;
     // D is off by a matrix whose norm is at most its Frobenius norm.
