@@ -4,7 +4,8 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use roughcast::texture::{Layout, decode};
 use roughcast::{
-    BakeOptions, BaseRoughness, Bits, Image, Kind, PyramidFilter, Samples, SourceOptions, bake, bake_reusing,
+    BakeOptions, BaseRoughness, Image, Kind, PyramidFilter, SampleType, Samples, SourceOptions, bake,
+    bake_reusing,
 };
 
 /// Texels each way; small enough that a whole run takes seconds.
@@ -30,10 +31,10 @@ fn heights() -> SourceOptions {
 }
 
 fn options(layout: Layout) -> BakeOptions {
-    let bits = match layout {
-        Layout::Moments | Layout::BumpSlopes => Bits::Half,
-        Layout::Pbr | Layout::Toksvig => Bits::Eight,
-        _ => Bits::Sixteen,
+    let bits = match layout.default_sample_type() {
+        // Single floats would mostly measure the memory.
+        SampleType::F32 => SampleType::F16,
+        suited => suited,
     };
     BakeOptions { layout, bits, ..BakeOptions::default() }
 }

@@ -9,6 +9,7 @@ from pathlib import Path
 import arrows
 import hygiene
 import licences
+import modules
 import workspace
 
 
@@ -71,6 +72,28 @@ class Arrows(unittest.TestCase):
 
     def test_a_workspace_without_the_library_fails(self):
         self.assertEqual(len(arrows.faults(metadata(package("roughcast-io")))), 1)
+
+
+class Modules(unittest.TestCase):
+    exports = modules.exports_of("pub use image::{Image, Samples};\npub use options::Options;\n")
+
+    def faults(self, **files):
+        named = [(Path(name.replace("__", "/") + ".rs"), text) for name, text in files.items()]
+        return list(modules.faults(modules.arrows_of(named, self.exports)))
+
+    def test_one_direction_passes(self):
+        self.assertEqual(self.faults(image="", options="use crate::Image;", bake__mod="use crate::options::Options;"), [])
+
+    def test_a_circle_fails_however_names_are_written(self):
+        for back in ["use crate::options::Options;", "use crate::{Image, Options};", "fn f(o: crate::Options) {}"]:
+            self.assertEqual(len(self.faults(options="use crate::texture::Layout;", texture__layout=back)), 2, back)
+
+    def test_a_longer_circle_fails(self):
+        self.assertEqual(len(self.faults(a="use crate::b::B;", b="use crate::c::C;", c="use crate::a::A;")), 3)
+
+    def test_comments_and_unit_tests_are_free(self):
+        free = "/// [`crate::options`]\nstruct A;\n#[cfg(test)]\nmod tests {\n    use crate::options::Options;\n}\n"
+        self.assertEqual(self.faults(options="use crate::texture::Layout;", texture=free), [])
 
 
 class Licences(unittest.TestCase):

@@ -7,14 +7,15 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, anyhow};
 use clap::ValueHint;
-use roughcast::texture::{Base, Layout, TextureArray, mark_set};
+use roughcast::texture::{Base, BaseRole, Layout, TextureArray, mark_set};
 use roughcast::{
-    AnisotropyOutput, BakeError, BakeOptions, BakeReport, Baked, Bits, Blocks, NormalRange, PyramidFilter,
-    RoughnessTexture, ScaleChoice, bake, refuse_filter,
+    AnisotropyOutput, BakeError, BakeOptions, BakeReport, Baked, Blocks, NormalRange, PyramidFilter,
+    RoughnessTexture, SampleType, ScaleChoice, bake,
 };
 use roughcast_io::material_names::{MaterialRole, role_of};
 use roughcast_io::{BlockFormat, FileInfo, Supercompression, compress, decompress};
 
+use crate::advice::{filter_refusal, with_options};
 use crate::args::{READING, REPORT, SourceArgs, one_of, positive};
 use crate::batch;
 use crate::fault::guarded;
@@ -34,7 +35,7 @@ use crate::{UsageError, usage};
 /// one picture a level (NAME.L0.png, NAME.L1.png ...). A layout of several files writes NAME.PART.ext. With a folder as
 /// input, every map in it is baked into the output folder, and a bad file does not stop the others.
 #[derive(clap::Args, Clone)]
-#[command(after_help = LAYOUT_HELP)]
+#[command(after_help = layout_help())]
 pub struct Args {
     /// A normal or height map (PNG, JPEG, TGA, BMP, WebP, TIFF, HDR, EXR, KTX2, DDS), or a folder of them
     #[arg(value_hint = ValueHint::AnyPath)]
@@ -50,8 +51,8 @@ pub struct Args {
 
     /// Bits of each number stored [default: half for .exr, but float for moments; 8 for pbr, toksvig and --compress bc;
     /// else 16]
-    #[arg(long, value_parser = one_of::<Bits>())]
-    pub bits: Option<Bits>,
+    #[arg(long, value_parser = one_of::<SampleType>())]
+    pub bits: Option<SampleType>,
 
     /// Steepest slope that 8 and 16 bits can hold: auto (the smallest that is safe) or a number, to which steeper texels
     /// are scaled back and counted
@@ -138,24 +139,46 @@ pub struct Args {
 
 const FOLDERS: &str = "With a folder as input";
 
-// Lines of at most 80 characters, so that a terminal of 80 columns keeps the columns.
-const LAYOUT_HELP: &str = "\
-Layouts:
-  lean                 LEAN mapping: normal, mean slope and second moments in
-                       two RGBA textures; keeps anisotropy; wants 16 bits
-  clean                CLEAN mapping: mean slope and one second moment in one
-                       texture; no anisotropy; wants 16 bits
-  schilling            mean slope and a factor of the covariance (Schilling) in
-                       two RGBA textures
-  schilling-isotropic  mean slope and the larger deviation in one texture
-  variance             mean slope and variance along x and y; 8 bits will do
-  toksvig              averaged normal and gloss factor; for --specular-power S
-  bump-slopes          the six channels of maketx --bumpslopes (OpenImageIO,
-                       RenderMan); .exr
-  pbr                  normal and roughness textures for any renderer or engine;
-                       see --roughness and --anisotropy
-  moments              mean slope and second moments as they are; .exr
+/// Characters of a line of [`layout_help`], so that a terminal of 80 columns keeps the columns.
+const HELP_WIDTH: usize = 80;
 
+/// The column at which [`layout_help`] says what a layout is.
+const HELP_COLUMN: usize = 23;
+
+/// The table of layouts, and examples.
+fn layout_help() -> String {
+    let mut help = "Layouts:\n".to_owned();
+    for layout in Layout::ALL {
+        let text = format!("{}{}", layout.summary(), note_of(*layout));
+        let mut line = format!("  {:<width$}", layout.name(), width = HELP_COLUMN - 2);
+        for word in text.split(' ') {
+            if line.len() + word.len() > HELP_WIDTH {
+                help.push_str(line.trim_end());
+                help.push('\n');
+                line = " ".repeat(HELP_COLUMN);
+            }
+            line.push_str(word);
+            line.push(' ');
+        }
+        help.push_str(line.trim_end());
+        help.push('\n');
+    }
+    help.push('\n');
+    help.push_str(EXAMPLES);
+    help
+}
+
+/// What the program adds to the library's summary of a layout: options that matter for it, and the format that can hold it.
+fn note_of(layout: Layout) -> &'static str {
+    match layout.base_role() {
+        BaseRole::Apart => "; for --specular-power S",
+        BaseRole::Contained => "; see --roughness and --anisotropy",
+        BaseRole::OnRequest if Container::Ktx2.can_hold(layout) => "",
+        BaseRole::OnRequest => "; .exr",
+    }
+}
+
+const EXAMPLES: &str = "\
 Examples:
   LEAN textures of a DirectX normal map, for a GPU:
     roughcast bake bricks_normal.png -o bricks.ktx2 --green down
@@ -184,7 +207,7 @@ fn scale(text: &str) -> Result<ScaleChoice, String> {
 }
 
 fn filter(name: &str) -> Result<PyramidFilter, String> {
-    name.parse::<PyramidFilter>().map_err(|unknown| match refuse_filter(name) {
+    name.parse::<PyramidFilter>().map_err(|unknown| match filter_refusal(name) {
         Some(reason) => reason.to_owned(),
         None => unknown.to_string(),
     })
@@ -321,21 +344,21 @@ fn roughness_of(args: &Args, warnings: &mut Vec<String>) -> Result<Option<Roughn
     if named.is_some() {
         return Ok(named);
     }
-    match args.layout {
-        Layout::Toksvig => {
+    match args.layout.base_role() {
+        BaseRole::Apart => {
             warnings.push(format!(
                 "the gloss factor is for a specular power of {TOKSVIG_POWER}: say --specular-power for another"
             ));
             Ok(Some(Roughness::Variance(1.0 / TOKSVIG_POWER)))
         }
-        Layout::Pbr => {
+        BaseRole::Contained => {
             warnings.push(
                 "the material's own roughness is taken as 0, a mirror: say --roughness or --specular-power"
                     .to_owned(),
             );
             Ok(None)
         }
-        _ => Ok(None),
+        BaseRole::OnRequest => Ok(None),
     }
 }
 
@@ -346,7 +369,7 @@ fn unused_roughness_warning(args: &Args) -> Option<String> {
         (None, Some(_)) => "--specular-power",
         (None, None) => return None,
     };
-    let uses = matches!(args.layout, Layout::Pbr | Layout::Toksvig) || args.roughness.base == Base::Baked;
+    let uses = args.layout.base_role() != BaseRole::OnRequest || args.roughness.base == Base::Baked;
     (!uses).then(|| {
         format!(
             "{option} is only noted in the file, since the layout '{}' leaves the material's roughness to the shader: say \
@@ -359,8 +382,8 @@ fn unused_roughness_warning(args: &Args) -> Option<String> {
 /// Options that contradict each other are a fault of the command line, not of the map.
 pub fn usage_where_options(error: BakeError) -> anyhow::Error {
     match error {
-        BakeError::Options(line) => UsageError(line).into(),
-        error => error.into(),
+        BakeError::Source(_) => error.into(),
+        error => UsageError(with_options(&error)).into(),
     }
 }
 

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result};
 use clap::ValueHint;
 use roughcast::texture::{Layout, MomentLevel, Texture, TextureArray, TextureInfo, decode};
-use roughcast::{BakeOptions, Bits, Image, SampleType, bake};
+use roughcast::{BakeOptions, Image, SampleType, bake};
 use roughcast_io::{Decoded, FileInfo};
 use serde_json::{Map as JsonMap, Value, json};
 
@@ -154,7 +154,7 @@ impl Findings {
             self.put("green_correlation", json!(correlation), format!("{correlation:.3}"));
         }
         map.warnings.iter().for_each(|warning| warn(&args.file, warning));
-        let options = BakeOptions { layout: Layout::Moments, bits: Bits::Float, ..Default::default() };
+        let options = BakeOptions { layout: Layout::Moments, bits: SampleType::F32, ..Default::default() };
         let baked = bake(&map.image, &map.options, None, &options)?;
         let mended = baked.report.counts.total();
         self.put("mended", json!(mended), format!("{mended} texels"));
@@ -185,7 +185,7 @@ impl Findings {
         self.put("brdf", json!(info.brdf.name()), info.brdf.name().to_owned());
         let stored = info.roughness_stored.name();
         self.put("roughness_stored", json!(stored), stored.to_owned());
-        if info.layout == Layout::Pbr {
+        if info.layout.reads_pbr_options() {
             let layout = info.roughness_texture.name();
             self.put("roughness_layout", json!(layout), layout.to_owned());
         }

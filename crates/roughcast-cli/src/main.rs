@@ -3,6 +3,7 @@
 //! Results go to stdout, everything else to stderr. Exit codes: 0 done, 1 an input or a file failed, 2 the command
 //! line makes no sense.
 
+mod advice;
 mod args;
 mod bake;
 mod batch;
@@ -123,7 +124,7 @@ fn usage(path: &Path, line: &str) -> anyhow::Error {
 /// An error with its causes on one line. Decoders' messages may hold line breaks or control characters, of which a
 /// terminal should see none.
 fn one_line(error: &anyhow::Error) -> String {
-    let text = format!("{error:#}");
+    let text = error.chain().map(advice::with_options).collect::<Vec<_>>().join(": ");
     // Spaces stay as they are, since they may be part of a file's name.
     let pieces = text.split(char::is_control).map(str::trim).filter(|piece| !piece.is_empty());
     pieces.collect::<Vec<_>>().join(" ")

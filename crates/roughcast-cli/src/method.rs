@@ -1,14 +1,17 @@
 //! The textures of a shading model, baked from a map in memory.
 
 use roughcast::shading::Shading;
-use roughcast::texture::TextureArray;
-use roughcast::{BakeError, BakeOptions, BaseRoughness, Bits, Image, Lobe, SourceOptions, bake};
+use roughcast::texture::{BaseRole, TextureArray};
+use roughcast::{
+    AnisotropyOutput, BakeError, BakeOptions, BaseRoughness, Image, Lobe, PbrOptions, SampleType,
+    SourceOptions, bake,
+};
 
 /// How a model's textures are made.
 #[derive(Clone, Copy, Debug)]
 pub struct TextureOptions {
-    /// Bits of their texels.
-    pub bits: Bits,
+    /// The type of their texels.
+    pub bits: SampleType,
     /// One roughness or two, for `ggx`.
     pub lobe: Lobe,
     /// The exponent of the base roughness, which `toksvig` and `ggx` store; the other models add it as they shade.
@@ -25,13 +28,14 @@ pub fn bake_for(
     source: &SourceOptions,
     options: TextureOptions,
 ) -> Result<Vec<TextureArray>, BakeError> {
+    let anisotropy = (options.lobe == Lobe::Anisotropic).then_some(AnisotropyOutput::Khr);
     let bake_options = BakeOptions {
         layout: shading.layout(),
         bits: options.bits,
-        lobe: options.lobe,
+        pbr: PbrOptions { anisotropy, ..PbrOptions::default() },
         ..BakeOptions::default()
     };
-    let stores_base = matches!(shading, Shading::Toksvig | Shading::Ggx);
+    let stores_base = shading.layout().base_role() != BaseRole::OnRequest;
     let base = stores_base.then_some(BaseRoughness::Variance(1.0 / options.specular_power));
     Ok(bake(map, source, base, &bake_options)?.arrays)
 }

@@ -53,10 +53,18 @@ impl Container {
         })
     }
 
+    /// Whether its texels have enough channels for a layout.
+    pub fn can_hold(self, layout: Layout) -> bool {
+        match self {
+            Container::Ktx2 | Container::Dds | Container::Png => layout.most_channels() <= 4,
+            Container::Exr => true,
+        }
+    }
+
     /// Refuses what this container cannot hold, before any work is done for it.
     pub fn check(self, options: &BakeOptions) -> Result<(), UsageError> {
         let (layout, bits) = (options.layout, options.bits);
-        let float = bits.sample_type().is_float();
+        let float = bits.is_float();
         let line = match self {
             Container::Exr | Container::Png if options.blocks == Blocks::Bc => {
                 format!("{self} cannot hold compressed blocks: write .ktx2 or .dds, or leave --compress out")
@@ -64,13 +72,13 @@ impl Container {
             Container::Exr if !float => {
                 format!("exr holds floats, not {bits} bits: say --bits half or --bits float")
             }
-            Container::Png if matches!(layout, Layout::Moments | Layout::BumpSlopes) => {
+            Container::Png if layout.sample_types().iter().all(|sample_type| sample_type.is_float()) => {
                 format!("png holds no floats, which the layout '{layout}' needs: write .exr")
             }
             Container::Png if float => {
                 format!("png holds 8 or 16 bits, not {bits}: say --bits 8 or --bits 16, or write .exr")
             }
-            Container::Ktx2 | Container::Dds if matches!(layout, Layout::Moments | Layout::BumpSlopes) => {
+            Container::Ktx2 | Container::Dds if !self.can_hold(layout) => {
                 format!(
                     "a texel of {self} has at most four channels, fewer than the layout '{layout}': write .exr"
                 )

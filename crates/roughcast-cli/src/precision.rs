@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use clap::ValueHint;
-use roughcast::Bits;
+use roughcast::SampleType;
 use roughcast::precision::{Precision, measure, recommend, steepest_slope};
 use serde_json::{Value, json};
 
@@ -50,7 +50,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         let report = json!({
             "input": args.input.display().to_string(),
             "specular_power": args.specular_power,
-            "recommended": best.map(Bits::name),
+            "recommended": best.map(SampleType::name),
             "storage": rows.iter().map(|row| as_json(row, args.specular_power)).collect::<Vec<_>>(),
         });
         say_json(&report)?;
@@ -82,11 +82,11 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 /// The largest slope that unsigned types allow, where it is lower than that of floats.
 fn lowered(rows: &[Precision]) -> Option<f32> {
     let limit = |bits| rows.iter().find(|row| row.bits == bits).map(|row| row.max_slope);
-    limit(Bits::Sixteen)
-        .filter(|of_sixteen| limit(Bits::Float).is_some_and(|of_floats| *of_sixteen < of_floats))
+    limit(SampleType::U16)
+        .filter(|of_sixteen| limit(SampleType::F32).is_some_and(|of_floats| *of_sixteen < of_floats))
 }
 
-fn advice(best: Option<Bits>, power: f32) -> String {
+fn advice(best: Option<SampleType>, power: f32) -> String {
     match best {
         Some(bits) => format!("For a specular power of {power}: --bits {bits}"),
         None => format!(

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use anyhow::Result;
 use roughcast::texture::{Bounds, TextureArray, decode};
-use roughcast::{BakeOptions, BakeReport, Bits, Covariance, Kind, Moments, SourceOptions};
+use roughcast::{BakeOptions, BakeReport, Covariance, Kind, Moments, SampleType, SourceOptions};
 use roughcast_io::FileInfo;
 use serde_json::{Value, json};
 
@@ -198,7 +198,7 @@ impl FileReport {
     /// The scales that a shader needs to decode the texels.
     fn scales(&self) -> [Option<f32>; 2] {
         let BakeOptions { layout, bits, .. } = self.options;
-        let sample_type = bits.sample_type();
+        let sample_type = bits;
         [
             layout.uses_scale(sample_type).then_some(self.report.scale),
             layout.uses_variance_scale(sample_type).then_some(self.report.variance_scale),
@@ -286,11 +286,11 @@ impl FileReport {
     }
 }
 
-fn texels_in_words(bits: Bits) -> &'static str {
+fn texels_in_words(bits: SampleType) -> &'static str {
     match bits {
-        Bits::Eight => "8 bits",
-        Bits::Sixteen => "16 bits",
-        Bits::Half => "half floats",
-        Bits::Float => "floats",
+        SampleType::U8 => "8 bits",
+        SampleType::U16 => "16 bits",
+        SampleType::F16 => "half floats",
+        SampleType::F32 => "floats",
     }
 }

@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use clap::Args;
 use glam::DVec3;
 use roughcast::shading::{BaseLobe, FootprintModel, Form, LobeOptions, Masking, Material, Repair};
-use roughcast::{Bits, Lobe};
+use roughcast::{Lobe, SampleType};
 use roughcast_scene::render::{MAX_PIXELS, MAX_SAMPLES};
 use roughcast_scene::{
     Camera, CameraError, Light, Plane, Scene, Shape, Sphere, Torus, View, default_light, load_mesh,
@@ -313,8 +313,8 @@ pub struct ShadingArgs {
     pub lobe: Lobe,
 
     /// Bits of the textures that the model samples
-    #[arg(long, default_value = "16", value_parser = one_of::<Bits>())]
-    pub bits: Bits,
+    #[arg(long, default_value = "16", value_parser = one_of::<SampleType>())]
+    pub bits: SampleType,
 
     /// Diffuse colour, linear, as one number or R,G,B
     #[arg(long, value_name = "COLOUR", default_value = "0.1", value_parser = scene_colour)]

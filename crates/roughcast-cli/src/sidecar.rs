@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use roughcast::texture::{Packing, TextureInfo, layers_of};
-use roughcast::{Bits, Named, SampleType, level_sizes};
+use roughcast::{SampleType, level_sizes};
 use serde_json::{Value, json};
 
 use crate::output::Stored;
@@ -22,7 +22,7 @@ pub fn sidecar(stored: &[Stored], files: &[PathBuf]) -> Value {
     json!({
         "roughcast": env!("CARGO_PKG_VERSION"),
         "layout": info.layout.name(),
-        "bits": bits_in_words(sample_type),
+        "bits": sample_type.name(),
         "width": width,
         "height": height,
         "levels": levels,
@@ -75,9 +75,4 @@ fn file(stored: &Stored, files: &[PathBuf]) -> Value {
         "layers": layers,
         "format": stored.format_in_words(),
     })
-}
-
-fn bits_in_words(sample_type: SampleType) -> &'static str {
-    let bits = Bits::all().iter().find(|bits| bits.sample_type() == sample_type);
-    bits.expect("each type has a number of bits").name()
 }

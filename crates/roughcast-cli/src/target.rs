@@ -1,6 +1,6 @@
 //! Where textures are going to be used, and what can be read there.
 
-use roughcast::{BakeOptions, Bits, Blocks, SampleType, named_enum};
+use roughcast::{BakeOptions, Blocks, SampleType, named_enum};
 
 use crate::UsageError;
 use crate::output::Container;
@@ -45,11 +45,11 @@ impl Target {
         let refuse = |line: String| Err(UsageError(line));
         match (self, container) {
             (Target::Desktop, _) => Ok(()),
-            (_, Container::Png) if options.bits == Bits::Sixteen => refuse(format!(
+            (_, Container::Png) if options.bits == SampleType::U16 => refuse(format!(
                 "browsers decode a PNG to 8 bits, too few for the layout '{}': write .ktx2, or say --as variance --bits 8",
                 options.layout
             )),
-            _ if options.bits == Bits::Sixteen => refuse(
+            _ if options.bits == SampleType::U16 => refuse(
                 "textures of 16-bit integers need WebGPU's feature texture-formats-tier1 or WebGL's EXT_texture_norm16, \
                  which many devices lack: leave --bits out, or say --bits half"
                     .to_owned(),
@@ -67,7 +67,7 @@ impl Target {
         if self == Target::Desktop {
             return warnings;
         }
-        if options.bits == Bits::Float {
+        if options.bits == SampleType::F32 {
             warnings.push(
                 "single floats are filtered only with WebGPU's feature float32-filterable or WebGL's \
                  OES_texture_float_linear, which phones often lack: half floats need neither"

@@ -5,7 +5,9 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use clap::ValueHint;
-use roughcast::texture::{Base, Layout, Part, Texture, TextureArray, TextureInfo, decode, layers_of};
+use roughcast::texture::{
+    Base, BaseRole, Layout, Part, Texture, TextureArray, TextureInfo, decode, layers_of,
+};
 use roughcast::{Image, Samples};
 use roughcast_io::{Limits, Supercompression};
 
@@ -55,7 +57,7 @@ fn moments_of(arrays: &[TextureArray]) -> Result<TextureArray> {
     let first = &arrays[0].info;
     let info = TextureInfo {
         // Toksvig's factor holds the base, but the variance that its normals decode to does not.
-        base: if first.layout == Layout::Toksvig { Base::None } else { first.base },
+        base: if first.layout.base_role() == BaseRole::Apart { Base::None } else { first.base },
         base_variance: first.base_variance,
         brdf: first.brdf,
         wrap: first.wrap,

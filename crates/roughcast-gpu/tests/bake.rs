@@ -8,7 +8,7 @@ use common::{gpu, gpu_of_the_web, gpu_without_features};
 use pollster::block_on;
 use roughcast::texture::{Base, Layout, TextureArray};
 use roughcast::{
-    BakeOptions, BaseRoughness, Bits, Gradient, Green, HeightSense, Image, Kind, MaxSlope, NormalChannels,
+    BakeOptions, BaseRoughness, Gradient, Green, HeightSense, Image, Kind, MaxSlope, NormalChannels,
     NormalRange, PyramidFilter, Red, SampleType, Samples, ScaleChoice, SourceOptions, Wrap,
 };
 use roughcast_gpu::bake::{BakePath, GpuBaker};
@@ -32,7 +32,7 @@ const REAL_MAPS: &[(&str, Kind)] = &[
     ("heights/surfgrad_Dump_u16.tif", Kind::Height),
     ("heights/t3d_stones.exr", Kind::Height),
 ];
-const FORMATS: [Bits; 3] = [Bits::Half, Bits::Sixteen, Bits::Eight];
+const FORMATS: [SampleType; 3] = [SampleType::F16, SampleType::U16, SampleType::U8];
 const LAYOUTS: [Layout; 2] = [Layout::Lean, Layout::Clean];
 
 /// A bake of the same map on both sides.
@@ -45,7 +45,7 @@ struct Case<'a> {
 }
 
 impl<'a> Case<'a> {
-    fn new(image: &'a Image, source: SourceOptions, layout: Layout, bits: Bits) -> Self {
+    fn new(image: &'a Image, source: SourceOptions, layout: Layout, bits: SampleType) -> Self {
         let options = BakeOptions { layout, bits, ..Default::default() };
         Self { image, source, roughness: None, options, path: BakePath::Compute }
     }
@@ -110,7 +110,7 @@ fn every_size_of_normals_is_the_cpus_bake() {
     for (width, height) in SIZES {
         let image = normals(width, height, 3, SampleType::U8);
         for path in PATHS {
-            Case { path, ..Case::new(&image, normal_source(), Layout::Lean, Bits::Half) }.check(&gpu);
+            Case { path, ..Case::new(&image, normal_source(), Layout::Lean, SampleType::F16) }.check(&gpu);
         }
     }
 }
@@ -121,7 +121,7 @@ fn every_size_of_heights_is_the_cpus_bake() {
     for (width, height) in SIZES {
         let image = heights(width, height, SampleType::U16);
         for path in PATHS {
-            Case { path, ..Case::new(&image, height_source(), Layout::Clean, Bits::Sixteen) }.check(&gpu);
+            Case { path, ..Case::new(&image, height_source(), Layout::Clean, SampleType::U16) }.check(&gpu);
         }
     }
 }
@@ -146,7 +146,7 @@ fn every_type_of_height_is_the_cpus_bake() {
     let gpu = gpu();
     for sample_type in [SampleType::U8, SampleType::U16, SampleType::F16, SampleType::F32] {
         let image = heights(44, 36, sample_type);
-        Case::new(&image, height_source(), Layout::Lean, Bits::Half).check(&gpu);
+        Case::new(&image, height_source(), Layout::Lean, SampleType::F16).check(&gpu);
     }
 }
 
@@ -157,11 +157,11 @@ fn every_gradient_wrap_and_sense_is_the_cpus_bake() {
     for gradient in Gradient::ALL {
         for wrap in Wrap::ALL {
             let source = SourceOptions { gradient: *gradient, wrap: *wrap, ..height_source() };
-            Case::new(&image, source, Layout::Lean, Bits::Half).check(&gpu);
+            Case::new(&image, source, Layout::Lean, SampleType::F16).check(&gpu);
         }
     }
     let source = SourceOptions { height_sense: HeightSense::WhiteDeep, ..height_source() };
-    Case::new(&image, source, Layout::Lean, Bits::Half).check(&gpu);
+    Case::new(&image, source, Layout::Lean, SampleType::F16).check(&gpu);
 }
 
 #[test]
@@ -172,7 +172,7 @@ fn every_way_to_store_normals_is_the_cpus_bake() {
             for sample_type in [SampleType::U8, SampleType::U16, SampleType::F16, SampleType::F32] {
                 let image = normals(44, 36, 4, sample_type);
                 let source = SourceOptions { normal_channels: *order, green: *green, ..normal_source() };
-                Case::new(&image, source, Layout::Lean, Bits::Half).check(&gpu);
+                Case::new(&image, source, Layout::Lean, SampleType::F16).check(&gpu);
             }
         }
     }
@@ -182,7 +182,7 @@ fn every_way_to_store_normals_is_the_cpus_bake() {
         for order in NormalChannels::ALL {
             let image = normals(44, 36, 4, SampleType::U8);
             let source = SourceOptions { normal_channels: *order, red, normal_scale, ..normal_source() };
-            Case::new(&image, source, Layout::Lean, Bits::Half).check(&gpu);
+            Case::new(&image, source, Layout::Lean, SampleType::F16).check(&gpu);
         }
     }
     let unsigned = normals(44, 36, 3, SampleType::F32);
@@ -190,7 +190,7 @@ fn every_way_to_store_normals_is_the_cpus_bake() {
     let signed = values.iter().map(|v| 2.0 * v - 1.0).collect();
     let image = Image::new(44, 36, 3, Samples::F32(signed)).expect("as many");
     let source = SourceOptions { range: NormalRange::Signed, ..normal_source() };
-    Case::new(&image, source, Layout::Lean, Bits::Half).check(&gpu);
+    Case::new(&image, source, Layout::Lean, SampleType::F16).check(&gpu);
 }
 
 #[test]
@@ -207,13 +207,13 @@ fn bad_texels_are_mended_and_counted_as_on_the_cpu() {
             ..normal_source()
         };
         for path in PATHS {
-            Case { path, ..Case::new(&image, source, Layout::Lean, Bits::Half) }.check(&gpu);
+            Case { path, ..Case::new(&image, source, Layout::Lean, SampleType::F16) }.check(&gpu);
         }
     }
     // Two channels that say nothing at all.
     let image = Image::new(8, 8, 2, Samples::U8(vec![0; 128])).expect("as many");
     let source = SourceOptions { normal_channels: NormalChannels::Xy, ..normal_source() };
-    Case::new(&image, source, Layout::Lean, Bits::Half).check(&gpu);
+    Case::new(&image, source, Layout::Lean, SampleType::F16).check(&gpu);
 }
 
 /// A map whose few steep texels make the automatic limit set in: slopes of up to 2, and of 40 every so many texels.
@@ -233,7 +233,7 @@ fn the_automatic_limit_of_slopes_is_the_cpus() {
     let mut limited = 0;
     for (size, every) in [((64, 64), 1500), ((64, 64), 500), ((127, 33), 1200), ((1400, 1100), 1700)] {
         let image = few_steep(size.0, size.1, every);
-        for (layout, bits) in [(Layout::Lean, Bits::Sixteen), (Layout::Clean, Bits::Eight)] {
+        for (layout, bits) in [(Layout::Lean, SampleType::U16), (Layout::Clean, SampleType::U8)] {
             for (path, base) in [(BakePath::Compute, Base::None), (BakePath::Raster, Base::Baked)] {
                 let mut case = Case { path, ..Case::new(&image, source, layout, bits) };
                 case.options.base = base;
@@ -265,7 +265,7 @@ fn holes_in_heights_are_flat_and_counted_as_on_the_cpu() {
     for gradient in [Gradient::Sobel, Gradient::Central, Gradient::Forward] {
         let source = SourceOptions { gradient, ..height_source() };
         for path in PATHS {
-            Case { path, ..Case::new(&image, source, Layout::Lean, Bits::Half) }.check(&gpu);
+            Case { path, ..Case::new(&image, source, Layout::Lean, SampleType::F16) }.check(&gpu);
         }
     }
 }
@@ -282,7 +282,7 @@ fn base_roughness_and_fixed_scales_are_the_cpus_bake() {
                 case.roughness = roughness;
                 case.options.base = base;
                 case.check(&gpu);
-                if bits != Bits::Half {
+                if bits != SampleType::F16 {
                     case.options.scale = ScaleChoice::Fixed(1.25);
                     case.check(&gpu);
                     case.path = BakePath::Raster;
@@ -300,7 +300,7 @@ fn real_maps_are_the_cpus_bake() {
         let image = real(path, 300, 252);
         let source = SourceOptions { kind: *kind, ..Default::default() };
         for path in PATHS {
-            Case { path, ..Case::new(&image, source, Layout::Lean, Bits::Sixteen) }.check(&gpu);
+            Case { path, ..Case::new(&image, source, Layout::Lean, SampleType::U16) }.check(&gpu);
         }
     }
 }
@@ -310,7 +310,7 @@ fn the_webs_limits_take_more_dispatches_to_the_same_result() {
     let (native, web) = (gpu(), gpu_of_the_web());
     let image = normals(96, 48, 3, SampleType::U8);
     for layout in LAYOUTS {
-        let case = Case::new(&image, normal_source(), layout, Bits::Half);
+        let case = Case::new(&image, normal_source(), layout, SampleType::F16);
         let ((many, expected), (few, got)) = (case.on_gpu(&native), case.on_gpu(&web));
         assert_eq!(web.limits.max_storage_textures_per_shader_stage, 4);
         assert!(few.dispatch_count() > many.dispatch_count(), "the limit was felt");
@@ -323,7 +323,7 @@ fn the_webs_limits_take_more_dispatches_to_the_same_result() {
 fn moving_bumps_reuse_textures_and_differ_as_their_inputs_do() {
     let gpu = gpu();
     let frames = [normals(64, 32, 3, SampleType::U8), normals(64, 32, 3, SampleType::U8).flipped()];
-    let options = BakeOptions { bits: Bits::Sixteen, ..Default::default() };
+    let options = BakeOptions { bits: SampleType::U16, ..Default::default() };
     for path in PATHS {
         let first = &frames[0];
         let baker =
@@ -352,7 +352,7 @@ fn moving_bumps_reuse_textures_and_differ_as_their_inputs_do() {
 #[test]
 fn textures_that_are_on_the_gpu_already_are_the_cpus_bake() {
     let gpu = gpu();
-    let options = BakeOptions { bits: Bits::Half, ..Default::default() };
+    let options = BakeOptions { bits: SampleType::F16, ..Default::default() };
     let cases = [
         (normals(44, 36, 4, SampleType::U8), normal_source(), wgpu::TextureFormat::Rgba8Unorm),
         (normals(44, 36, 4, SampleType::U16), normal_source(), wgpu::TextureFormat::Rgba16Unorm),
@@ -397,9 +397,9 @@ fn a_device_without_16_bit_unorm_says_so() {
         let options = BakeOptions { bits, ..Default::default() };
         block_on(GpuBaker::for_image(&gpu, &image, &normal_source(), None, &options, BakePath::Fastest))
     };
-    let line = make(Bits::Sixteen).err().expect("a feature").to_string();
+    let line = make(SampleType::U16).err().expect("a feature").to_string();
     assert!(line.contains("Rgba16Unorm") && line.contains("--bits half"), "{line}");
-    make(Bits::Half).expect("half floats need no feature, nor does a map of 16 bits");
+    make(SampleType::F16).expect("half floats need no feature, nor does a map of 16 bits");
 }
 
 /// A picture with its rows in reverse.
@@ -427,10 +427,10 @@ fn what_the_gpu_cannot_do_is_refused_with_the_reason() {
         assert!(line.contains(word) && !line.contains('\n'), "{line}");
     };
     refused(
-        BakeOptions { filter: PyramidFilter::Gaussian, bits: Bits::Half, ..Default::default() },
+        BakeOptions { filter: PyramidFilter::Gaussian, bits: SampleType::F16, ..Default::default() },
         "gaussian",
     );
-    refused(BakeOptions { bits: Bits::Float, ..Default::default() }, "half");
+    refused(BakeOptions { bits: SampleType::F32, ..Default::default() }, "half");
     refused(BakeOptions { layout: Layout::Schilling, ..Default::default() }, "schilling");
     refused(BakeOptions { base: Base::Baked, ..Default::default() }, "--base baked");
     let narrow = normals(8, 8, 2, SampleType::U8);

@@ -6,9 +6,9 @@ use common::compare::difference;
 use common::maps::normals;
 use half::f16;
 use roughcast::texture::TextureArray;
-use roughcast::{BakeOptions, Bits, SampleType, Samples, SourceOptions};
+use roughcast::{BakeOptions, SampleType, Samples, SourceOptions};
 
-fn baked(bits: Bits) -> TextureArray {
+fn baked(bits: SampleType) -> TextureArray {
     let options = BakeOptions { bits, ..Default::default() };
     let image = normals(16, 8, 3, SampleType::U8);
     roughcast::bake(&image, &SourceOptions::default(), None, &options).expect("baked").arrays.remove(0)
@@ -28,7 +28,7 @@ fn moved(array: &TextureArray, steps: u16) -> TextureArray {
 
 #[test]
 fn a_texel_that_is_off_is_found_and_measured() {
-    for bits in [Bits::Eight, Bits::Sixteen, Bits::Half] {
+    for bits in [SampleType::U8, SampleType::U16, SampleType::F16] {
         let array = baked(bits);
         assert_eq!(difference(&array, &array).expect("one shape").steps, 0);
         for steps in [1, 2, 7] {
@@ -42,7 +42,7 @@ fn a_texel_that_is_off_is_found_and_measured() {
 #[test]
 fn halves_are_counted_across_zero_and_nan_is_no_neighbour() {
     let with = |value: f16| {
-        let mut array = baked(Bits::Half);
+        let mut array = baked(SampleType::F16);
         let Samples::F16(v) = array.layers[0].levels[0].samples_mut() else { unreachable!("asked for") };
         v[0] = value;
         array
@@ -56,9 +56,9 @@ fn halves_are_counted_across_zero_and_nan_is_no_neighbour() {
 
 #[test]
 fn other_shapes_are_no_match() {
-    let array = baked(Bits::Half);
+    let array = baked(SampleType::F16);
     let mut short = array.clone();
     short.layers.pop();
     assert!(difference(&array, &short).is_err());
-    assert!(difference(&array, &baked(Bits::Sixteen)).is_err());
+    assert!(difference(&array, &baked(SampleType::U16)).is_err());
 }

@@ -7,7 +7,7 @@ use common::pictures::{Apart, GpuPictures, apart, by_cpu, inside, options, well_
 use common::scenes::{SIDE, SIZE, SPECULAR_POWER, maps, maps_with, scene, scenes};
 use roughcast::shading::{BaseLobe, Form, LobeOptions, Shading};
 use roughcast::texture::TextureArray;
-use roughcast::{BakeOptions, Bits, Lobe, RoughnessTexture, Wrap};
+use roughcast::{AnisotropyOutput, BakeOptions, PbrOptions, RoughnessTexture, SampleType, Wrap};
 use roughcast_gpu::render::DrawOptions;
 use roughcast_scene::{Filter, Picture, Plane, Sampler, Scene, Shape, Sphere, Torus, View};
 
@@ -58,11 +58,15 @@ fn with_filter(filter: Filter) -> DrawOptions {
 
 /// Every model with its maps; GGX also with an anisotropy texture and with packed roughness.
 fn models() -> Vec<(Shading, Vec<TextureArray>)> {
-    let mut models: Vec<_> = Shading::ALL.iter().map(|s| (*s, maps(*s, Bits::Half))).collect();
-    let pbr = BakeOptions { layout: Shading::Ggx.layout(), bits: Bits::Eight, ..BakeOptions::default() };
-    models.push((Shading::Ggx, maps_with(BakeOptions { lobe: Lobe::Anisotropic, ..pbr })));
-    models
-        .push((Shading::Ggx, maps_with(BakeOptions { roughness_texture: RoughnessTexture::Packed, ..pbr })));
+    let mut models: Vec<_> = Shading::ALL.iter().map(|s| (*s, maps(*s, SampleType::F16))).collect();
+    let pbr = BakeOptions { layout: Shading::Ggx.layout(), bits: SampleType::U8, ..BakeOptions::default() };
+    let plain = PbrOptions::default();
+    for choices in [
+        PbrOptions { anisotropy: Some(AnisotropyOutput::Khr), ..plain },
+        PbrOptions { roughness_texture: RoughnessTexture::Packed, ..plain },
+    ] {
+        models.push((Shading::Ggx, maps_with(BakeOptions { pbr: choices, ..pbr })));
+    }
     models
 }
 
@@ -146,7 +150,7 @@ fn anisotropic_pictures_agree_in_the_mean_and_moments_keep_the_highlights_energy
 
 /// The picture by both, with maps of half floats.
 fn both(pictures: &mut GpuPictures, scene: &Scene, shading: Shading, draw: &DrawOptions) -> Apart {
-    let maps = maps(shading, Bits::Half);
+    let maps = maps(shading, SampleType::F16);
     let cpu = by_cpu(scene, shading, &maps, draw, SIZE);
     let gpu = pictures.render(scene, shading, &maps, draw, SIZE).expect("a picture");
     compare(scene, &cpu, &gpu, 0.0)
@@ -157,9 +161,10 @@ fn the_comparisons_fail_when_they_should() {
     let scene = scene(Shape::Plane(Plane::default()), View::Mid);
     let mut pictures = GpuPictures::new(&gpu(), &scene, 4);
     let unfiltered = options(unfiltered(), lobe(Form::Normalised, BaseLobe::Plane));
-    let cpu = |shading, draw: &DrawOptions| by_cpu(&scene, shading, &maps(shading, Bits::Half), draw, SIZE);
+    let cpu =
+        |shading, draw: &DrawOptions| by_cpu(&scene, shading, &maps(shading, SampleType::F16), draw, SIZE);
     let mut gpu = |shading, draw: &DrawOptions| {
-        pictures.render(&scene, shading, &maps(shading, Bits::Half), draw, SIZE).expect("a picture")
+        pictures.render(&scene, shading, &maps(shading, SampleType::F16), draw, SIZE).expect("a picture")
     };
     let lean = gpu(Shading::Lean, &unfiltered);
     let same = apart_within_texels(&scene, &cpu(Shading::Lean, &unfiltered), &lean);
@@ -211,7 +216,7 @@ fn the_comparisons_of_filters_fail_when_they_should() {
         let scene = scene(Shape::Plane(Plane::default()), view);
         let mut pictures = GpuPictures::new(&gpu, &scene, DETAIL);
         for shading in [Shading::Lean, Shading::Clean, Shading::BlinnPhong] {
-            let maps = maps(shading, Bits::Half);
+            let maps = maps(shading, SampleType::F16);
             let mut against = |filter, other: DrawOptions| {
                 let right = with(filter, 0.0, 1.0);
                 let gpu = pictures.render(&scene, shading, &maps, &right, SIZE).expect("a picture");
@@ -245,7 +250,7 @@ fn round_shapes_are_approached_as_their_triangles_shrink() {
     let gpu = gpu();
     let scene = scene(Shape::Torus(Torus::default()), View::Near);
     let draw = options(unfiltered(), lobe(Form::Normalised, BaseLobe::Plane));
-    let maps = maps(Shading::Lean, Bits::Half);
+    let maps = maps(Shading::Lean, SampleType::F16);
     let cpu = by_cpu(&scene, Shading::Lean, &maps, &draw, SIZE);
     let [coarse, fine] = [64, 256].map(|detail| {
         let mut pictures = GpuPictures::new(&gpu, &scene, detail);
@@ -263,7 +268,7 @@ fn every_format_and_wrap_is_read_as_the_cpu_reads_it() {
     let scene = scene(Shape::Plane(Plane::default()), View::Mid);
     assert!(scene.repeats > 1.5, "{}", scene.repeats);
     let mut pictures = GpuPictures::new(&gpu, &scene, 4);
-    for bits in [Bits::Eight, Bits::Sixteen, Bits::Half, Bits::Float] {
+    for bits in [SampleType::U8, SampleType::U16, SampleType::F16, SampleType::F32] {
         for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
             let sampler = Sampler { wrap, ..unfiltered() };
             let draw = options(sampler, lobe(Form::Physical, BaseLobe::Plane));
@@ -285,7 +290,7 @@ fn no_light_and_many_lights_give_their_sum() {
     let draw = options(unfiltered(), lobe(Form::Normalised, BaseLobe::Plane));
     for count in [0, 1, 3, 300] {
         scene.lights = vec![light; count];
-        let maps = maps(Shading::Clean, Bits::Half);
+        let maps = maps(Shading::Clean, SampleType::F16);
         let cpu = by_cpu(&scene, Shading::Clean, &maps, &draw, SIZE);
         let gpu = pictures.render(&scene, Shading::Clean, &maps, &draw, SIZE).expect("a picture");
         let apart = apart_within_texels(&scene, &cpu, &gpu);

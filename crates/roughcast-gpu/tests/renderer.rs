@@ -8,7 +8,7 @@ use common::{gpu, gpu_of_the_web};
 use pollster::block_on;
 use roughcast::shading::{LobeOptions, Shading};
 use roughcast::texture::{Layout, Part, TextureInfo};
-use roughcast::{BakeOptions, Bits, Lobe};
+use roughcast::{BakeOptions, Lobe, SampleType};
 use roughcast_gpu::bake::{BakePath, GpuBaker};
 use roughcast_gpu::render::{
     DEPTH_FORMAT, DrawOptions, Geometry, GpuTextures, LevelOfDetail, RenderTarget, Renderer, ShaderKey,
@@ -23,7 +23,13 @@ fn plane() -> Scene {
 
 fn picture(gpu: &Gpu, scene: &Scene, size: (u32, u32)) -> Result<Picture, GpuError> {
     let mut pictures = GpuPictures::new(gpu, scene, 4);
-    pictures.render(scene, Shading::Lean, &maps(Shading::Lean, Bits::Half), &DrawOptions::default(), size)
+    pictures.render(
+        scene,
+        Shading::Lean,
+        &maps(Shading::Lean, SampleType::F16),
+        &DrawOptions::default(),
+        size,
+    )
 }
 
 #[test]
@@ -33,7 +39,7 @@ fn every_shader_is_made_for_the_limits_of_the_web() {
         let mut renderer = block_on(Renderer::new(&gpu, target)).expect("a renderer");
         let geometry = block_on(Geometry::new(&gpu, &plane().shape, 4)).expect("a shape");
         for shading in Shading::ALL {
-            let textures = block_on(GpuTextures::new(&gpu, *shading, &maps(*shading, Bits::Half)));
+            let textures = block_on(GpuTextures::new(&gpu, *shading, &maps(*shading, SampleType::F16)));
             let textures = textures.expect("half floats are everywhere");
             for filter in [Filter::Nearest, Filter::Anisotropic] {
                 let sampler = Sampler { filter, ..Sampler::default() };
@@ -83,7 +89,7 @@ fn a_colour_target_shows_the_radiance_that_the_picture_has() {
     let nanoseconds = block_on(async {
         let mut renderer = Renderer::new(&gpu, RenderTarget::Colour(format)).await?;
         let geometry = Geometry::new(&gpu, &scene.shape, 4).await?;
-        let textures = GpuTextures::new(&gpu, Shading::Lean, &maps(Shading::Lean, Bits::Half)).await?;
+        let textures = GpuTextures::new(&gpu, Shading::Lean, &maps(Shading::Lean, SampleType::F16)).await?;
         let mut drawing = renderer.prepare(&geometry, &textures, &DrawOptions::default()).await?;
         drawing.set_view(&renderer, &scene, SIZE).await?;
         let mut timestamps = Timestamps::new(&gpu, 1).await?;
@@ -126,7 +132,7 @@ fn a_drawing_follows_the_scene() {
     let frames = block_on(async {
         let mut renderer = Renderer::new(&gpu, RenderTarget::Parts).await?;
         let geometry = Geometry::new(&gpu, &scene.shape, 4).await?;
-        let textures = GpuTextures::new(&gpu, Shading::Lean, &maps(Shading::Lean, Bits::Half)).await?;
+        let textures = GpuTextures::new(&gpu, Shading::Lean, &maps(Shading::Lean, SampleType::F16)).await?;
         let mut drawing = renderer.prepare(&geometry, &textures, &DrawOptions::default()).await?;
         let first = render(&renderer, &mut drawing, &scene, SIZE).await?;
         scene.camera.eye *= 1.1;
@@ -154,7 +160,7 @@ fn what_cannot_be_rendered_is_an_error_of_one_line() {
     blind.camera.target = blind.camera.eye;
     assert!(line(picture(&gpu, &blind, SIZE)).contains("eye"));
     let mut pictures = GpuPictures::new(&gpu, &scene, 4);
-    let clean = maps(Shading::Clean, Bits::Half);
+    let clean = maps(Shading::Clean, SampleType::F16);
     let draw = DrawOptions::default();
     assert!(line(pictures.render(&scene, Shading::Lean, &clean, &draw, SIZE)).contains("lean1"));
     let ewa = options(Sampler { filter: Filter::Ewa, ..Sampler::default() }, LobeOptions::default());
@@ -164,7 +170,7 @@ fn what_cannot_be_rendered_is_an_error_of_one_line() {
 #[test]
 fn formats_that_the_device_cannot_filter_are_named() {
     let device = plain_device();
-    for (bits, format) in [(Bits::Sixteen, "Rgba16Unorm"), (Bits::Float, "Rgba32Float")] {
+    for (bits, format) in [(SampleType::U16, "Rgba16Unorm"), (SampleType::F32, "Rgba32Float")] {
         let options = BakeOptions { layout: Layout::Clean, bits, ..BakeOptions::default() };
         let error = block_on(GpuTextures::new(&device, Shading::Clean, &maps_with(options)));
         let line = error.expect_err("a plain device has no such format").to_string();
@@ -184,9 +190,11 @@ fn plain_device() -> Gpu {
 fn textures_baked_on_the_gpu_are_drawn_where_they_are() {
     let (gpu, scene) = (gpu(), plane());
     let bumps = pattern::random_bumps(SIDE, 0.3, 5);
-    for (shading, bits) in
-        [(Shading::Lean, Bits::Sixteen), (Shading::Clean, Bits::Half), (Shading::Phong, Bits::Eight)]
-    {
+    for (shading, bits) in [
+        (Shading::Lean, SampleType::U16),
+        (Shading::Clean, SampleType::F16),
+        (Shading::Phong, SampleType::U8),
+    ] {
         let options = BakeOptions { layout: shading.layout(), bits, ..BakeOptions::default() };
         let source = bumps.source_options();
         let [here, back] = block_on(async {

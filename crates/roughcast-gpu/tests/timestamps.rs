@@ -5,7 +5,7 @@ mod common;
 use common::maps::normals;
 use common::{gpu, gpu_without_features};
 use pollster::block_on;
-use roughcast::{BakeOptions, Bits, SampleType, SourceOptions};
+use roughcast::{BakeOptions, SampleType, SourceOptions};
 use roughcast_gpu::bake::{BakePath, GpuBaker, bake_bandwidth, copy_bandwidth};
 use roughcast_gpu::{GpuError, Timestamps};
 
@@ -13,7 +13,7 @@ use roughcast_gpu::{GpuError, Timestamps};
 fn each_span_has_its_name_and_a_time() {
     let gpu = gpu();
     let image = normals(44, 36, 3, SampleType::U8);
-    let options = BakeOptions { bits: Bits::Half, ..Default::default() };
+    let options = BakeOptions { bits: SampleType::F16, ..Default::default() };
     let source = SourceOptions::default();
     let mut timestamps = block_on(Timestamps::new(&gpu, 2)).expect("lavapipe and every GPU have them");
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -44,7 +44,7 @@ fn without_the_feature_there_is_an_error_and_no_zero() {
 #[test]
 fn bandwidths_are_those_of_the_bytes_that_have_to_move() {
     let gpu = gpu();
-    let options = BakeOptions { bits: Bits::Half, ..Default::default() };
+    let options = BakeOptions { bits: SampleType::F16, ..Default::default() };
     let baked = block_on(bake_bandwidth(&gpu, 4, &options, BakePath::Compute)).expect("measured");
     // 16 texels of 4 bytes in; 16 + 4 + 1 texels of 8 bytes in two textures out.
     assert_eq!(baked.bytes, 16 * 4 + 2 * 21 * 8);

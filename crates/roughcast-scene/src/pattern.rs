@@ -126,7 +126,7 @@ fn random(seed: u64, index: u64) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use roughcast::texture::{Layout, decode};
-    use roughcast::{BakeOptions, Bits, Moments, bake};
+    use roughcast::{BakeOptions, Moments, SampleType, bake};
 
     use super::*;
 
@@ -135,7 +135,8 @@ mod tests {
 
     /// The moments of the whole map, by the library.
     fn whole(pattern: &Pattern) -> Moments {
-        let options = BakeOptions { layout: Layout::Moments, bits: Bits::Float, ..BakeOptions::default() };
+        let options =
+            BakeOptions { layout: Layout::Moments, bits: SampleType::F32, ..BakeOptions::default() };
         let baked = bake(&pattern.heights, &pattern.source_options(), None, &options).expect("a map");
         decode(&baked.arrays).expect("moments").last().expect("a level").moments[0]
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use roughcast::shading::{LobeOptions, Material, Shading};
-use roughcast::{BakeOptions, Bits, Image, SourceOptions, bake};
+use roughcast::{BakeOptions, Image, SampleType, SourceOptions, bake};
 use roughcast_io::{ReadOptions, read_image_file};
 use roughcast_scene::metrics::{DEFAULT_PIXELS_PER_DEGREE, hdr_flip};
 use roughcast_scene::render::{Method, unwatched};
@@ -23,7 +23,7 @@ fn map(name: &str) -> Image {
     read_image_file(&roughcast_testdata::find(name), &ReadOptions::default()).expect("a map").image
 }
 
-fn picture(map: &Image, bits: Bits, view: View) -> Picture {
+fn picture(map: &Image, bits: SampleType, view: View) -> Picture {
     let options = BakeOptions { bits, ..BakeOptions::default() };
     let baked = bake(map, &SourceOptions::default(), None, &options).expect("a map");
     let textures = BakedTextures::of_model(Shading::Lean, &baked.arrays).expect("LEAN's textures");
@@ -34,8 +34,8 @@ fn picture(map: &Image, bits: Bits, view: View) -> Picture {
     method.render(&scene, SIZE, &unwatched).expect("a picture")
 }
 
-fn flip(map: &Image, bits: Bits, view: View) -> f64 {
-    let float = picture(map, Bits::Float, view);
+fn flip(map: &Image, bits: SampleType, view: View) -> f64 {
+    let float = picture(map, SampleType::F32, view);
     hdr_flip(&picture(map, bits, view), &float, DEFAULT_PIXELS_PER_DEGREE).expect("pictures of one size").mean
 }
 
@@ -44,7 +44,7 @@ fn sixteen_bits_and_halves_carry_the_exponent_of_the_text() {
     for name in roughcast_testdata::rows_with_files(MAPS, |name| name) {
         let map = map(name);
         for view in View::ALL {
-            for bits in [Bits::Sixteen, Bits::Half] {
+            for bits in [SampleType::U16, SampleType::F16] {
                 let flip = flip(&map, bits, *view);
                 println!("{name}, {view}, {bits}: FLIP {flip:.5}");
                 assert!(flip < SAME, "{name}, {view}, {bits}: FLIP {flip}");
@@ -55,7 +55,7 @@ fn sixteen_bits_and_halves_carry_the_exponent_of_the_text() {
 
 #[test]
 fn eight_bits_do_not() {
-    let flip = flip(&map("crops/rock020_normal_256.jpg"), Bits::Eight, View::Near);
+    let flip = flip(&map("crops/rock020_normal_256.jpg"), SampleType::U8, View::Near);
     println!("FLIP {flip:.5}");
     assert!(flip > DIFFERENT * SAME, "FLIP {flip}");
 }

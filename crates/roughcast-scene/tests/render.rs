@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use glam::DVec3;
 use roughcast::shading::{Form, LobeOptions, Material, Shading};
 use roughcast::texture::{Part, TextureArray};
-use roughcast::{BakeOptions, BaseRoughness, Bits, RoughnessTexture, Wrap, bake};
+use roughcast::{BakeOptions, BaseRoughness, PbrOptions, RoughnessTexture, SampleType, Wrap, bake};
 use roughcast_scene::metrics::{energy_error, flicker, rmse};
 use roughcast_scene::pattern::{self, Pattern};
 use roughcast_scene::render::{Method, RenderError, Truth, unwatched};
@@ -32,9 +32,10 @@ impl Map {
     }
 
     fn baked(&self, shading: Shading, specular_power: f32) -> Vec<TextureArray> {
-        let options = BakeOptions { layout: shading.layout(), bits: Bits::Float, ..BakeOptions::default() };
+        let options =
+            BakeOptions { layout: shading.layout(), bits: SampleType::F32, ..BakeOptions::default() };
         let options = match shading {
-            Shading::Ggx | Shading::Toksvig => BakeOptions { bits: Bits::Sixteen, ..options },
+            Shading::Ggx | Shading::Toksvig => BakeOptions { bits: SampleType::U16, ..options },
             _ => options,
         };
         let roughness = Some(BaseRoughness::Variance(1.0 / specular_power));
@@ -279,8 +280,8 @@ fn packed_roughness_shades_as_roughness_alone() {
     let map = Map::new(pattern::random_bumps(64, 0.3, 7));
     let (scene, options) = (plane(4.0), power(64.0, Form::Normalised));
     let picture = |roughness_texture| {
-        let bake_options =
-            BakeOptions { layout: Shading::Ggx.layout(), roughness_texture, ..BakeOptions::default() };
+        let pbr = PbrOptions { roughness_texture, ..PbrOptions::default() };
+        let bake_options = BakeOptions { layout: Shading::Ggx.layout(), pbr, ..BakeOptions::default() };
         let base = Some(BaseRoughness::Variance(1.0 / 64.0));
         let baked = bake(&map.pattern.heights, &map.pattern.source_options(), base, &bake_options).unwrap();
         let textures = BakedTextures::of_model(Shading::Ggx, &baked.arrays).unwrap();

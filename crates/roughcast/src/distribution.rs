@@ -4,8 +4,8 @@
 //! footprint. The filtered normal is kept beside them: diffuse light needs its length, which the Gaussians do not determine.
 
 use crate::moments::{Covariance, Moments, SlopeMatrix};
-use crate::slope::{Normal, Slope, normal_from_slope};
-use crate::texture::Base;
+use crate::roughness::Base;
+use crate::slope::{LEAST_NORMAL_Z, Normal, Slope, normal_from_slope};
 
 /// The most Gaussians of a distribution.
 pub const MAX_GAUSSIANS: usize = 4;
@@ -44,6 +44,14 @@ impl Distribution {
     /// A single slope: no bumps are hidden.
     pub fn of_slope(slope: Slope) -> Self {
         Self::gaussian(slope, Covariance::default())
+    }
+
+    /// The slope of a filtered normal of any length, and nothing about it: the ordinary way, which loses the bumps. A normal that is
+    /// flatter than [`LEAST_NORMAL_Z`] counts as that steep.
+    #[inline]
+    pub fn of_normal(normal: Normal) -> Self {
+        let z = normal.z.max(LEAST_NORMAL_Z);
+        Self::new(normal, Slope { x: normal.x / z, y: normal.y / z }, Covariance::default())
     }
 
     /// One Gaussian, whose filtered normal is the unit normal of the mean slope.

@@ -2,6 +2,8 @@
 
 use half::f16;
 
+use crate::named::named_enum;
+
 /// The samples of an [`Image`], interleaved, row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Samples {
@@ -15,17 +17,18 @@ pub enum Samples {
     F32(Vec<f32>),
 }
 
-/// The storage type of samples, without the samples.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum SampleType {
-    /// 8-bit unsigned normalised.
-    U8,
-    /// 16-bit unsigned normalised.
-    U16,
-    /// Half float.
-    F16,
-    /// Single float.
-    F32,
+named_enum! {
+    /// The storage type of samples, without the samples. Its names are numbers of bits where these say it all.
+    pub enum SampleType: "number of bits" {
+        /// 8-bit unsigned normalised.
+        U8 = "8",
+        /// 16-bit unsigned normalised.
+        U16 = "16",
+        /// Half float.
+        F16 = "half",
+        /// Single float.
+        F32 = "float",
+    }
 }
 
 impl SampleType {

@@ -62,14 +62,17 @@
 #![forbid(unsafe_code)]
 
 mod bake;
+mod convention;
 pub mod detect;
 mod distribution;
 mod image;
+mod levels;
 mod moments;
 mod named;
 mod options;
 pub mod precision;
 mod pyramid;
+mod roughness;
 mod row;
 pub mod shading;
 mod slope;
@@ -81,17 +84,19 @@ pub mod wgsl;
 
 pub use bake::{
     BakeError, BakePlan, BakeReport, Baked, ScaleAdvice, SlopeLimit, bake, bake_reusing, plan_bake,
-    refuse_filter,
 };
+pub use convention::{Green, HeightSense, Kind, NormalChannels, NormalRange, Red, Wrap};
 pub use distribution::{Distribution, MAX_GAUSSIANS, WeightedGaussian};
 pub use image::{Image, ImageError, SampleType, Samples};
+pub use levels::level_sizes;
 pub use moments::{Covariance, Moments, SlopeMatrix};
 pub use named::{Named, UnknownName};
-pub use options::{
-    AnisotropyOutput, BakeOptions, Bits, Blocks, Gradient, Green, HeightSense, Kind, Lobe, MaxSlope,
-    NormalChannels, NormalRange, PyramidFilter, Red, RoughnessTexture, ScaleChoice, SourceOptions, Wrap,
+pub use options::{BakeOptions, Gradient, MaxSlope, PyramidFilter, ScaleChoice, SourceOptions};
+pub use pyramid::{LevelStats, levels_of_four};
+pub use roughness::{Lobe, RoughnessTexture, stored_from_variance, variance_from_stored};
+pub use slope::{
+    LEAST_NORMAL_Z, Normal, Slope, SourceCounts, normal_from_slope, repaired_slope, slope_from_normal,
 };
-pub use pyramid::{LevelStats, level_sizes, levels_of_four};
-pub use slope::{Normal, Slope, SourceCounts, normal_from_slope, repaired_slope, slope_from_normal};
-pub use source::{BaseRoughness, RoughnessMap, SourceError, stored_from_variance, variance_from_stored};
+pub use source::{BaseRoughness, RoughnessMap, SourceError};
 pub use survey::survey_stride;
+pub use texture::{AnisotropyOutput, Blocks, PbrOptions};

@@ -1,94 +1,10 @@
 //! How a map is to be read and filtered. The command line, Python and the GPU use these as they are.
 
 use crate::SampleType;
+use crate::convention::{Green, HeightSense, Kind, NormalChannels, NormalRange, Red, Wrap};
 use crate::named::named_enum;
-use crate::texture::{Base, Brdf, Layout, RoughnessStored};
-
-named_enum! {
-    /// What the pixels of an input are.
-    pub enum Kind: "kind of map" {
-        /// Normals, three channels or two.
-        Normal = "normal",
-        /// Heights, one channel.
-        Height = "height",
-    }
-}
-
-named_enum! {
-    /// Which way a normal map's green channel points.
-    pub enum Green: "direction of green" {
-        /// Up the picture: OpenGL, glTF.
-        Up = "up",
-        /// Down the picture: DirectX.
-        Down = "down",
-    }
-}
-
-named_enum! {
-    /// Which way a normal map's red channel points.
-    pub enum Red: "direction of red" {
-        /// To the right of the picture: all common conventions.
-        Right = "right",
-        /// To the left.
-        Left = "left",
-    }
-}
-
-named_enum! {
-    /// The numbers by which a normal's components are stored.
-    pub enum NormalRange: "range" {
-        /// 0 ..= 1 stands for -1 ..= 1.
-        Unorm = "unorm",
-        /// The components themselves.
-        Signed = "signed",
-    }
-}
-
-impl NormalRange {
-    /// The component that a stored value stands for.
-    #[inline(always)]
-    pub fn component_from_stored(self, stored: f32) -> f32 {
-        match self {
-            NormalRange::Unorm => 2.0 * stored - 1.0,
-            NormalRange::Signed => stored,
-        }
-    }
-}
-
-named_enum! {
-    /// Which channels hold a normal's components.
-    pub enum NormalChannels: "choice of channels" {
-        /// Red, green, blue: x, y, z. Used by direction; the length does not matter.
-        Xyz = "xyz",
-        /// The first two: x, y; z follows. BC5, and RG textures.
-        Xy = "xy",
-        /// Alpha and green: x, y; z follows. "DXT5nm", BC3n, and Doom 3's RXGB.
-        Ag = "ag",
-        /// The first two: y, x; z follows. The older order of 3Dc and ATI2.
-        Yx = "yx",
-        /// Red and alpha: x, y; z follows. KTX's normal mode, which repeats x in red, green and blue.
-        Ra = "ra",
-    }
-}
-
-impl NormalChannels {
-    /// Indices of the channels with x, y and, where it is stored, z.
-    pub fn indices(self) -> (usize, usize, Option<usize>) {
-        match self {
-            NormalChannels::Xyz => (0, 1, Some(2)),
-            NormalChannels::Xy => (0, 1, None),
-            NormalChannels::Yx => (1, 0, None),
-            NormalChannels::Ag => (3, 1, None),
-            NormalChannels::Ra => (0, 3, None),
-        }
-    }
-
-    /// Channels that a map must have.
-    pub fn needed(self) -> usize {
-        let (x, y, z) = self.indices();
-        1 + x.max(y).max(z.unwrap_or(0))
-    }
-}
+use crate::roughness::{Base, Brdf};
+use crate::texture::{Blocks, Layout, PbrOptions};
 
 named_enum! {
     /// How a height map's gradient is estimated. All are in texels of level 0.
@@ -103,19 +19,6 @@ named_enum! {
 }
 
 named_enum! {
-    /// What lies beyond the edge of a map; for gradients and for filters wider than the box.
-    pub enum Wrap: "wrap mode" {
-        /// The map repeats.
-        Repeat = "repeat",
-        /// The edge texel goes on, for gradients. The pyramid's filters mirror the map, as for [`Wrap::Mirror`]: an edge
-        /// texel that went on for ever would count more than the others, and means would drift from level to level.
-        Clamp = "clamp",
-        /// The map is mirrored at the edge.
-        Mirror = "mirror",
-    }
-}
-
-named_enum! {
     /// The kernel that makes a level of the one before. All are non-negative: with lobes below zero the covariance
     /// would stop being one.
     pub enum PyramidFilter: "filter" {
@@ -123,7 +26,7 @@ named_enum! {
         Box = "box",
         /// Tent over two texels of the coarser level each way.
         Triangle = "triangle",
-        /// The B-spline of order three, a Gaussian's shape with a deviation of half a texel of the coarser level.
+        /// The B-spline of order three, a Gaussian's shape with a standard deviation of half a texel of the coarser level.
         Gaussian = "gaussian",
     }
 }
@@ -188,16 +91,6 @@ impl MaxSlope {
     }
 }
 
-named_enum! {
-    /// Which way heights go.
-    pub enum HeightSense: "sense of heights" {
-        /// White is high.
-        WhiteHigh = "white-high",
-        /// White is deep: a depth map.
-        WhiteDeep = "white-deep",
-    }
-}
-
 impl SourceOptions {
     /// Default height of a full-range height map, as a part of its width.
     pub const DEFAULT_HEIGHT_SCALE: f32 = 0.02;
@@ -229,93 +122,6 @@ impl Default for SourceOptions {
     }
 }
 
-named_enum! {
-    /// How many shapes of roughness a physically based material tells apart.
-    pub enum Lobe: "lobe" {
-        /// One roughness for every direction.
-        Isotropic = "isotropic",
-        /// Two roughnesses and a direction, as KHR_materials_anisotropy has them.
-        Anisotropic = "anisotropic",
-    }
-}
-
-named_enum! {
-    /// How `pbr` says in which direction a roughness is larger.
-    pub enum AnisotropyOutput: "form of anisotropy" {
-        /// Direction and strength, as KHR_materials_anisotropy has them; the roughness is the one across.
-        Khr = "khr",
-        /// The widths of the lobe along the x and the y axis of the tangent frame, each in a file of one channel.
-        Alpha = "alpha",
-    }
-}
-
-named_enum! {
-    /// In which channels `pbr` stores roughness. The names are those of the channels.
-    pub enum RoughnessTexture: "roughness layout" {
-        /// One channel: BC4, and renderers that read one number.
-        Alone = "r",
-        /// Green, where glTF and three.js read it, with an occlusion of 1 in red and a metalness of 0 in blue.
-        Green = "g",
-        /// glTF's packed texture: occlusion in red, roughness in green, metalness in blue; all three from a picture where there
-        /// is one.
-        Packed = "orm",
-    }
-}
-
-impl RoughnessTexture {
-    /// Channels of the texture.
-    pub const fn channels(self) -> usize {
-        match self {
-            RoughnessTexture::Alone => 1,
-            RoughnessTexture::Green | RoughnessTexture::Packed => 4,
-        }
-    }
-
-    /// The channel that contains the roughness.
-    pub const fn roughness_channel(self) -> usize {
-        match self {
-            RoughnessTexture::Alone => 0,
-            RoughnessTexture::Green | RoughnessTexture::Packed => 1,
-        }
-    }
-}
-
-named_enum! {
-    /// The type in which texels are stored.
-    pub enum Bits: "number of bits" {
-        /// 8-bit unsigned normalised.
-        Eight = "8",
-        /// 16-bit unsigned normalised.
-        Sixteen = "16",
-        /// Half float.
-        Half = "half",
-        /// Single float.
-        Float = "float",
-    }
-}
-
-impl Bits {
-    /// The sample type of an image with these bits.
-    pub fn sample_type(self) -> SampleType {
-        match self {
-            Bits::Eight => SampleType::U8,
-            Bits::Sixteen => SampleType::U16,
-            Bits::Half => SampleType::F16,
-            Bits::Float => SampleType::F32,
-        }
-    }
-}
-
-named_enum! {
-    /// Whether textures are shaped for block compression: two channels for what will be BC5, one for BC4.
-    pub enum Blocks: "compression" {
-        /// Plain texels.
-        None = "none",
-        /// BC4, BC5 and BC7.
-        Bc = "bc",
-    }
-}
-
 /// The range of slopes that unsigned texels cover.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ScaleChoice {
@@ -331,34 +137,19 @@ pub struct BakeOptions {
     /// The layout.
     pub layout: Layout,
     /// The type of its texels.
-    pub bits: Bits,
+    pub bits: SampleType,
     /// The range of its slopes, for unsigned types.
     pub scale: ScaleChoice,
     /// Whether base roughness is folded into the second moments.
     pub base: Base,
     /// The lobe for which roughness is meant.
     pub brdf: Brdf,
-    /// How `pbr` stores roughness.
-    pub roughness_stored: RoughnessStored,
-    /// One roughness or two, for `pbr`.
-    pub lobe: Lobe,
-    /// How `pbr` says two roughnesses.
-    pub anisotropy_output: AnisotropyOutput,
-    /// The channels of `pbr`'s roughness.
-    pub roughness_texture: RoughnessTexture,
-    /// How `pbr` stores the components of unit vectors in floats; unsigned types always hold `v / 2 + 1/2`.
-    pub normal_range: NormalRange,
+    /// The choices of [`Layout::Pbr`]; no other layout reads them.
+    pub pbr: PbrOptions,
     /// Shaped for block compression or not.
     pub blocks: Blocks,
     /// The kernel of the pyramid.
     pub filter: PyramidFilter,
-}
-
-impl BakeOptions {
-    /// What `pbr` says of directions; `None` for one roughness.
-    pub fn anisotropy(&self) -> Option<AnisotropyOutput> {
-        (self.layout == Layout::Pbr && self.lobe == Lobe::Anisotropic).then_some(self.anisotropy_output)
-    }
 }
 
 impl Default for BakeOptions {
@@ -366,15 +157,11 @@ impl Default for BakeOptions {
     fn default() -> Self {
         Self {
             layout: Layout::Lean,
-            bits: Bits::Sixteen,
+            bits: SampleType::U16,
             scale: ScaleChoice::Auto,
             base: Base::None,
             brdf: Brdf::Ggx,
-            roughness_stored: RoughnessStored::Perceptual,
-            lobe: Lobe::Isotropic,
-            anisotropy_output: AnisotropyOutput::Khr,
-            roughness_texture: RoughnessTexture::Green,
-            normal_range: NormalRange::Unorm,
+            pbr: PbrOptions::default(),
             blocks: Blocks::None,
             filter: PyramidFilter::Box,
         }

@@ -6,15 +6,15 @@
 use rayon::prelude::*;
 
 use crate::bake::{BakeError, Baked, bake};
-use crate::options::{BakeOptions, Bits, MaxSlope, SourceOptions};
+use crate::options::{BakeOptions, MaxSlope, SourceOptions};
 use crate::texture::{self, Bounds, Layout, Part, Peaks, TextureArray, TextureInfo};
-use crate::{Image, Moments};
+use crate::{Image, Moments, SampleType};
 
 /// What one storage type does to a map stored as LEAN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Precision {
     /// The storage type.
-    pub bits: Bits,
+    pub bits: SampleType,
     /// Range of the stored slopes; 1 for floats.
     pub scale: f32,
     /// The largest slope allowed. Where it was lowered for this type, errors are those of what is left.
@@ -46,7 +46,7 @@ impl Precision {
 pub fn measure(image: &Image, source: &SourceOptions) -> Result<Vec<Precision>, BakeError> {
     let mut references: Vec<(f32, Vec<TextureArray>)> = Vec::new();
     let mut measured = Vec::new();
-    for bits in Bits::ALL {
+    for bits in SampleType::ALL {
         let baked = bake(image, source, None, &BakeOptions { bits: *bits, ..BakeOptions::default() })?;
         let limit = baked.report.max_slope;
         // A type's own limit of slopes is no error of the type.
@@ -59,14 +59,14 @@ pub fn measure(image: &Image, source: &SourceOptions) -> Result<Vec<Precision>, 
     Ok(measured)
 }
 
-/// The pyramid's own covariance, of which nothing has been subtracted: a deviation's square is exact to f32.
+/// The pyramid's own covariance, of which nothing has been subtracted: a standard deviation's square is exact to f32.
 fn reference(image: &Image, source: &SourceOptions, max_slope: f32) -> Result<Vec<TextureArray>, BakeError> {
     let source = SourceOptions { max_slope: MaxSlope::Limit(max_slope), ..*source };
-    let options = BakeOptions { layout: Layout::Schilling, bits: Bits::Float, ..BakeOptions::default() };
+    let options = BakeOptions { layout: Layout::Schilling, bits: SampleType::F32, ..BakeOptions::default() };
     Ok(bake(image, &source, None, &options)?.arrays)
 }
 
-fn measure_one(baked: &Baked, bits: Bits, reference: &TextureArray) -> Precision {
+fn measure_one(baked: &Baked, bits: SampleType, reference: &TextureArray) -> Precision {
     let stored = &baked.arrays[0];
     let (mut variance, mut eigenvalue) = (0.0_f32, 0.0_f32);
     for level in 0..stored.level_count() {
@@ -94,7 +94,7 @@ fn larger_of_both(a: (f32, f32), b: (f32, f32)) -> (f32, f32) {
     (a.0.max(b.0), a.1.max(b.1))
 }
 
-/// Errors of a texel's variances and of its smaller eigenvalue, before anything is mended.
+/// Errors of a texel's variances and of its smaller eigenvalue, before anything is repaired.
 fn errors_at(
     stored: &TextureArray,
     reference: &TextureArray,
@@ -122,12 +122,12 @@ fn raw_covariance(moments: Moments) -> [f64; 3] {
 }
 
 /// The steepest slope, per component, with which a type still carries an exponent: the bound turned round.
-pub fn steepest_slope(bits: Bits, specular_power: f32) -> f32 {
+pub fn steepest_slope(bits: SampleType, specular_power: f32) -> f32 {
     let allowed = |slope: f32| {
-        let scale = if bits.sample_type().is_float() { 1.0 } else { slope };
+        let scale = if bits.is_float() { 1.0 } else { slope };
         let info = TextureInfo { scale, ..TextureInfo::new(Layout::Lean, Part::Whole) };
         let peaks = Peaks { component: slope, slope, variance: 0.0 };
-        texture::bounds(&info, bits.sample_type(), &peaks).usable_specular_power() >= specular_power
+        texture::bounds(&info, bits, &peaks).usable_specular_power() >= specular_power
     };
     // The error grows with the slope, so halving the interval finds the last that is allowed.
     let (mut safe, mut unsafe_slope) = (0.0_f32, 1024.0_f32);
@@ -142,18 +142,18 @@ pub fn steepest_slope(bits: Bits, specular_power: f32) -> f32 {
 }
 
 /// The cheapest type that carries an exponent with this map; `None` where none does.
-pub fn recommend(measured: &[Precision], specular_power: f32) -> Option<Bits> {
-    let order = [Bits::Eight, Bits::Sixteen, Bits::Half, Bits::Float];
+pub fn recommend(measured: &[Precision], specular_power: f32) -> Option<SampleType> {
+    let order = [SampleType::U8, SampleType::U16, SampleType::F16, SampleType::F32];
     order.into_iter().find(|bits| {
         measured.iter().any(|row| row.bits == *bits && row.usable_specular_power() >= specular_power)
     })
 }
 
 /// The exponent that unsigned texels carry where the components of slopes reach `slope`, with the scale that fits.
-pub fn unorm_specular_power(bits: Bits, slope: f32) -> f32 {
+pub fn unorm_specular_power(bits: SampleType, slope: f32) -> f32 {
     let info = TextureInfo { scale: slope, ..TextureInfo::new(Layout::Lean, Part::Whole) };
     let peaks = Peaks { component: slope, slope, variance: 0.0 };
-    texture::bounds(&info, bits.sample_type(), &peaks).usable_specular_power()
+    texture::bounds(&info, bits, &peaks).usable_specular_power()
 }
 
 #[cfg(test)]
@@ -162,14 +162,14 @@ mod tests {
 
     #[test]
     fn the_published_figures_come_out() {
-        // 0.4 % for the text's rounding step of R / 2^(n+1), where an 8-bit code's is R / (2 (2^n - 1)); 3 % for the f32
+        // 0.4 % for the paper's rounding step of R / 2^(n+1), where an 8-bit code's is R / (2 (2^n - 1)); 3 % for the f32
         // arithmetic on the way into a code of 16 bits, which the bound counts too.
         const NOT_COUNTED_IN_THE_TEXT: f32 = 0.035;
         for (bits, slope, power) in [
-            (Bits::Eight, 0.5, 409.0),
-            (Bits::Eight, 1.0, 102.2),
-            (Bits::Eight, 2.0, 25.55),
-            (Bits::Sixteen, 1.0, 26_214.0),
+            (SampleType::U8, 0.5, 409.0),
+            (SampleType::U8, 1.0, 102.2),
+            (SampleType::U8, 2.0, 25.55),
+            (SampleType::U16, 1.0, 26_214.0),
         ] {
             let got = unorm_specular_power(bits, slope);
             assert!(
@@ -182,13 +182,13 @@ mod tests {
     #[test]
     fn the_steepest_slope_is_the_bound_turned_round() {
         const BISECTION: f32 = 1e-4;
-        for bits in [Bits::Eight, Bits::Sixteen] {
+        for bits in [SampleType::U8, SampleType::U16] {
             for slope in [0.25, 1.0, 3.0] {
                 let power = unorm_specular_power(bits, slope);
                 let back = steepest_slope(bits, power);
                 assert!((back / slope - 1.0).abs() < BISECTION, "{bits}: {slope} -> {power} -> {back}");
             }
         }
-        assert!(steepest_slope(Bits::Float, 100.0) > steepest_slope(Bits::Half, 100.0));
+        assert!(steepest_slope(SampleType::F32, 100.0) > steepest_slope(SampleType::F16, 100.0));
     }
 }

@@ -84,6 +84,9 @@ impl From<[f32; 3]> for Normal {
     }
 }
 
+/// Filtered normals are not flatter than this: steeper than any slope that an eight-bit normal can tell from horizontal.
+pub const LEAST_NORMAL_Z: f32 = 1.0 / 512.0;
+
 /// The slope of a normal with `z > 0`; its length does not matter.
 pub fn slope_from_normal(normal: Normal) -> Slope {
     Slope { x: normal.x / normal.z, y: normal.y / normal.z }

@@ -8,8 +8,8 @@ use common::maps::{self, Random};
 use common::{baked_with, options, pyramid_oracle, real_files, slope_oracle};
 use roughcast::texture::{Base, Layout, RoughnessStored};
 use roughcast::{
-    BakeOptions, BakeReport, Baked, BaseRoughness, Bits, Blocks, Image, Kind, Lobe, PyramidFilter,
-    RoughnessTexture, SourceOptions,
+    AnisotropyOutput, BakeOptions, BakeReport, Baked, BaseRoughness, Blocks, Image, Kind, PbrOptions,
+    PyramidFilter, RoughnessTexture, SampleType, SourceOptions,
 };
 
 /// Float moments are made in single floats: this many roundings of a texel's rms come on top of a bound.
@@ -67,10 +67,10 @@ struct Case {
 
 fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
-    for bits in Bits::ALL {
+    for bits in SampleType::ALL {
         for layout in Layout::ALL {
             let float_only = matches!(layout, Layout::Moments | Layout::BumpSlopes);
-            if float_only && !bits.sample_type().is_float() {
+            if float_only && !bits.is_float() {
                 continue;
             }
             let options = options(*layout, *bits);
@@ -85,7 +85,7 @@ fn cases() -> Vec<Case> {
         }
     }
     for layout in [Layout::Variance, Layout::Toksvig, Layout::Pbr] {
-        let options = BakeOptions { blocks: Blocks::Bc, ..options(layout, Bits::Eight) };
+        let options = BakeOptions { blocks: Blocks::Bc, ..options(layout, SampleType::U8) };
         cases.push(Case { options, base: (layout != Layout::Variance).then_some(0.01) });
     }
     cases
@@ -94,17 +94,19 @@ fn cases() -> Vec<Case> {
 fn material_cases(options: BakeOptions) -> Vec<Case> {
     let mut cases = Vec::new();
     for stored in RoughnessStored::ALL {
-        if *stored == RoughnessStored::SpecularPower && !options.bits.sample_type().is_float() {
+        if *stored == RoughnessStored::SpecularPower && !options.bits.is_float() {
             continue;
         }
-        for lobe in Lobe::ALL {
+        for anisotropy in [None, Some(AnisotropyOutput::Khr)] {
             for base in [None, Some(0.01)] {
-                let options = BakeOptions { roughness_stored: *stored, lobe: *lobe, ..options };
+                let pbr = PbrOptions { roughness_stored: *stored, anisotropy, ..PbrOptions::default() };
+                let options = BakeOptions { pbr, ..options };
                 cases.push(Case { options, base });
             }
         }
     }
-    let packed = BakeOptions { roughness_texture: RoughnessTexture::Packed, ..options };
+    let pbr = PbrOptions { roughness_texture: RoughnessTexture::Packed, ..PbrOptions::default() };
+    let packed = BakeOptions { pbr, ..options };
     cases.push(Case { options: packed, base: None });
     cases
 }
@@ -119,7 +121,7 @@ struct Promise {
 
 /// Widths above one cannot be stored in 0 ..= 1; the bounds speak of what can.
 fn storable(case: &Case, variance: f64) -> f64 {
-    let unlimited = case.options.roughness_stored == RoughnessStored::SpecularPower;
+    let unlimited = case.options.pbr.roughness_stored == RoughnessStored::SpecularPower;
     if unlimited { variance } else { variance.min(0.5) }
 }
 
@@ -134,7 +136,7 @@ fn promised(case: &Case, texel: Texel, normal: [f64; 3]) -> Promise {
         Layout::Variance => plain(vec![c[0], c[1]], None),
         Layout::Clean => plain(vec![half_trace], None),
         Layout::SchillingIsotropic => plain(vec![eigenvalues(c).0], None),
-        Layout::Pbr if case.options.lobe == Lobe::Isotropic => plain(vec![storable(case, half_trace)], None),
+        Layout::Pbr if case.options.pbr.anisotropy.is_none() => plain(vec![storable(case, half_trace)], None),
         // Strength is a ratio of widths up to one.
         Layout::Pbr if eigenvalues(c).0 <= 0.5 => plain(vec![c[0], c[1]], Some(c)),
         Layout::Pbr => plain(vec![], None),
@@ -151,7 +153,7 @@ fn given(case: &Case, texel: Texel, promise: &Promise) -> Vec<f64> {
     let c = texel.covariance();
     match case.options.layout {
         Layout::Clean | Layout::SchillingIsotropic | Layout::Toksvig => vec![c[0]],
-        Layout::Pbr if case.options.lobe == Lobe::Isotropic => vec![storable(case, c[0])],
+        Layout::Pbr if case.options.pbr.anisotropy.is_none() => vec![storable(case, c[0])],
         _ => c[..promise.variances.len()].to_vec(),
     }
 }
@@ -207,19 +209,19 @@ fn check(
 
 /// Factors by which bounds may exceed the worst error on some map, each at most twice what is measured.
 fn loosest(case: &Case) -> Worst {
-    let BakeOptions { bits, layout, lobe, roughness_stored, .. } = case.options;
+    let BakeOptions { bits, layout, pbr, .. } = case.options;
     let slope = match bits {
         // Some texel is half a code off.
-        Bits::Eight => 1.1,
+        SampleType::U8 => 1.1,
         // The bound counts roundings of the float pyramid, too.
-        Bits::Sixteen => 1.5,
+        SampleType::U16 => 1.5,
         // A half float's rounding follows the value; the bound is that of the largest that the scale allows.
-        Bits::Half | Bits::Float => 3.0,
+        SampleType::F16 | SampleType::F32 => 3.0,
     };
     let variance = match (layout, bits) {
         // The bound on a variance adds those of all that it is computed of; no texel has all of them at once.
-        (Layout::Pbr, _) => material_variance(lobe, roughness_stored, bits),
-        (_, Bits::Half | Bits::Float) => 4.0,
+        (Layout::Pbr, _) => material_variance(&pbr, bits),
+        (_, SampleType::F16 | SampleType::F32) => 4.0,
         _ => 2.5,
     };
     // Both variances and the mixed term are off at once.
@@ -227,17 +229,17 @@ fn loosest(case: &Case) -> Worst {
 }
 
 /// The bounds of a material take the roughness between zero and one that is off most, which no map here has on its own.
-fn material_variance(lobe: Lobe, stored: RoughnessStored, bits: Bits) -> f64 {
-    let half = matches!(bits, Bits::Half | Bits::Float);
-    match (lobe, stored) {
+fn material_variance(pbr: &PbrOptions, bits: SampleType) -> f64 {
+    let half = matches!(bits, SampleType::F16 | SampleType::F32);
+    match (pbr.anisotropy, pbr.roughness_stored) {
         // The bound takes a half float's coarsest rounding, near a gloss of one, and the fastest change of the variance,
         // near zero. No gloss has both.
-        (Lobe::Isotropic, RoughnessStored::Gloss) if half => 12.0,
-        (Lobe::Isotropic, _) => 4.5,
+        (None, RoughnessStored::Gloss) if half => 12.0,
+        (None, _) => 4.5,
         // The bound takes the root of a half float's rounding, which only the width of a mirror is off by.
-        (Lobe::Anisotropic, RoughnessStored::AlphaSquared) if half => 20.0,
-        (Lobe::Anisotropic, RoughnessStored::SpecularPower) => 12.0,
-        (Lobe::Anisotropic, _) => 7.0,
+        (Some(_), RoughnessStored::AlphaSquared) if half => 20.0,
+        (Some(_), RoughnessStored::SpecularPower) => 12.0,
+        (Some(_), _) => 7.0,
     }
 }
 
@@ -268,7 +270,7 @@ fn bounds_that_are_too_wide_are_found() {
         );
         // A bound of twice the error is found where half a code is what counts.
         let doubled = Worst { slope: 0.5, variance: 0.5, eigenvalue: 0.5 };
-        if case.options.bits == Bits::Eight {
+        if case.options.bits == SampleType::U8 {
             assert_eq!(wide_bound(&case, doubled), Some("slope"), "{case:?}");
         }
     }
@@ -329,9 +331,7 @@ fn what_files_give_back_is_within_the_bounds_and_the_bounds_are_near() {
             worst.eigenvalue = worst.eigenvalue.max(here.eigenvalue);
         }
     }
-    for (case, worst) in
-        cases.iter().zip(&worst).filter(|(case, _)| !case.options.bits.sample_type().is_float())
-    {
+    for (case, worst) in cases.iter().zip(&worst).filter(|(case, _)| !case.options.bits.is_float()) {
         assert_eq!(wide_bound(case, *worst), None, "{case:?}: {worst:?}");
     }
 }

@@ -4,9 +4,7 @@ mod common;
 
 use common::{baked, float_moments, options, real_files, slope_oracle};
 use roughcast::texture::{Layout, decode};
-use roughcast::{
-    Bits, Image, NormalRange, PyramidFilter, SampleType, Samples, SourceCounts, SourceOptions, Wrap,
-};
+use roughcast::{Image, NormalRange, PyramidFilter, SampleType, Samples, SourceCounts, SourceOptions, Wrap};
 
 /// A real map in the small set.
 const MAP: &str = "crops/rock020_normal_256.jpg";
@@ -77,7 +75,7 @@ fn broken_texels_of_an_even_slope_are_the_slope() {
                 let baked = baked(
                     &image,
                     &SourceOptions { wrap: *wrap, ..source },
-                    &options(Layout::Moments, Bits::Float),
+                    &options(Layout::Moments, SampleType::F32),
                 );
                 assert_eq!(baked.report.counts.broken(), broken.len() as u64);
                 for moments in &decode(&baked.arrays).expect("moments")[0].moments {
@@ -106,7 +104,7 @@ fn neighbours_come_from_other_tiles_and_from_beyond_the_edge() {
         }
         image = Image::new(width, height, 3, Samples::F32(samples)).expect("as many");
         let wanted = slope_oracle::slopes(&image, &source);
-        let baked = baked(&image, &source, &options(Layout::Moments, Bits::Float));
+        let baked = baked(&image, &source, &options(Layout::Moments, SampleType::F32));
         assert_eq!(baked.report.counts, wanted.counts);
         let finest = &decode(&baked.arrays).expect("moments")[0];
         for (x, y) in broken {
@@ -120,7 +118,7 @@ fn neighbours_come_from_other_tiles_and_from_beyond_the_edge() {
 #[test]
 fn where_everything_is_broken_the_map_is_flat() {
     let image = Image::new(4, 4, 3, Samples::U8(vec![0; 48])).expect("as many");
-    let baked = baked(&image, &SourceOptions::default(), &options(Layout::Moments, Bits::Float));
+    let baked = baked(&image, &SourceOptions::default(), &options(Layout::Moments, SampleType::F32));
     assert_eq!(baked.report.counts, SourceCounts { behind: 16, ..Default::default() });
     assert_eq!((baked.report.steepest, baked.report.rms_slope), (0.0, 0.0));
 }

@@ -8,7 +8,7 @@ use common::maps::{self, gentle_map, material_map, variances};
 use common::{baked, baked_with, float_moments, options, oracle_of, pyramid_oracle, slope_oracle};
 use roughcast::texture::{Base, Layout, RoughnessStored};
 use roughcast::{
-    BakeOptions, BaseRoughness, Bits, Image, PyramidFilter, RoughnessMap, SampleType, Samples, SourceOptions,
+    BakeOptions, BaseRoughness, Image, PyramidFilter, RoughnessMap, SampleType, Samples, SourceOptions,
 };
 
 /// Averaging alone: some four roundings a level.
@@ -80,7 +80,7 @@ fn a_mapped_base_adds_the_mean_of_its_variance() {
 fn cleans_variance_is_half_of_leans_trace() {
     for (width, height) in SIZES {
         let (image, source) = maps::plain_normal_map(width, height, 34);
-        let clean = baked(&image, &source, &options(Layout::Clean, Bits::Float));
+        let clean = baked(&image, &source, &options(Layout::Clean, SampleType::F32));
         let wanted = oracle_of(&image, &source, &vec![0.0; width * height]);
         let texture = layer(&clean.arrays[0], "clean");
         let [bx, by, trace] = ["B.x", "B.y", "M.trace"].map(|name| stored(texture, name));
@@ -114,7 +114,7 @@ fn toksvigs_factor_follows_from_the_averaged_normal() {
             (BaseRoughness::Map(map), mapped),
         ] {
             let arrays =
-                baked_with(&image, &source, Some(base), &options(Layout::Toksvig, Bits::Float)).arrays;
+                baked_with(&image, &source, Some(base), &options(Layout::Toksvig, SampleType::F32)).arrays;
             let texture = layer(&arrays[0], "toksvig");
             let normals = averaged_normals(&image, &source);
             for (name, wanted) in ["R", "G", "B"].iter().zip(&normals) {
@@ -156,7 +156,7 @@ fn lean_and_schilling_hold_the_averaged_normal() {
     let (image, source) = maps::plain_normal_map(53, 37, 37);
     let normals = averaged_normals(&image, &source);
     for (layout, name) in [(Layout::Lean, "lean1"), (Layout::Schilling, "schilling1")] {
-        let arrays = baked(&image, &source, &options(layout, Bits::Float)).arrays;
+        let arrays = baked(&image, &source, &options(layout, SampleType::F32)).arrays;
         for (channel, wanted) in ["N.x", "N.y", "N.z"].iter().zip(&normals) {
             let got = stored(layer(&arrays[0], name), channel);
             expect(compare_planes(&got, wanted, |_| AVERAGING.count * EPS).map(|_| ()), &(layout, channel));
@@ -171,7 +171,7 @@ fn bump_slopes_are_derivatives_with_t_downwards() {
     let (normals, normal_source) = maps::plain_normal_map(53, 37, 38);
     for (image, source, has_height) in [(&heights, height_source, true), (&normals, normal_source, false)] {
         let moments = baked(image, &source, &float_moments(PyramidFilter::Box));
-        let bumps = baked(image, &source, &options(Layout::BumpSlopes, Bits::Float));
+        let bumps = baked(image, &source, &options(Layout::BumpSlopes, SampleType::F32));
         let texture = layer(&bumps.arrays[0], "bump-slopes");
         let reference = layer(&moments.arrays[0], "moments");
         for (bump, moment, sign) in [
@@ -199,7 +199,7 @@ fn bump_slopes_are_derivatives_with_t_downwards() {
     let values = (0..64).map(|i| ((i % 8) as f32) - 2.0 * ((i / 8) as f32)).collect();
     let image = maps::image(8, 8, 1, Samples::F32(values));
     let source = SourceOptions { height_scale: 1.0 / 8.0, ..height_source };
-    let bumps = baked(&image, &source, &options(Layout::BumpSlopes, Bits::Float));
+    let bumps = baked(&image, &source, &options(Layout::BumpSlopes, SampleType::F32));
     let texture = layer(&bumps.arrays[0], "bump-slopes");
     for (channel, wanted) in [("b1_dhds", 1.0), ("b2_dhdt", -2.0), ("b5_dh2dsdt", -2.0)] {
         assert_eq!(stored(texture, channel)[0].values[3 * 8 + 3], wanted, "{channel}");

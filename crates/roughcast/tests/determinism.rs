@@ -4,7 +4,7 @@ mod common;
 
 use common::{baked_with, maps, options};
 use roughcast::texture::{Base, Layout};
-use roughcast::{BakeOptions, Baked, BaseRoughness, Bits, Image, PyramidFilter, SampleType, SourceOptions};
+use roughcast::{BakeOptions, Baked, BaseRoughness, Image, PyramidFilter, SampleType, SourceOptions};
 
 fn with_threads(threads: usize, work: impl FnOnce() -> Baked + Send) -> Baked {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
@@ -28,7 +28,7 @@ fn threads_make_no_difference() {
         let (normals, normal_source) = maps::plain_normal_map(width, height, 61);
         let (heights, height_source) = maps::height_map(width, height, SampleType::U16, 62);
         for filter in PyramidFilter::ALL {
-            let moments = BakeOptions { filter: *filter, ..options(Layout::Moments, Bits::Float) };
+            let moments = BakeOptions { filter: *filter, ..options(Layout::Moments, SampleType::F32) };
             check(&normals, &normal_source, &moments);
             check(&heights, &height_source, &moments);
         }
@@ -43,7 +43,7 @@ fn threads_make_no_difference_to_a_limit() {
     slopes.iter_mut().step_by(1501).for_each(|slope| *slope = [40.0, -9.0]);
     let (image, source) = maps::slope_map(width, height, &slopes);
     for layout in [Layout::Lean, Layout::Variance] {
-        let options = options(layout, Bits::Sixteen);
+        let options = options(layout, SampleType::U16);
         assert!(baked_with(&image, &source, None, &options).report.limit.is_some());
         check(&image, &source, &options);
     }
@@ -53,8 +53,11 @@ fn threads_make_no_difference_to_a_limit() {
 fn threads_make_no_difference_to_any_layout() {
     let (normals, source) = maps::plain_normal_map(514, 258, 63);
     for layout in Layout::ALL {
-        let bits =
-            if matches!(layout, Layout::Moments | Layout::BumpSlopes) { Bits::Half } else { Bits::Sixteen };
+        let bits = if matches!(layout, Layout::Moments | Layout::BumpSlopes) {
+            SampleType::F16
+        } else {
+            SampleType::U16
+        };
         check(&normals, &source, &BakeOptions { base: Base::Baked, ..options(*layout, bits) });
     }
 }

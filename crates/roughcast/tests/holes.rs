@@ -5,7 +5,7 @@ mod common;
 
 use common::{baked, options};
 use roughcast::texture::{Layout, TextureArray};
-use roughcast::{Bits, Gradient, Image, Kind, Samples, SourceOptions, Wrap};
+use roughcast::{Gradient, Image, Kind, SampleType, Samples, SourceOptions, Wrap};
 
 const SIZE: usize = 16;
 /// Where the hole is.
@@ -51,7 +51,7 @@ fn a_hole_and_those_who_need_it_are_flat_and_all_others_keep_their_slope() {
     let forward = vec![HOLE, (hx - 1, hy), (hx, hy + 1)];
     let cases = [(Gradient::Sobel, sobel), (Gradient::Central, central), (Gradient::Forward, forward)];
     for (gradient, flat) in cases {
-        let moments = options(Layout::Moments, Bits::Float);
+        let moments = options(Layout::Moments, SampleType::F32);
         let whole =
             baked(&plane_with(700.0 + RISE.0 * hx as f32 + RISE.1 * hy as f32), &source(gradient), &moments);
         for hole in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
@@ -76,7 +76,7 @@ fn the_height_of_a_hole_is_the_mean_of_the_others() {
     let heights: Vec<f32> =
         (0..SIZE * SIZE).map(|i| image.samples().get(i)).filter(|v| v.is_finite()).collect();
     let mean = heights.iter().map(|v| f64::from(*v)).sum::<f64>() / heights.len() as f64;
-    let got = baked(&image, &source(Gradient::Sobel), &options(Layout::BumpSlopes, Bits::Float));
+    let got = baked(&image, &source(Gradient::Sobel), &options(Layout::BumpSlopes, SampleType::F32));
     let levels = &got.arrays[0].layers[0].levels;
     for height in [levels[0].get(HOLE.0, HOLE.1, 0), levels[levels.len() - 1].get(0, 0, 0)] {
         assert!((f64::from(height) / mean - 1.0).abs() < f64::from(ROUNDING), "{height}, not {mean}");

@@ -9,7 +9,7 @@ use common::pyramid_oracle::composed_weights;
 use common::{baked, float_moments, options, slope_oracle};
 use roughcast::texture::{Layout, decode};
 use roughcast::{
-    Bits, Gradient, Green, Image, NormalRange, PyramidFilter, SampleType, Samples, SourceOptions, Wrap,
+    Gradient, Green, Image, NormalRange, PyramidFilter, SampleType, Samples, SourceOptions, Wrap,
 };
 
 /// Averaging alone: some four roundings a level, eleven levels.
@@ -70,7 +70,7 @@ fn the_roughness_pyramid_holds_the_covariance_of_the_whole_footprint() {
             for wrap in Wrap::ALL {
                 let source = SourceOptions { wrap: *wrap, ..source };
                 let bake_options =
-                    roughcast::BakeOptions { filter: *filter, ..options(Layout::Schilling, Bits::Float) };
+                    roughcast::BakeOptions { filter: *filter, ..options(Layout::Schilling, SampleType::F32) };
                 let got = schilling_levels(&baked(&image, &source, &bake_options));
                 let level_0 = slope_oracle::slopes(&image, &source);
                 let wanted = footprints(&level_0, got.len(), *filter, *wrap);
@@ -286,7 +286,7 @@ fn green_up_and_green_down_are_the_same_map() {
         let image = maps::normal_map((96, 40), &maps::slopes(96, 40, 25), sample_type, &up, 3);
         let turned = with_green_turned(&image, range);
         for layout in [Layout::Lean, Layout::Pbr, Layout::Schilling] {
-            let bake_options = options(layout, Bits::Float);
+            let bake_options = options(layout, SampleType::F32);
             let one = baked(&image, &up, &bake_options);
             assert!(one == baked(&turned, &down, &bake_options), "{sample_type:?} {layout}");
             // And the direction of green does matter.

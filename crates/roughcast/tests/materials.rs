@@ -8,7 +8,7 @@ use common::maps::{self, gentle_map, material_map, variances};
 use common::{baked_with, options, oracle_of, pyramid_oracle};
 use roughcast::texture::{Base, Layout, Part, RoughnessStored, TextureArray, decode};
 use roughcast::{
-    AnisotropyOutput, BakeOptions, BaseRoughness, Bits, Image, Lobe, NormalRange, PyramidFilter,
+    AnisotropyOutput, BakeOptions, BaseRoughness, Image, NormalRange, PbrOptions, PyramidFilter,
     RoughnessMap, RoughnessTexture, SampleType,
 };
 
@@ -20,11 +20,25 @@ const SIZES: [(usize, usize); 3] = [(64, 64), (53, 37), (96, 40)];
 
 /// Floats that hold all numbers as they are, with roughness in a texture of its own.
 fn floats() -> BakeOptions {
-    BakeOptions {
-        roughness_texture: RoughnessTexture::Alone,
-        normal_range: NormalRange::Signed,
-        ..options(Layout::Pbr, Bits::Float)
-    }
+    with_choices(
+        SampleType::F32,
+        PbrOptions {
+            roughness_texture: RoughnessTexture::Alone,
+            normal_range: NormalRange::Signed,
+            ..PbrOptions::default()
+        },
+    )
+}
+
+/// The layout `pbr` with these choices.
+fn with_choices(bits: SampleType, pbr: PbrOptions) -> BakeOptions {
+    BakeOptions { pbr, ..options(Layout::Pbr, bits) }
+}
+
+/// [`floats`] with direction and strength of the anisotropy.
+fn anisotropic_floats() -> BakeOptions {
+    let plain = floats();
+    BakeOptions { pbr: PbrOptions { anisotropy: Some(AnisotropyOutput::Khr), ..plain.pbr }, ..plain }
 }
 
 fn part(arrays: &[TextureArray], part: Part) -> &TextureArray {
@@ -49,7 +63,8 @@ fn a_materials_roughness_is_that_of_base_and_bumps() {
             let wanted =
                 planes(&oracle_of(&image, &source, &variance), |t| t.covariance()[0] + t.covariance()[1]);
             for form in RoughnessStored::ALL {
-                let bake_options = BakeOptions { roughness_stored: *form, ..floats() };
+                let pbr = PbrOptions { roughness_stored: *form, ..floats().pbr };
+                let bake_options = BakeOptions { pbr, ..floats() };
                 let arrays = baked_with(&image, &source, base, &bake_options).arrays;
                 let file = part(&arrays, Part::Roughness);
                 let alpha_squared = combined([stored(&file.layers[0], "Y")], |[r]| match form {
@@ -92,8 +107,8 @@ fn an_anisotropic_material_gives_both_eigenvalues_and_the_direction_back() {
         let (image, source) = gentle_map(width, height);
         let base = f64::from(0.01_f32);
         let wanted = oracle_of(&image, &source, &vec![base; width * height]);
-        let bake_options =
-            BakeOptions { lobe: Lobe::Anisotropic, roughness_stored: RoughnessStored::Alpha, ..floats() };
+        let pbr = PbrOptions { roughness_stored: RoughnessStored::Alpha, ..anisotropic_floats().pbr };
+        let bake_options = BakeOptions { pbr, ..floats() };
         let roughness = Some(BaseRoughness::Variance(base as f32));
         let arrays = baked_with(&image, &source, roughness, &bake_options).arrays;
         let across = stored(&part(&arrays, Part::Roughness).layers[0], "Y");
@@ -131,7 +146,7 @@ fn grooves_point_their_direction_across_themselves() {
             .map(|s| [s * cos, s * sin])
             .collect();
         let (image, source) = maps::slope_map(8, 8, &slopes);
-        let bake_options = BakeOptions { lobe: Lobe::Anisotropic, ..floats() };
+        let bake_options = anisotropic_floats();
         let arrays = baked_with(&image, &source, Some(BaseRoughness::Variance(0.001)), &bake_options).arrays;
         let anisotropy = layer(part(&arrays, Part::Anisotropy), "anisotropy");
         let at_the_end = |name: &str| stored(anisotropy, name).last().expect("there are levels").values[0];
@@ -145,7 +160,10 @@ fn grooves_point_their_direction_across_themselves() {
 fn a_packed_texture_keeps_occlusion_and_metalness() {
     let (image, source) = gentle_map(53, 37);
     let material = material_map(53, 37);
-    let packed = BakeOptions { roughness_texture: RoughnessTexture::Packed, ..floats() };
+    let packed = with_choices(
+        SampleType::F32,
+        PbrOptions { roughness_texture: RoughnessTexture::Packed, ..floats().pbr },
+    );
     let map = |image, channel| {
         BaseRoughness::Map(RoughnessMap { image, channel, stored: RoughnessStored::Perceptual })
     };
@@ -175,14 +193,14 @@ fn a_packed_texture_keeps_occlusion_and_metalness() {
 #[test]
 fn roughness_is_where_its_layout_says() {
     let (image, source) = gentle_map(16, 16);
-    for bits in [Bits::Eight, Bits::Sixteen, Bits::Half] {
+    for bits in [SampleType::U8, SampleType::U16, SampleType::F16] {
         let baked = |roughness_texture| {
-            let options = BakeOptions { roughness_texture, ..options(Layout::Pbr, bits) };
+            let options = with_choices(bits, PbrOptions { roughness_texture, ..PbrOptions::default() });
             baked_with(&image, &source, Some(BaseRoughness::Variance(0.01)), &options).arrays
         };
         let alone = baked(RoughnessTexture::Alone);
         let roughness = &part(&alone, Part::Roughness).layers[0].levels;
-        assert_eq!(BakeOptions::default().roughness_texture, RoughnessTexture::Green);
+        assert_eq!(PbrOptions::default().roughness_texture, RoughnessTexture::Green);
         for (layout, name) in [
             (RoughnessTexture::Green, Part::Roughness),
             (RoughnessTexture::Packed, Part::OcclusionRoughnessMetallic),
@@ -205,21 +223,16 @@ fn roughness_is_where_its_layout_says() {
 #[test]
 fn floats_hold_normals_in_the_range_that_their_info_says() {
     let (image, source) = gentle_map(16, 16);
-    for bits in [Bits::Half, Bits::Float] {
+    for bits in [SampleType::F16, SampleType::F32] {
         let baked = |normal_range| {
-            let lobe = Lobe::Anisotropic;
-            baked_with(
-                &image,
-                &source,
-                None,
-                &BakeOptions { normal_range, lobe, ..options(Layout::Pbr, bits) },
-            )
-            .arrays
+            let anisotropy = Some(AnisotropyOutput::Khr);
+            let pbr = PbrOptions { normal_range, anisotropy, ..PbrOptions::default() };
+            baked_with(&image, &source, None, &with_choices(bits, pbr)).arrays
         };
         let (unorm, signed) = (baked(NormalRange::Unorm), baked(NormalRange::Signed));
-        assert_eq!(BakeOptions::default().normal_range, NormalRange::Unorm);
+        assert_eq!(PbrOptions::default().normal_range, NormalRange::Unorm);
         // Three roundings to the type's 11 or 24 bits: of both stored numbers, and of half of one.
-        let rounding = if bits == Bits::Half { 1.5 / 1024.0 } else { 3.0 * f32::EPSILON };
+        let rounding = if bits == SampleType::F16 { 1.5 / 1024.0 } else { 3.0 * f32::EPSILON };
         for name in [Part::Normal, Part::Anisotropy] {
             let levels = |arrays| part(arrays, name).layers[0].levels.clone();
             for (unorm, signed) in levels(&unorm).iter().zip(levels(&signed)) {
@@ -247,8 +260,8 @@ fn floats_hold_normals_in_the_range_that_their_info_says() {
 fn widths_along_the_axes_are_those_of_the_variances() {
     let (image, source) = gentle_map(32, 32);
     let base = 0.01_f32;
-    let bake_options =
-        BakeOptions { lobe: Lobe::Anisotropic, anisotropy_output: AnisotropyOutput::Alpha, ..floats() };
+    let pbr = PbrOptions { anisotropy: Some(AnisotropyOutput::Alpha), ..floats().pbr };
+    let bake_options = BakeOptions { pbr, ..floats() };
     let arrays = baked_with(&image, &source, Some(BaseRoughness::Variance(base)), &bake_options).arrays;
     let wanted = oracle_of(&image, &source, &vec![f64::from(base); 32 * 32]);
     for (axis, name) in [Part::AlphaX, Part::AlphaY].into_iter().enumerate() {
@@ -304,8 +317,9 @@ fn directions_of_a_brushed_disc_survive_filtering() {
         })
         .collect();
     let (image, source) = maps::slope_map(SIDE, SIDE, &slopes);
-    for bits in [Bits::Eight, Bits::Sixteen, Bits::Half] {
-        let bake_options = BakeOptions { lobe: Lobe::Anisotropic, ..options(Layout::Pbr, bits) };
+    for bits in [SampleType::U8, SampleType::U16, SampleType::F16] {
+        let anisotropy = Some(AnisotropyOutput::Khr);
+        let bake_options = with_choices(bits, PbrOptions { anisotropy, ..PbrOptions::default() });
         let arrays = baked_with(&image, &source, Some(BaseRoughness::Variance(0.001)), &bake_options).arrays;
         let levels = &part(&arrays, Part::Anisotropy).layers[0].levels;
         let mut looked_up = 0;
@@ -350,7 +364,7 @@ fn toksvigs_variance_comes_back_from_its_parts_whatever_the_base() {
         stored: RoughnessStored::Perceptual,
     });
     for base in [BaseRoughness::Variance(1.0 / 64.0), varies] {
-        let bits = Bits::Eight;
+        let bits = SampleType::U8;
         let whole = baked_with(&image, &source, Some(base), &options(Layout::Toksvig, bits));
         let shaped = BakeOptions { blocks: Blocks::Bc, ..options(Layout::Toksvig, bits) };
         let parts = baked_with(&image, &source, Some(base), &shaped);

@@ -8,7 +8,8 @@ use common::real_files::{self, Entry};
 use common::{baked, float_moments, maps, options, slope_oracle};
 use roughcast::texture::Layout;
 use roughcast::{
-    Bits, Green, Image, Kind, MaxSlope, NormalRange, PyramidFilter, Samples, SourceCounts, SourceOptions,
+    Green, Image, Kind, MaxSlope, NormalRange, PyramidFilter, SampleType, Samples, SourceCounts,
+    SourceOptions,
 };
 
 /// How many maps there are at least; fewer means that the manifest was not understood.
@@ -29,7 +30,7 @@ fn check(name: &str, image: &Image, source: &SourceOptions) -> SourceCounts {
     // The rules by which slopes are read, to which a limit that follows from all of them does not belong.
     let source = &SourceOptions { max_slope: MaxSlope::Limit(MaxSlope::OF_ANY_MAP), ..*source };
     let moments = baked(image, source, &float_moments(PyramidFilter::Box));
-    let lean = baked(image, source, &options(Layout::Lean, Bits::Sixteen));
+    let lean = baked(image, source, &options(Layout::Lean, SampleType::U16));
     assert_eq!(lean.report.counts, moments.report.counts, "{name}");
     let wanted = slope_oracle::slopes(image, source);
     assert_eq!(lean.report.counts, wanted.counts, "{name}");
@@ -101,7 +102,7 @@ fn rms_slopes_are_those_of_the_manifest() {
         let raised = maps::image(image.width(), image.height(), 3, Samples::F32(normals));
         let max_slope = MaxSlope::Limit(MaxSlope::OF_ANY_MAP);
         let source = SourceOptions { range: NormalRange::Signed, max_slope, ..Default::default() };
-        let got = baked(&raised, &source, &options(Layout::Clean, Bits::Sixteen)).report.rms_slope;
+        let got = baked(&raised, &source, &options(Layout::Clean, SampleType::U16)).report.rms_slope;
         assert!((got - wanted).abs() <= DECIMALS, "{}: {got} instead of {wanted}", entry.path);
         compared += 1;
     }
@@ -123,7 +124,7 @@ fn both_conventions_of_green_give_the_same_textures() {
             other => panic!("{path} has {:?}", other.sample_type()),
         }
         assert_eq!(up.channels(), 3);
-        let options = options(Layout::Lean, Bits::Sixteen);
+        let options = options(Layout::Lean, SampleType::U16);
         let turned = SourceOptions { green: Green::Down, ..Default::default() };
         let one = baked(&up, &SourceOptions::default(), &options);
         assert!(one == baked(&down, &turned, &options), "{path}");

@@ -3,8 +3,8 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use roughcast::texture::{Brdf, Layout, Part, RoughnessStored, TextureInfo};
-use roughcast::{AnisotropyOutput, BakeOptions, Bits, Blocks, Lobe, Named, NormalRange, RoughnessTexture};
+use roughcast::texture::{Brdf, RoughnessStored, TextureInfo};
+use roughcast::{BakeOptions, Blocks, Named, NormalRange, PbrOptions, RoughnessTexture, SampleType};
 
 use super::{Args, Supercompress};
 use crate::UsageError;
@@ -27,18 +27,18 @@ impl Args {
 
     /// The library's options; where nothing was said, those that suit the container.
     pub(super) fn options(&self, container: Container, roughness: Option<&Roughness>) -> BakeOptions {
-        let bits = self.bits.unwrap_or(match (container, self.layout, self.compress) {
-            (_, _, Blocks::Bc) => Bits::Eight,
-            (Container::Exr, Layout::Moments, _) => Bits::Float,
-            (Container::Exr, ..) | (_, Layout::BumpSlopes | Layout::Moments, _) => Bits::Half,
-            (_, Layout::Pbr | Layout::Toksvig, _) => Bits::Eight,
-            (Container::Ktx2 | Container::Dds, ..) if self.target != Target::Desktop => Bits::Half,
-            _ => Bits::Sixteen,
+        let bits = self.bits.unwrap_or(match (container, self.layout.default_sample_type(), self.compress) {
+            (_, _, Blocks::Bc) => SampleType::U8,
+            (Container::Exr, SampleType::U8 | SampleType::U16, _) => SampleType::F16,
+            (Container::Ktx2 | Container::Dds, SampleType::U16, _) if self.target != Target::Desktop => {
+                SampleType::F16
+            }
+            (_, suited, _) => suited,
         });
         // Blinn-Phong renderers want exponents, which only floats hold.
         let stored = match (self.roughness.roughness_output, self.roughness.brdf) {
             (Some(stored), _) => stored,
-            (None, Brdf::BlinnPhong) if bits.sample_type().is_float() => RoughnessStored::SpecularPower,
+            (None, Brdf::BlinnPhong) if bits.is_float() => RoughnessStored::SpecularPower,
             (None, _) => RoughnessStored::Perceptual,
         };
         BakeOptions {
@@ -47,11 +47,12 @@ impl Args {
             scale: self.scale,
             base: self.roughness.base,
             brdf: self.roughness.brdf,
-            roughness_stored: stored,
-            lobe: if self.anisotropy.is_some() { Lobe::Anisotropic } else { Lobe::Isotropic },
-            anisotropy_output: self.anisotropy.unwrap_or(AnisotropyOutput::Khr),
-            roughness_texture: self.roughness_texture(container, roughness),
-            normal_range: self.normal_range.unwrap_or(NormalRange::Unorm),
+            pbr: PbrOptions {
+                roughness_stored: stored,
+                anisotropy: self.anisotropy,
+                roughness_texture: self.roughness_texture(container, roughness),
+                normal_range: self.normal_range.unwrap_or(NormalRange::Unorm),
+            },
             blocks: self.compress,
             filter: self.filter,
         }
@@ -83,14 +84,14 @@ impl Args {
             (self.normal_range.is_some(), "--normal-range"),
             (self.roughness.roughness_output.is_some(), "--roughness-output"),
         ] {
-            if given && self.layout != Layout::Pbr {
+            if given && !self.layout.reads_pbr_options() {
                 return Err(UsageError(format!(
                     "{option} is for --as pbr, and the layout is '{}': leave it out",
                     self.layout
                 )));
             }
         }
-        if self.normal_range.is_some() && !options.bits.sample_type().is_float() {
+        if self.normal_range.is_some() && !options.bits.is_float() {
             return Err(UsageError(format!(
                 "--normal-range is for floats, and {} bits always hold n/2 + 1/2: leave it out, or say --bits half",
                 options.bits
@@ -106,12 +107,8 @@ impl Args {
 
     /// What the first file that is written contains.
     pub(super) fn first_file(&self, container: Container) -> TextureInfo {
-        let part = match (self.layout, self.compress) {
-            (Layout::Pbr, _) | (Layout::Toksvig, Blocks::Bc) => Part::Normal,
-            (Layout::Variance, Blocks::Bc) => Part::Split,
-            _ => Part::Whole,
-        };
-        let info = TextureInfo::new(self.layout, part);
+        let parts = self.layout.parts_written(self.compress, &self.options(container, None).pbr);
+        let info = TextureInfo::new(self.layout, parts[0]);
         if self.splits(container) { roughcast::texture::split_infos(&info)[0] } else { info }
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use anyhow::{Context, Result};
 use glam::DVec2;
 use roughcast::shading::{Material, Shading};
-use roughcast::{BakeOptions, Bits, Image, Samples, SourceOptions, Wrap, normal_from_slope};
+use roughcast::{BakeOptions, Image, SampleType, Samples, SourceOptions, Wrap, normal_from_slope};
 use roughcast_gpu::bake::{BakePath, GpuBaker, bake_bandwidth};
 use roughcast_gpu::render::{
     DEPTH_FORMAT, DrawOptions, Drawing, Geometry, GpuTextures, LevelOfDetail, RenderTarget, Renderer,
@@ -64,7 +64,7 @@ const WARM_UP: u32 = 3;
 
 /// Half floats, which every device can filter, store to and render to; no base, which is added as the model shades.
 pub fn bake_options(shading: Shading) -> BakeOptions {
-    BakeOptions { layout: shading.layout(), bits: Bits::Half, ..BakeOptions::default() }
+    BakeOptions { layout: shading.layout(), bits: SampleType::F16, ..BakeOptions::default() }
 }
 
 /// Draws `frames` frames of each method in pictures of `size` pixels.

@@ -85,14 +85,15 @@ fn wool() -> Result<Subject> {
 #[cfg(test)]
 mod tests {
     use roughcast::texture::{Layout, decode};
-    use roughcast::{BakeOptions, Bits, bake};
+    use roughcast::{BakeOptions, SampleType, bake};
 
     use super::*;
 
     #[test]
     fn the_grooves_have_two_slopes_and_little_between() {
         let subject = v_groove();
-        let options = BakeOptions { layout: Layout::Moments, bits: Bits::Float, ..BakeOptions::default() };
+        let options =
+            BakeOptions { layout: Layout::Moments, bits: SampleType::F32, ..BakeOptions::default() };
         let baked = bake(&subject.image, &subject.options, None, &options).expect("a map");
         let finest = &decode(&baked.arrays).expect("moments")[0];
         let slopes = finest.moments.iter().map(|moments| f64::from(moments.mean.x));

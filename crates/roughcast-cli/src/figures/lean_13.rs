@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use glam::DVec3;
-use roughcast::Bits;
+use roughcast::SampleType;
 use roughcast::shading::{LobeOptions, Shading};
 use roughcast_scene::metrics::{energy_error, rmse};
 use roughcast_scene::pattern::random_ridges;
@@ -78,7 +78,7 @@ fn stage(distance: f64) -> Stage {
         map: random_ridges(512, 0.25, 13),
         scene: scene(Shape::Torus(Torus::default()), 4.0, camera, DVec3::new(0.5, 1.0, 0.6)),
         options: LobeOptions::published(SPECULAR_POWER),
-        bits: Bits::Eight,
+        bits: SampleType::U8,
         size: (pixels, pixels),
     }
 }

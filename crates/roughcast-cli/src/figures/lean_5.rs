@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use glam::DVec3;
-use roughcast::Bits;
+use roughcast::SampleType;
 use roughcast::shading::{LobeOptions, Shading};
 use roughcast_scene::metrics::{DEFAULT_PIXELS_PER_DEGREE, hdr_flip};
 use roughcast_scene::pattern::random_bumps;
@@ -80,7 +80,7 @@ fn stage() -> Stage {
         map: random_bumps(512, 0.15, 5),
         scene,
         options: LobeOptions::published(SPECULAR_POWER),
-        bits: Bits::Sixteen,
+        bits: SampleType::U16,
         size: SIZE,
     }
 }

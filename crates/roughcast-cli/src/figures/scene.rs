@@ -5,7 +5,7 @@ use std::sync::Arc;
 use anyhow::Result;
 use glam::DVec3;
 use roughcast::shading::{LobeOptions, Material, Shading};
-use roughcast::{Bits, Lobe, Wrap};
+use roughcast::{Lobe, SampleType, Wrap};
 use roughcast_scene::pattern::Pattern;
 use roughcast_scene::render::{Method, Truth, unwatched};
 use roughcast_scene::{
@@ -23,8 +23,8 @@ pub struct Stage {
     pub map: Pattern,
     pub scene: Scene,
     pub options: LobeOptions,
-    /// Bits of the textures of every method.
-    pub bits: Bits,
+    /// The type of the texels of every method.
+    pub bits: SampleType,
     /// Width and height of the pictures.
     pub size: (u32, u32),
 }

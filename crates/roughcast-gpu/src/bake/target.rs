@@ -2,7 +2,7 @@
 
 use roughcast::texture::{self, Layout, Texture, TextureArray, TextureInfo};
 use roughcast::{
-    BakeError, BakeOptions, Bits, Blocks, Image, PyramidFilter, SampleType, Samples, level_sizes,
+    BakeError, BakeOptions, Blocks, Image, PyramidFilter, SampleType, Samples, SourceError, level_sizes,
 };
 
 use crate::read_back::{Staged, stage_texture};
@@ -35,10 +35,10 @@ impl Target {
             ));
         }
         let format = match options.bits {
-            Bits::Eight => wgpu::TextureFormat::Rgba8Unorm,
-            Bits::Sixteen => wgpu::TextureFormat::Rgba16Unorm,
-            Bits::Half => wgpu::TextureFormat::Rgba16Float,
-            Bits::Float => {
+            SampleType::U8 => wgpu::TextureFormat::Rgba8Unorm,
+            SampleType::U16 => wgpu::TextureFormat::Rgba16Unorm,
+            SampleType::F16 => wgpu::TextureFormat::Rgba16Float,
+            SampleType::F32 => {
                 return refuse(
                     "the GPU bakes 8 bits, 16 bits and half floats: single floats cannot be filtered everywhere; \
                      say --bits half, or bake on the CPU"
@@ -46,7 +46,7 @@ impl Target {
                 );
             }
         };
-        Ok(Self { layout: options.layout, format, sample_type: options.bits.sample_type() })
+        Ok(Self { layout: options.layout, format, sample_type: options.bits })
     }
 
     /// Textures of the layout.
@@ -187,10 +187,9 @@ pub(super) fn base_variance_of(
         {
             Ok(variance)
         }
-        (_, Some(roughcast::BaseRoughness::Variance(variance))) => Err(BakeError::Options(format!(
-            "the base roughness gives a slope variance of {variance}: it must be finite and not negative"
-        ))
-        .into()),
+        (_, Some(roughcast::BaseRoughness::Variance(variance))) => {
+            Err(BakeError::Source(SourceError::BaseVariance { variance }).into())
+        }
         (_, Some(roughcast::BaseRoughness::Map(_))) => Err(GpuError::OnlyOnCpu(
             "the GPU folds in one roughness for the whole map, not a map of it: bake on the CPU".to_owned(),
         )),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use roughcast::shading::{Material, Shading};
 use roughcast::texture::{Base, TextureArray};
-use roughcast::{BakeOptions, BaseRoughness, Bits, ScaleChoice, bake};
+use roughcast::{BakeOptions, BaseRoughness, SampleType, ScaleChoice, bake};
 use roughcast_scene::{Bounds, Light, Mesh, Plane, Scene, Shape, Sphere, Torus, View, load_mesh, pattern};
 
 pub const SIZE: (u32, u32) = (128, 96);
@@ -58,7 +58,7 @@ pub fn scenes(view: View) -> Vec<(&'static str, Scene)> {
 pub const SPECULAR_POWER: f32 = 64.0;
 
 /// Random bumps in the layout of a model.
-pub fn maps(shading: Shading, bits: Bits) -> Vec<TextureArray> {
+pub fn maps(shading: Shading, bits: SampleType) -> Vec<TextureArray> {
     maps_with(BakeOptions { layout: shading.layout(), bits, ..BakeOptions::default() })
 }
 

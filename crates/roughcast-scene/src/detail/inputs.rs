@@ -1,9 +1,9 @@
 //! Which textures of a bake a renderer samples: the same choice for every renderer.
 
 use roughcast::Lobe;
-use roughcast::shading::Shading;
+use roughcast::shading::{Shading, Wanted};
 use roughcast::texture::{
-    DecodeError, Input, Layout, Packing, Part, TexelReader, Texture, TextureArray, TextureInfo, Wanted,
+    DecodeError, Input, Layout, Packing, Part, TexelReader, Texture, TextureArray, TextureInfo,
 };
 
 use crate::MipmapError;

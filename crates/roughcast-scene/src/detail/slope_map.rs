@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 use roughcast::texture::{Layout, MomentLevel, decode};
-use roughcast::{BakeError, BakeOptions, Bits, Image, Slope, SourceOptions, Wrap, bake};
+use roughcast::{BakeError, BakeOptions, Image, SampleType, Slope, SourceOptions, Wrap, bake};
 
 use crate::mipmap::wrapped;
 
@@ -31,7 +31,7 @@ impl SlopeMap {
     /// # Errors
     /// [`BakeError`] where the map cannot be read.
     pub fn of(map: &Image, options: &SourceOptions) -> Result<Self, BakeError> {
-        let floats = BakeOptions { layout: Layout::Moments, bits: Bits::Float, ..BakeOptions::default() };
+        let floats = BakeOptions { layout: Layout::Moments, bits: SampleType::F32, ..BakeOptions::default() };
         let baked = bake(map, options, None, &floats)?;
         let levels = decode(&baked.arrays).expect("a bake of this layout is complete");
         Ok(Self::of_level(&levels[0]))

@@ -1,7 +1,7 @@
 //! Baked textures of any layout as a source of bumps.
 
-use roughcast::shading::{FootprintRatio, LobeOptions, Shading};
-use roughcast::texture::{Packing, TexelReader, TextureArray, TextureInfo, Wanted};
+use roughcast::shading::{FootprintRatio, LobeOptions, Shading, Wanted};
+use roughcast::texture::{Packing, TexelReader, TextureArray, TextureInfo};
 use roughcast::{Distribution, Slope};
 
 use super::inputs::{DetailError, TextureInputs, model_inputs, texture_inputs};

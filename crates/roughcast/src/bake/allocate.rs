@@ -1,9 +1,10 @@
 //! The textures that a bake writes into.
 
 use crate::Image;
-use crate::options::{AnisotropyOutput, BakeOptions, Blocks, RoughnessTexture};
-use crate::pyramid::{LevelOut, PartOut, SamplesMut, level_sizes};
-use crate::texture::{self, LayerSpec, Layout, Part, Texture, TextureArray, TextureInfo};
+use crate::levels::level_sizes;
+use crate::options::BakeOptions;
+use crate::pyramid::{LevelOut, PartOut, SamplesMut};
+use crate::texture::{self, Blocks, LayerSpec, Part, Texture, TextureArray, TextureInfo};
 
 /// Textures of all of a layout's files, taken from `earlier` where these have the right shape.
 pub(super) fn allocate(
@@ -12,23 +13,7 @@ pub(super) fn allocate(
     options: &BakeOptions,
     size: (usize, usize),
 ) -> Vec<TextureArray> {
-    let mut parts = vec![info.part];
-    match (options.layout, options.blocks) {
-        (Layout::Pbr, _) => {
-            parts.push(match options.roughness_texture {
-                RoughnessTexture::Alone | RoughnessTexture::Green => Part::Roughness,
-                RoughnessTexture::Packed => Part::OcclusionRoughnessMetallic,
-            });
-            match options.anisotropy() {
-                Some(AnisotropyOutput::Khr) => parts.push(Part::Anisotropy),
-                Some(AnisotropyOutput::Alpha) => parts.extend([Part::AlphaX, Part::AlphaY]),
-                None => {}
-            }
-        }
-        (Layout::Toksvig, Blocks::Bc) => parts.push(Part::Gloss),
-        _ => {}
-    }
-    let sample_type = options.bits.sample_type();
+    let sample_type = options.bits;
     let mut earlier = earlier.into_iter().flat_map(|array| array.layers);
     let mut texture = |spec: &LayerSpec, channels: usize| {
         let levels = level_sizes(size.0, size.1);
@@ -44,6 +29,7 @@ pub(super) fn allocate(
         };
         Texture { name: spec.name, channels: spec.channels[..channels].to_vec(), levels }
     };
+    let parts = options.layout.parts_written(options.blocks, &options.pbr);
     parts
         .into_iter()
         .map(|part| {

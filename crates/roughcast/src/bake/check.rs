@@ -2,73 +2,47 @@
 
 use super::BakeError;
 use crate::SampleType;
-use crate::options::{BakeOptions, Blocks, MaxSlope, PyramidFilter, ScaleChoice, SourceOptions};
+use crate::options::{BakeOptions, MaxSlope, ScaleChoice, SourceOptions};
+use crate::roughness::{Base, RoughnessStored};
 use crate::source::BaseRoughness;
-use crate::texture::{Base, Layout, RoughnessStored};
+use crate::texture::rules::Stores;
+use crate::texture::{BaseRole, BlockCompression, Blocks};
 
 /// Half floats end here; second moments are squares of slopes.
 const LARGEST_SLOPE_IN_HALF: f32 = 255.0;
 
 pub(super) fn check_options(options: &BakeOptions, has_roughness: bool) -> Result<(), BakeError> {
-    let refuse = |line: String| Err(BakeError::Options(line));
-    let float = options.bits.sample_type().is_float();
-    let layout = options.layout;
-    if matches!(layout, Layout::Moments | Layout::BumpSlopes) && !float {
-        return refuse(format!("the layout '{layout}' holds floats: say --bits half or --bits float"));
+    let BakeOptions { layout, bits, .. } = *options;
+    let is_float = bits.is_float();
+    if !layout.sample_types().contains(&bits) {
+        return Err(BakeError::FloatsOnly { layout, bits });
     }
     if options.base == Base::Baked && !has_roughness {
-        return refuse(
-            "--base baked needs a roughness to fold in: add --specular-power or --roughness".to_owned(),
-        );
+        return Err(BakeError::NoBaseToFoldIn);
     }
-    if layout == Layout::Toksvig && !has_roughness {
-        return refuse(
-            "the layout 'toksvig' stores a gloss factor, which depends on the shininess: add --specular-power or \
-             --roughness"
-                .to_owned(),
-        );
+    if layout.base_role() == BaseRole::Apart && !has_roughness {
+        return Err(BakeError::NeedsBase { layout });
     }
-    if layout == Layout::Pbr && options.roughness_stored == RoughnessStored::SpecularPower && !float {
-        return refuse(
-            "specular powers do not fit into 0 to 1: say --bits half, or store another roughness with \
-             --roughness-stored"
-                .to_owned(),
-        );
+    let stores_powers = options.pbr.roughness_stored == RoughnessStored::SpecularPower;
+    if layout.reads_pbr_options() && stores_powers && !is_float {
+        return Err(BakeError::SpecularPowersNeedFloats { bits });
     }
     if let ScaleChoice::Fixed(scale) = options.scale {
-        if matches!(layout, Layout::Pbr | Layout::Toksvig) {
-            return refuse(format!("the layout '{layout}' stores normals, not slopes: leave --scale out"));
+        if layout.rules().stores() == Stores::Normals {
+            return Err(BakeError::NoScale { layout });
         }
-        if float {
-            return refuse("float texels hold slopes as they are: leave --scale out".to_owned());
+        if is_float {
+            return Err(BakeError::ScaleOfFloats { bits });
         }
         if !(scale.is_finite() && scale > 0.0) {
-            return refuse(format!("the scale must be above zero, not {scale}"));
+            return Err(BakeError::InvalidScale { scale });
         }
     }
-    if options.blocks == Blocks::Bc {
-        check_blocks(options)?;
-    }
-    Ok(())
-}
-
-fn check_blocks(options: &BakeOptions) -> Result<(), BakeError> {
-    let refuse = |line: String| Err(BakeError::Options(line));
-    match options.layout {
-        Layout::Pbr | Layout::Variance | Layout::Toksvig if options.bits.sample_type() == SampleType::U8 => {
-            Ok(())
-        }
-        Layout::Pbr | Layout::Variance | Layout::Toksvig => {
-            refuse("blocks are compressed from 8 bits: leave --bits out, or say --bits 8".to_owned())
-        }
-        Layout::Lean | Layout::Clean => refuse(format!(
-            "the layout '{}' cannot be block-compressed: its variance is a small difference of large numbers, and \
-             the blocks' errors are larger than it. Use --as variance or --as pbr with --compress bc",
-            options.layout
-        )),
-        layout => refuse(format!(
-            "the layout '{layout}' cannot be block-compressed: use --as variance, --as pbr or --as toksvig"
-        )),
+    match (options.blocks, layout.block_compression()) {
+        (Blocks::None, _) => Ok(()),
+        (Blocks::Bc, BlockCompression::FromEightBits) if bits == SampleType::U8 => Ok(()),
+        (Blocks::Bc, BlockCompression::FromEightBits) => Err(BakeError::BlocksNeedEightBits { bits }),
+        (Blocks::Bc, reason) => Err(BakeError::NotCompressible { layout, reason }),
     }
 }
 
@@ -79,14 +53,10 @@ pub(super) fn limit_slopes(
     roughness: Option<BaseRoughness<'_>>,
     options: &BakeOptions,
 ) -> Result<(), BakeError> {
-    let stores_squares =
-        matches!(options.layout, Layout::Lean | Layout::Clean | Layout::Moments | Layout::BumpSlopes);
+    let stores_squares = options.layout.rules().stores() == Stores::RawMoments;
     let asked = source.max_slope.before_a_look();
-    if options.bits.sample_type() == SampleType::F16 && stores_squares && asked > LARGEST_SLOPE_IN_HALF {
-        return Err(BakeError::Options(format!(
-            "the square of a slope of {} does not fit into a half float: lower --max-slope to {} or say --bits float",
-            asked, LARGEST_SLOPE_IN_HALF
-        )));
+    if options.bits == SampleType::F16 && stores_squares && asked > LARGEST_SLOPE_IN_HALF {
+        return Err(BakeError::SlopeBeyondHalf { max_slope: asked, largest: LARGEST_SLOPE_IN_HALF });
     }
     if let ScaleChoice::Fixed(scale) = options.scale {
         // Only raw second moments share their range with the base; a variance has a range of its own.
@@ -96,9 +66,7 @@ pub(super) fn limit_slopes(
         };
         let room = scale * scale - base;
         if room.partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) {
-            return Err(BakeError::Options(format!(
-                "the base roughness alone has a variance of {base}, which a scale of {scale} cannot hold: raise --scale"
-            )));
+            return Err(BakeError::BaseBeyondScale { base_variance: base, scale });
         }
         source.max_slope = MaxSlope::Limit(asked.min(room.sqrt()));
     } else if !has_range_of_the_map(options) {
@@ -109,27 +77,5 @@ pub(super) fn limit_slopes(
 
 /// Whether texels hold slopes or variances over a range that follows from the map.
 fn has_range_of_the_map(options: &BakeOptions) -> bool {
-    options.scale == ScaleChoice::Auto && options.layout.uses_scale(options.bits.sample_type())
-}
-
-/// Whether a filter may average moments. All that this library has may; this names the reason for the others.
-pub fn refuse_filter(name: &str) -> Option<&'static str> {
-    const NEGATIVE: [&str; 11] = [
-        "lanczos",
-        "lanczos2",
-        "lanczos3",
-        "lanczos4",
-        "catmull-rom",
-        "catrom",
-        "mitchell",
-        "cubic",
-        "bicubic",
-        "sinc",
-        "kaiser",
-    ];
-    let known = name.parse::<PyramidFilter>().is_ok();
-    (!known && NEGATIVE.contains(&name)).then_some(
-        "its kernel has lobes below zero, and with negative weights the covariance of slopes stops being one: use \
-         box, triangle or gaussian",
-    )
+    options.scale == ScaleChoice::Auto && options.layout.uses_scale(options.bits)
 }

@@ -3,12 +3,13 @@
 //! The usable specular power of unsigned texels falls with the square of their range of slopes, or with their range of variances.
 
 use super::SlopeLimit;
-use super::scales::{NeededRange, STEEP_COST, STEEP_ONE_IN, largest_variance, smallest_scale};
+use super::scales::{NeededRange, STEEP_COST, STEEP_ONE_IN, largest_variance};
 use crate::options::{BakeOptions, MaxSlope, ScaleChoice};
 use crate::pyramid::PyramidOptions;
 use crate::source::MapSource;
 use crate::survey::{Survey, survey};
-use crate::texture::{Layout, Peaks};
+use crate::texture::Peaks;
+use crate::texture::rules::Stores;
 
 /// What is known of a map before it is stored.
 pub(super) struct Ranges {
@@ -28,14 +29,14 @@ pub(super) fn find_ranges(
     pyramid_options: PyramidOptions,
     options: &BakeOptions,
 ) -> Ranges {
-    let is_open = !options.bits.sample_type().is_float() && options.scale == ScaleChoice::Auto;
+    let is_open = !options.bits.is_float() && options.scale == ScaleChoice::Auto;
     let looked_at = is_open.then(|| survey(&source.slopes_only()));
     let stores_variance = options.layout.stores_variance();
     let variance = stores_variance.then(|| largest_variance(&source.slopes_only(), pyramid_options));
     let mut needed = NeededRange { peaks: looked_at.as_ref().map(|looked_at| looked_at.peaks), variance };
     let limit = match (&looked_at, max_slope) {
         (Some(looked_at), MaxSlope::Auto) => {
-            limit_steepest(source, &mut needed, looked_at, options.layout, pyramid_options)
+            limit_steepest(source, &mut needed, looked_at, options.layout.rules().stores(), pyramid_options)
         }
         _ => None,
     };
@@ -47,7 +48,7 @@ fn limit_steepest(
     source: &mut MapSource<'_>,
     needed: &mut NeededRange,
     looked_at: &Survey,
-    layout: Layout,
+    stores: Stores,
     pyramid_options: PyramidOptions,
 ) -> Option<SlopeLimit> {
     let peaks = &looked_at.peaks;
@@ -69,7 +70,7 @@ fn limit_steepest(
             NeededRange { peaks: Some(limited), variance: Some(variance) }
         }
     };
-    let factor = power_won(layout, peaks, needed.variance, &limited);
+    let factor = power_won(stores, peaks, needed.variance, &limited);
     if factor > STEEP_COST {
         *needed = limited;
         return Some(SlopeLimit { max_slope, texels: 0, factor });
@@ -79,10 +80,10 @@ fn limit_steepest(
 }
 
 /// The factor by which the usable specular power grows.
-fn power_won(layout: Layout, peaks: &Peaks, variance: Option<f32>, limited: &NeededRange) -> f32 {
+fn power_won(stores: Stores, peaks: &Peaks, variance: Option<f32>, limited: &NeededRange) -> f32 {
     match (variance, limited.variance, &limited.peaks) {
         (Some(before), Some(after), _) => before / after,
-        (_, _, Some(after)) => (smallest_scale(layout, peaks) / smallest_scale(layout, after)).powi(2),
+        (_, _, Some(after)) => (stores.smallest_scale(peaks) / stores.smallest_scale(after)).powi(2),
         (_, _, None) => 1.0,
     }
 }

@@ -2,36 +2,27 @@
 
 mod allocate;
 mod check;
+mod error;
 mod limit;
 mod plan;
 mod scales;
 
-pub use check::refuse_filter;
+pub use error::BakeError;
 pub use plan::{BakePlan, plan_bake};
 
+use crate::levels::level_sizes;
 use crate::moments::Moments;
-use crate::options::{BakeOptions, Blocks, SourceOptions};
-use crate::pyramid::{self, LevelStats, PyramidOptions, level_sizes};
-use crate::source::{BaseRoughness, BaseSource, MapSource, RoughnessMap, SourceError, UseOfBase};
+use crate::options::{BakeOptions, SourceOptions};
+use crate::pyramid::{self, LevelStats, PyramidOptions};
+use crate::roughness::{Base, RoughnessStored};
+use crate::source::{BaseRoughness, BaseSource, MapSource, RoughnessMap, UseOfBase};
 use crate::survey::survey_of_some_rows;
-use crate::texture::codec::Units;
-use crate::texture::orient::orient;
-use crate::texture::{self, Base, Bounds, EncoderShape, Layout, Part, Peaks, RoughnessStored, TextureArray};
+use crate::texture::rules::Storage;
+use crate::texture::{self, BaseRole, Bounds, Peaks, TextureArray};
 use crate::{Image, SourceCounts};
 use allocate::{allocate, level_outs};
 use limit::{Ranges, find_ranges};
 use scales::{advice, peaks_of_most, set_scales};
-
-/// Why a map could not be baked. One line, with the mend.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum BakeError {
-    /// The map cannot be read as slopes.
-    #[error(transparent)]
-    Source(#[from] SourceError),
-    /// The options do not go together.
-    #[error("{0}")]
-    Options(String),
-}
 
 /// Advice on a scale that a few steep texels have made much larger than the rest needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,13 +47,13 @@ pub struct SlopeLimit {
 /// What was done, in numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BakeReport {
-    /// Texels that had to be mended.
+    /// Texels that had to be repaired.
     pub counts: SourceCounts,
     /// Texels of level 0.
     pub texels: u64,
     /// Range of the stored slopes; 1 for float types.
     pub scale: f32,
-    /// Range of the stored variances or deviations; 1 where there are none.
+    /// Range of the stored variances or standard deviations; 1 where there are none.
     pub variance_scale: f32,
     /// The largest slope allowed: that of the options, what a fixed scale can hold, or what
     /// [`MaxSlope::Auto`](crate::MaxSlope::Auto) has found.
@@ -142,19 +133,18 @@ pub fn bake_reusing(
         None => roughness,
     };
     let BakePlan { source: source_options, mut info } = plan_bake(source_options, roughness, options)?;
-    let mut source = source_of(image, source_options, roughness, options)?;
+    let base = roughness.map(|roughness| BaseSource::new(roughness, use_of_base(options))).transpose()?;
+    let extras = options.layout.rules().extras(&info).to_vec();
+    let mut source = MapSource::new(image, source_options, base, extras)?;
     let pyramid_options = PyramidOptions { filter: options.filter, wrap: source_options.wrap };
-    let sample_type = options.bits.sample_type();
+    let sample_type = options.bits;
     let Ranges { looked_at, needed, limit } =
         find_ranges(&mut source, source_options.max_slope, pyramid_options, options);
     set_scales(&mut info, &needed, options);
     let mut arrays = allocate(textures, &info, options, (image.width(), image.height()));
-    let shape = EncoderShape {
-        anisotropy: options.anisotropy(),
-        roughness_texture: options.roughness_texture,
-        normal_channels: if options.blocks == Blocks::Bc { 2 } else { 4 },
-    };
-    let encoder = texture::encoder(&info, sample_type, shape);
+    let rules = options.layout.rules();
+    let storage = Storage { info: &info, sample_type, blocks: options.blocks, pbr: &options.pbr };
+    let encoder = rules.encoder(&storage);
     let outs = level_outs(&mut arrays, encoder.as_ref());
     let built = pyramid::build(&source, pyramid_options, outs);
     let finest = &built.levels[0];
@@ -177,21 +167,13 @@ pub fn bake_reusing(
         rms_slope,
         rms_slope_with_base,
         whole: built.whole,
-        bounds: texture::bounds_of_shape(&info, sample_type, shape, &peaks),
-        bounds_of_most: texture::bounds_of_shape(
-            &info,
-            sample_type,
-            shape,
-            &peaks_of_most(&looked_at, &peaks),
-        ),
-        advice: advice(&info, options, shape, &looked_at, &peaks),
+        bounds: rules.bounds(&storage, &peaks),
+        bounds_of_most: rules.bounds(&storage, &peaks_of_most(&looked_at, &peaks)),
+        advice: advice(&storage, options, &looked_at, &peaks),
         levels: level_sizes(image.width(), image.height()).into_iter().zip(built.levels).collect(),
         roughness_resampled_from,
     };
-    if let Some(directions) = arrays.iter_mut().find(|array| array.info.part == Part::Anisotropy) {
-        let unit = Units::new(&directions.info, sample_type).unit();
-        orient(&mut directions.layers[0], source_options.wrap, unit);
-    }
+    rules.finish(&mut arrays);
     if arrays.len() > 1 {
         texture::mark_set(&mut arrays);
     }
@@ -206,26 +188,17 @@ fn rms_slopes(whole: &Moments, finest: &LevelStats) -> [f64; 2] {
     [with_base - base, with_base].map(|squared| squared.max(0.0).sqrt())
 }
 
-fn source_of<'a>(
-    image: &'a Image,
-    source_options: SourceOptions,
-    roughness: Option<BaseRoughness<'a>>,
-    options: &BakeOptions,
-) -> Result<MapSource<'a>, BakeError> {
-    let use_of_base = match (options.layout, options.base) {
-        (Layout::Toksvig, _) => UseOfBase::Apart,
-        (Layout::Pbr, _) | (_, Base::Baked) => UseOfBase::FoldedIn,
-        (_, Base::None) => UseOfBase::Apart,
-    };
-    let base = roughness.map(|roughness| BaseSource::new(roughness, use_of_base)).transpose()?;
-    let extras = texture::extras_of(options.layout, options.roughness_texture);
-    Ok(MapSource::new(image, source_options, base, extras)?)
+fn use_of_base(options: &BakeOptions) -> UseOfBase {
+    match (options.layout.base_role(), options.base) {
+        (BaseRole::Contained, _) | (BaseRole::OnRequest, Base::Baked) => UseOfBase::FoldedIn,
+        (BaseRole::Apart, _) | (BaseRole::OnRequest, Base::None) => UseOfBase::Apart,
+    }
 }
 
-/// `pbr`'s roughness and Toksvig's factor hold the base whatever was asked for: that is what they are.
+/// Layouts that store roughness hold the base whatever was asked for: that is what they are.
 fn base_of(options: &BakeOptions, has_roughness: bool) -> Base {
-    match options.layout {
-        Layout::Pbr | Layout::Toksvig if has_roughness => Base::Baked,
+    match options.layout.base_role() {
+        BaseRole::Contained | BaseRole::Apart if has_roughness => Base::Baked,
         _ => options.base,
     }
 }
@@ -235,13 +208,5 @@ fn base_variance(roughness: Option<BaseRoughness<'_>>) -> f32 {
         None => 0.0,
         Some(BaseRoughness::Variance(variance)) => variance,
         Some(BaseRoughness::Map(_)) => f32::NAN,
-    }
-}
-
-fn first_part(options: &BakeOptions) -> Part {
-    match (options.layout, options.blocks) {
-        (Layout::Pbr, _) | (Layout::Toksvig, Blocks::Bc) => Part::Normal,
-        (_, Blocks::Bc) => Part::Split,
-        (_, Blocks::None) => Part::Whole,
     }
 }

@@ -1,10 +1,12 @@
 //! What a bake comes down to once its options are checked.
 
 use super::check::{check_options, limit_slopes};
-use super::{BakeError, base_of, base_variance, first_part};
-use crate::options::{BakeOptions, NormalRange, RoughnessTexture, SourceOptions};
+use super::{BakeError, base_of, base_variance};
+use crate::convention::NormalRange;
+use crate::options::{BakeOptions, SourceOptions};
+use crate::roughness::RoughnessTexture;
 use crate::source::{BaseRoughness, check_numbers};
-use crate::texture::{Layout, TextureInfo};
+use crate::texture::TextureInfo;
 
 /// Checked options and what follows from them, for those who bake by other means than [`crate::bake()`], such as a GPU.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,23 +35,24 @@ pub fn plan_bake(
         base: base_of(options, roughness.is_some()),
         base_variance: base_variance(roughness),
         brdf: options.brdf,
-        roughness_stored: options.roughness_stored,
+        roughness_stored: options.pbr.roughness_stored,
         wrap: source.wrap,
         normal_range: normal_range(options),
-        roughness_texture: match options.layout {
-            Layout::Pbr => options.roughness_texture,
-            _ => RoughnessTexture::Alone,
+        roughness_texture: if options.layout.reads_pbr_options() {
+            options.pbr.roughness_texture
+        } else {
+            RoughnessTexture::Alone
         },
-        ..TextureInfo::new(options.layout, first_part(options))
+        ..TextureInfo::new(options.layout, options.layout.parts_written(options.blocks, &options.pbr)[0])
     };
     Ok(BakePlan { source, info })
 }
 
 /// How unit vectors are stored. Only `pbr` has a choice, and only in floats.
 fn normal_range(options: &BakeOptions) -> NormalRange {
-    match options.layout {
-        _ if !options.bits.sample_type().is_float() => NormalRange::Unorm,
-        Layout::Pbr => options.normal_range,
-        _ => NormalRange::Signed,
+    match options.bits.is_float() {
+        false => NormalRange::Unorm,
+        true if options.layout.reads_pbr_options() => options.pbr.normal_range,
+        true => NormalRange::Signed,
     }
 }

@@ -2,20 +2,19 @@
 
 use super::ScaleAdvice;
 use crate::SampleType;
+use crate::levels::level_sizes;
 use crate::options::{BakeOptions, ScaleChoice};
-use crate::pyramid::{self, LevelOut, PyramidOptions, level_sizes};
+use crate::pyramid::{self, LevelOut, PyramidOptions};
 use crate::row::RowSource;
 use crate::source::MapSource;
 use crate::survey::Survey;
-use crate::texture::{self, EncoderShape, Layout, Peaks, TextureInfo};
+use crate::texture::rules::Storage;
+use crate::texture::{Peaks, TextureInfo};
 
 /// One in so many texels is among the steepest that [`ScaleAdvice`] and the automatic limit are about; and the loss of usable
 /// specular power from which on they are.
 pub(super) const STEEP_ONE_IN: u64 = 1000;
 pub(super) const STEEP_COST: f32 = 4.0;
-
-/// A flat map has no slopes to scale by; slopes below this cannot be told from it.
-const SMALLEST_SCALE: f32 = 1.0 / 1024.0;
 
 /// The largest variance of any level, which is only known when all have been made.
 pub(super) fn largest_variance(source: &MapSource<'_>, options: PyramidOptions) -> f32 {
@@ -29,34 +28,21 @@ pub(super) fn largest_variance(source: &MapSource<'_>, options: PyramidOptions) 
 pub(super) struct NeededRange {
     /// Of level 0, where the scale of slopes is to be found.
     pub peaks: Option<Peaks>,
-    /// The largest variance of any level, where a layout stores variances or deviations.
+    /// The largest variance of any level, where a layout stores variances or standard deviations.
     pub variance: Option<f32>,
 }
 
 /// Chooses the scales of unsigned texels.
 pub(super) fn set_scales(info: &mut TextureInfo, needed: &NeededRange, options: &BakeOptions) {
-    if options.bits.sample_type().is_float() {
+    if options.bits.is_float() {
         return;
     }
     info.scale = match (options.scale, &needed.peaks) {
         (ScaleChoice::Fixed(scale), _) => scale,
-        (ScaleChoice::Auto, Some(peaks)) => smallest_scale(options.layout, peaks),
+        (ScaleChoice::Auto, Some(peaks)) => options.layout.rules().stores().smallest_scale(peaks),
         (ScaleChoice::Auto, None) => unreachable!("a scale to be found is looked for"),
     };
-    let variance = needed.variance.unwrap_or(0.0);
-    info.variance_scale = match options.layout {
-        Layout::Variance => variance.max(SMALLEST_SCALE * SMALLEST_SCALE),
-        Layout::Schilling => variance.sqrt().max(SMALLEST_SCALE),
-        // The larger eigenvalue can reach the sum of both variances.
-        Layout::SchillingIsotropic => (2.0 * variance).sqrt().max(SMALLEST_SCALE),
-        _ => 1.0,
-    };
-}
-
-/// The smallest scale that holds every slope and, where a layout stores them, every second moment.
-pub(super) fn smallest_scale(layout: Layout, peaks: &Peaks) -> f32 {
-    let needed = if layout.stores_variance() { peaks.component } else { peaks.second().sqrt() };
-    needed.max(SMALLEST_SCALE)
+    info.variance_scale = options.layout.rules().variance_scale(needed.variance.unwrap_or(0.0));
 }
 
 /// The peaks without the steepest texels of which [`ScaleAdvice`] speaks.
@@ -68,23 +54,22 @@ pub(super) fn peaks_of_most(looked_at: &Survey, peaks: &Peaks) -> Peaks {
 /// Advice on a scale that a few steep texels have made too large. None is given on a scale that the caller chose, and single
 /// floats are fine enough on any slope.
 pub(super) fn advice(
-    info: &TextureInfo,
+    storage: &Storage<'_>,
     options: &BakeOptions,
-    shape: EncoderShape,
     looked_at: &Survey,
     peaks: &Peaks,
 ) -> Option<ScaleAdvice> {
-    let sample_type = options.bits.sample_type();
+    let (rules, Storage { info, sample_type, .. }) = (options.layout.rules(), *storage);
     let is_chosen = !sample_type.is_float() && options.scale != ScaleChoice::Auto;
     if is_chosen || sample_type == SampleType::F32 {
         return None;
     }
     let limited = peaks_of_most(looked_at, peaks);
     let max_slope = limited.slope;
-    let scale = if sample_type.is_float() { info.scale } else { smallest_scale(info.layout, &limited) };
+    let scale = if sample_type.is_float() { info.scale } else { rules.stores().smallest_scale(&limited) };
     let limited_info = TextureInfo { scale, ..*info };
     let power = |info: &TextureInfo, peaks: &Peaks| {
-        texture::bounds_of_shape(info, sample_type, shape, peaks).usable_specular_power()
+        rules.bounds(&Storage { info, ..*storage }, peaks).usable_specular_power()
     };
     let factor = power(&limited_info, &limited) / power(info, peaks);
     // Where nothing can be relied upon now, no factor says how much better it would be.

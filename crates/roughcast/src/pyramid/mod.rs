@@ -14,22 +14,13 @@ pub(crate) mod weights;
 
 pub(crate) use level_out::{LevelOut, PartOut, SamplesMut, largest, largest_component_and_square};
 
+use crate::convention::Wrap;
+use crate::levels::level_sizes;
 use crate::moments::Moments;
-use crate::options::{PyramidFilter, Wrap};
+use crate::options::PyramidFilter;
 use crate::row::RowSource;
 use crate::slope::SourceCounts;
 use level_out::OutScratch;
-
-/// Sizes of all levels, from level 0 down to 1x1, as (width, height).
-pub fn level_sizes(width: usize, height: usize) -> Vec<(usize, usize)> {
-    let mut sizes = vec![(width, height)];
-    while let Some(&(w, h)) = sizes.last()
-        && (w > 1 || h > 1)
-    {
-        sizes.push(((w / 2).max(1), (h / 2).max(1)));
-    }
-    sizes
-}
 
 /// How many levels of the box filter are made by equal averages of four, rows first: as long as both sides are even, but at
 /// most six. The levels after them are made with the weights of any size. Both are exact; they differ in the order of

@@ -1,6 +1,7 @@
 //! Weights by which a line of n texels becomes a line of `max(1, floor(n / 2))`.
 
-use crate::options::{PyramidFilter, Wrap};
+use crate::convention::Wrap;
+use crate::options::PyramidFilter;
 
 /// The texels that go into one texel of the next level, with weights that sum to one.
 #[derive(Clone, Debug, PartialEq)]

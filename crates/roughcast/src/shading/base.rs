@@ -6,8 +6,8 @@
 
 use super::{BaseLobe, LobeOptions};
 use crate::moments::Covariance;
+use crate::roughness::Base;
 use crate::slope::Slope;
-use crate::texture::Base;
 
 /// Slope covariance of the base roughness about a facet with this slope, in the plane of the surface.
 pub fn base_covariance(slope: Slope, options: &LobeOptions) -> Covariance {

@@ -3,9 +3,7 @@
 use super::masking::{gaussian_lambda, visible_part};
 use super::vector::{Vector, cross, dot, normalize};
 use super::{Form, LobeOptions, Masking};
-
-/// Filtered normals are not flatter than this: steeper than any slope that an eight-bit normal can tell from horizontal.
-pub const LEAST_NORMAL_Z: f32 = crate::texture::pbr::FLATTEST;
+use crate::slope::LEAST_NORMAL_Z;
 
 /// Cosines below this count as none. Its square is the smallest by which an f32 can still be divided.
 pub const LEAST_COSINE: f32 = 1e-18;

@@ -13,7 +13,7 @@ use super::vector::{Vector, cross, dot, half_vector, normalize, scaled, sum};
 use super::{Form, LobeOptions};
 use crate::distribution::Distribution;
 use crate::moments::Covariance;
-use crate::texture::Base;
+use crate::roughness::Base;
 
 /// Squared lengths of a direction below which it counts as none: of differences of variances, which are below 1e-18.
 const LEAST_SQUARED_DIRECTION: f32 = 1e-36;

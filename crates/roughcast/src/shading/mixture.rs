@@ -6,7 +6,7 @@ use super::gaussian::{SlopeGaussian, gaussian_lobe, slope_gaussian};
 use super::vector::Vector;
 use super::{LobeOptions, Repair};
 use crate::distribution::{Distribution, MAX_GAUSSIANS, WeightedGaussian};
-use crate::texture::Base;
+use crate::roughness::Base;
 
 /// Weighted Gaussians of slopes, base roughness included.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -54,8 +54,8 @@ pub use beckmann::{beckmann_lobe, beckmann_surface};
 pub use blinn_phong::{blinn_phong_against_beckmann, blinn_phong_lobe, blinn_phong_surface};
 pub use calls::{Calls, Gaussians};
 pub use facet::{
-    BumpFacet, LEAST_COSINE, LEAST_NORMAL_Z, LEAST_VIEW_COSINE, bump_facet, cosine_lobe, cosine_power,
-    facet_visible_part, unit_normal,
+    BumpFacet, LEAST_COSINE, LEAST_VIEW_COSINE, bump_facet, cosine_lobe, cosine_power, facet_visible_part,
+    unit_normal,
 };
 pub use footprint::{
     FilterVariances, FootprintAxes, FootprintRatio, PIXEL_DEVIATION, PixelPart, footprint_axes,
@@ -83,7 +83,6 @@ pub use vector::LEAST_HEIGHT;
 #[cfg(doc)]
 use crate::Distribution;
 use crate::named::named_enum;
-use crate::texture::{Base, Layout, TextureInfo, Wanted};
 
 named_enum! {
     /// A shading model.
@@ -165,6 +164,15 @@ named_enum! {
     }
 }
 
+/// What a renderer wants to know of a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Wanted {
+    /// The filtered normal alone.
+    Normal,
+    /// The distribution of slopes.
+    Distribution,
+}
+
 /// How lobes are evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LobeOptions {
@@ -202,20 +210,6 @@ impl LobeOptions {
         Self { specular_power, form: Form::Paper, footprint: FootprintModel::Published, ..Self::default() }
     }
 
-    /// The same options for textures with this meaning. Maps that hold a base roughness, or a factor of one, bring its
-    /// exponent with them. Where it varies over the map it is no longer told from the bumps: then all of the map's variance
-    /// masks, and none is taken off for the footprint, which could be the base's.
-    #[must_use]
-    pub fn for_maps(self, info: &TextureInfo) -> Self {
-        match (info.base, info.specular_power()) {
-            (Base::Baked, Some(specular_power)) => Self { specular_power, ..self },
-            (Base::Baked, None) => {
-                Self { masking: Masking::Full, footprint: FootprintModel::Published, ..self }
-            }
-            (Base::None, _) => self,
-        }
-    }
-
     /// The bytes of WGSL's `struct LobeOptions`: the exponent's bits, the place of each choice in its enum's `ALL`, and two words
     /// that are not used.
     pub fn to_words(&self) -> [u32; 8] {
@@ -233,18 +227,7 @@ impl LobeOptions {
 }
 
 impl Shading {
-    /// The layout that the model is made for. It shades the distributions of any other as well.
-    pub const fn layout(self) -> Layout {
-        match self {
-            Self::Phong | Self::BlinnPhong | Self::Beckmann | Self::OffCentre | Self::Lean => Layout::Lean,
-            Self::Clean => Layout::Clean,
-            Self::Toksvig => Layout::Toksvig,
-            Self::Variance => Layout::Variance,
-            Self::Ggx => Layout::Pbr,
-        }
-    }
-
-    /// What the model takes of a distribution.
+    /// What the model takes of a source of bumps.
     pub const fn wanted(self) -> Wanted {
         match self {
             Self::Phong | Self::BlinnPhong | Self::Beckmann | Self::OffCentre => Wanted::Normal,

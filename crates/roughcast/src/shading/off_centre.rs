@@ -7,9 +7,8 @@ use super::LobeOptions;
 use super::gaussian::SlopeGaussian;
 use super::mixture::gaussian_surface;
 use crate::distribution::Distribution;
-use crate::texture::normal_moments;
 
 /// The Gaussian about the slope of a distribution's filtered normal.
 pub fn off_centre_surface(distribution: &Distribution, options: &LobeOptions) -> SlopeGaussian {
-    gaussian_surface(&normal_moments(distribution.normal().to_array()), options)
+    gaussian_surface(&Distribution::of_normal(distribution.normal()), options)
 }

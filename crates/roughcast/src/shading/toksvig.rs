@@ -6,7 +6,7 @@ use super::LobeOptions;
 use super::facet::{BumpFacet, bump_facet};
 use super::gaussian::LEAST_VARIANCE;
 use crate::distribution::Distribution;
-use crate::texture::Base;
+use crate::roughness::Base;
 
 /// The facet of a distribution's filtered normal, with its dulled exponent.
 pub fn toksvig_surface(distribution: &Distribution, options: &LobeOptions) -> BumpFacet {

@@ -3,9 +3,9 @@
 use super::fit::fit;
 use super::{SourceError, load_channel};
 use crate::Image;
-use crate::options::Wrap;
+use crate::convention::Wrap;
+use crate::roughness::{RoughnessStored, variance_from_stored};
 use crate::row::Extra;
-use crate::texture::RoughnessStored;
 
 /// A roughness stored in an image. [`crate::bake()`] resamples one whose size differs from that of the map.
 #[derive(Clone, Copy, Debug)]
@@ -95,30 +95,6 @@ pub(crate) enum UseOfBase {
     Apart,
 }
 
-/// Slope variance per axis of a roughness as stored: `alpha^2 / 2`, as Beckmann's lobe has it.
-pub fn variance_from_stored(value: f32, stored: RoughnessStored) -> f32 {
-    let alpha_squared = match stored {
-        RoughnessStored::Perceptual => value.powi(4),
-        RoughnessStored::Alpha => value * value,
-        RoughnessStored::AlphaSquared => value,
-        RoughnessStored::Gloss => (1.0 - value).powi(4),
-        RoughnessStored::SpecularPower => 2.0 / value,
-    };
-    0.5 * alpha_squared
-}
-
-/// The inverse of [`variance_from_stored`]. A variance of zero has no specular power: it gives infinity.
-pub fn stored_from_variance(variance: f32, stored: RoughnessStored) -> f32 {
-    let alpha_squared = 2.0 * variance;
-    match stored {
-        RoughnessStored::Perceptual => alpha_squared.sqrt().sqrt(),
-        RoughnessStored::Alpha => alpha_squared.sqrt(),
-        RoughnessStored::AlphaSquared => alpha_squared,
-        RoughnessStored::Gloss => 1.0 - alpha_squared.sqrt().sqrt(),
-        RoughnessStored::SpecularPower => 1.0 / variance,
-    }
-}
-
 impl<'a> BaseSource<'a> {
     pub(crate) fn new(roughness: BaseRoughness<'a>, use_of_base: UseOfBase) -> Result<Self, SourceError> {
         if let BaseRoughness::Map(map) = roughness
@@ -130,9 +106,7 @@ impl<'a> BaseSource<'a> {
         if let BaseRoughness::Variance(variance) = roughness
             && !(variance.is_finite() && variance >= 0.0)
         {
-            return Err(SourceError::Option(format!(
-                "the base roughness gives a slope variance of {variance}: it must be finite and not negative"
-            )));
+            return Err(SourceError::BaseVariance { variance });
         }
         Ok(Self { roughness, use_of_base })
     }
@@ -171,30 +145,4 @@ pub(super) const PACKED_CHANNEL: usize = 1;
 /// An extra of a material without a texture that says it: nothing is occluded, nothing is metal.
 pub(super) fn where_nothing_says(extra: Extra) -> f32 {
     if extra == Extra::Occlusion { 1.0 } else { 0.0 }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_way_to_store_roughness_reads_back() {
-        const ROUNDING: f32 = 4e-6; // four roots and powers in f32, relative
-        for stored in RoughnessStored::ALL {
-            for variance in [1e-4_f32, 0.02, 0.3] {
-                let back = variance_from_stored(stored_from_variance(variance, *stored), *stored);
-                // Gloss loses digits in `1 - r`, which the fourth power multiplies.
-                let tolerance = if *stored == RoughnessStored::Gloss { 20.0 * ROUNDING } else { ROUNDING };
-                assert!((back / variance - 1.0).abs() < tolerance, "{stored}: {variance} -> {back}");
-            }
-        }
-    }
-
-    #[test]
-    fn the_table_of_conventions_holds() {
-        assert_eq!(variance_from_stored(64.0, RoughnessStored::SpecularPower), 1.0 / 64.0);
-        assert_eq!(variance_from_stored(0.5, RoughnessStored::Perceptual), 0.5 * 0.25 * 0.25);
-        assert_eq!(variance_from_stored(0.5, RoughnessStored::Alpha), 0.125);
-        assert_eq!(variance_from_stored(1.0, RoughnessStored::Gloss), 0.0);
-    }
 }

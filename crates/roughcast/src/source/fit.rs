@@ -6,7 +6,7 @@
 use super::base::{PACKED_CHANNEL, RoughnessMap};
 use super::load_channel;
 use super::resize::resized;
-use crate::options::Wrap;
+use crate::convention::Wrap;
 use crate::{Image, Samples};
 
 /// The channels of a fitted image that keeps glTF's packed texture together.
@@ -49,7 +49,7 @@ fn plane_of(map: &RoughnessMap<'_>, channel: usize) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::texture::RoughnessStored;
+    use crate::roughness::RoughnessStored;
 
     /// A few roundings of f32.
     const ROUNDING: f32 = 1e-6;

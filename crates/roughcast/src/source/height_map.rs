@@ -2,7 +2,8 @@
 
 use super::{Reading, count_unusable, load_channel, neighbour, repair};
 use crate::Image;
-use crate::options::{Gradient, HeightSense, Wrap};
+use crate::convention::{HeightSense, Wrap};
+use crate::options::Gradient;
 use crate::row::SourceScratch;
 use crate::slope::{Slope, SourceCounts};
 use crate::vectorised::vectorised;

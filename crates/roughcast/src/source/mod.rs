@@ -6,23 +6,23 @@ mod height_map;
 mod normal_map;
 mod resize;
 
-pub use base::{BaseRoughness, RoughnessMap, stored_from_variance, variance_from_stored};
+pub use base::{BaseRoughness, RoughnessMap};
 pub(crate) use base::{BaseSource, UseOfBase};
 pub(crate) use resize::resized;
 
-use crate::options::{Kind, MaxSlope, SourceOptions, Wrap};
+use crate::convention::{Kind, Wrap};
+use crate::options::{MaxSlope, SourceOptions};
 use crate::row::{Extra, Row, RowSource, SourceScratch};
 use crate::slope::{Slope, SourceCounts, repaired_slope};
 use crate::vectorised::vectorised;
 use crate::{Image, Samples};
 
-/// Why a map cannot be read as slopes.
+/// Why a map, or its base roughness, cannot be read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SourceError {
     /// The channels that the options name are not there.
-    #[error(
-        "a {wanted} needs {needed} channels or more, and this map has {got}: see --kind and --normal-channels"
-    )]
+    #[error("a {wanted} needs {needed} channels or more, and this map has {got}")]
     Channels {
         /// What was to be read.
         wanted: &'static str,
@@ -31,9 +31,30 @@ pub enum SourceError {
         /// Channels there are.
         got: usize,
     },
-    /// An option is out of its range.
-    #[error("{0}")]
-    Option(String),
+    /// The maximum slope is out of range.
+    #[error("the largest slope must be above 0 and at most {:e}, not {limit}", MaxSlope::LARGEST)]
+    MaxSlope {
+        /// The limit.
+        limit: f32,
+    },
+    /// The factor of a normal's x and y is infinite or NaN.
+    #[error("the normal scale must be a finite number, not {scale}")]
+    NormalScale {
+        /// The factor.
+        scale: f32,
+    },
+    /// The height of a full-range height map is infinite or NaN.
+    #[error("the height scale must be a finite number, not {scale}")]
+    HeightScale {
+        /// The height, as a part of the map's width.
+        scale: f32,
+    },
+    /// The base roughness is infinite, NaN or negative.
+    #[error("the base roughness gives a slope variance of {variance}: it must be finite and not negative")]
+    BaseVariance {
+        /// The slope variance per axis.
+        variance: f32,
+    },
 }
 
 /// How the slopes of a map are read.
@@ -101,22 +122,13 @@ pub(crate) fn check_numbers(options: &SourceOptions) -> Result<(), SourceError> 
     if let MaxSlope::Limit(limit) = options.max_slope
         && !(limit > 0.0 && limit <= MaxSlope::LARGEST)
     {
-        return Err(SourceError::Option(format!(
-            "the largest slope must be above 0 and at most {:e}, not {limit}",
-            MaxSlope::LARGEST
-        )));
+        return Err(SourceError::MaxSlope { limit });
     }
     if !options.normal_scale.is_finite() {
-        return Err(SourceError::Option(format!(
-            "the normal scale must be a finite number, not {}",
-            options.normal_scale
-        )));
+        return Err(SourceError::NormalScale { scale: options.normal_scale });
     }
     if !options.height_scale.is_finite() {
-        return Err(SourceError::Option(format!(
-            "the height scale must be a finite number, not {}",
-            options.height_scale
-        )));
+        return Err(SourceError::HeightScale { scale: options.height_scale });
     }
     Ok(())
 }
@@ -241,7 +253,7 @@ fn is_usable(x: f32, y: f32, max_squared: f32) -> bool {
 }
 
 vectorised! {
-    /// Number of texels in a row that `mend` would have to look at; vectorises.
+    /// Number of texels in a row that `repair` would have to look at; vectorises.
     fn count_unusable(bx: &[f32], by: &[f32], max_slope: f32) -> u32 {
         let max_squared = max_slope * max_slope;
         bx.iter().zip(by).map(|(x, y)| u32::from(!is_usable(*x, *y, max_squared))).sum()

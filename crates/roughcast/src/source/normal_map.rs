@@ -3,7 +3,8 @@
 use half::f16;
 
 use super::{Reading, count_unusable, neighbour, repair};
-use crate::options::{NormalChannels, SourceOptions};
+use crate::convention::NormalChannels;
+use crate::options::SourceOptions;
 use crate::row::SourceScratch;
 use crate::slope::{Slope, SourceCounts};
 use crate::vectorised::vectorised;

@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use crate::options::Wrap;
+use crate::convention::Wrap;
 
 /// `plane`, `from.0` values in each of `from.1` rows, at the size `to`. The weights of each value sum to one.
 pub(crate) fn resized(plane: &[f32], from: (usize, usize), to: (usize, usize), wrap: Wrap) -> Vec<f32> {

@@ -10,14 +10,59 @@
 //! Unsigned types hold `B / (2 sc) + 1/2` and `m / (2 sc²)`.
 
 use super::codec::{Bounds, LayerSpec, OPAQUE, Peaks, RowEncoder, Units, map1, subtraction_error};
+use super::decode::{Files, TexelDecoder};
+use super::rules::{BlockCompression, LayoutRules, Storage, Stores};
+use super::{TexelReader, TextureInfo, texels};
 use crate::moments::{Covariance, Moments};
+use crate::roughness::Lobe;
 use crate::row::RowView;
+use crate::shading::Wanted;
 use crate::slope::Slope;
 
-pub(super) const LAYERS: &[LayerSpec] =
-    &[LayerSpec { name: "clean", channels: &["B.x", "B.y", "M.trace", OPAQUE] }];
+pub(super) struct Clean;
 
-pub(super) struct Encoder(pub Units);
+impl LayoutRules for Clean {
+    fn summary(&self) -> &'static str {
+        "CLEAN mapping: mean slope and one second moment in one texture; no anisotropy; wants 16 bits"
+    }
+
+    fn number(&self) -> u8 {
+        1
+    }
+
+    fn stores(&self) -> Stores {
+        Stores::RawMoments
+    }
+
+    fn block_compression(&self) -> BlockCompression {
+        BlockCompression::WouldLoseVariance
+    }
+
+    fn layers(&self, _: &TextureInfo) -> &'static [LayerSpec] {
+        LAYERS
+    }
+
+    fn encoder(&self, storage: &Storage<'_>) -> Box<dyn RowEncoder> {
+        Box::new(Encoder(storage.units()))
+    }
+
+    fn decoder(&self, files: &Files<'_>) -> TexelDecoder {
+        let units = files.units();
+        Box::new(move |texel| decode(units, texel))
+    }
+
+    fn texel_reader(&self, _: Wanted, _: Lobe) -> Option<&'static TexelReader> {
+        Some(&texels::clean::MOMENTS)
+    }
+
+    fn bounds(&self, storage: &Storage<'_>, peaks: &Peaks) -> Bounds {
+        bounds(storage.units(), peaks)
+    }
+}
+
+const LAYERS: &[LayerSpec] = &[LayerSpec { name: "clean", channels: &["B.x", "B.y", "M.trace", OPAQUE] }];
+
+struct Encoder(Units);
 
 impl RowEncoder for Encoder {
     fn encode(&self, row: RowView<'_>, planes: &mut [Vec<f32>]) {
@@ -33,7 +78,7 @@ impl RowEncoder for Encoder {
     }
 }
 
-pub(super) fn decode(units: Units, texel: &[f32]) -> Moments {
+fn decode(units: Units, texel: &[f32]) -> Moments {
     let slope = units.slope();
     let mean = Slope { x: slope.load(texel[0]), y: slope.load(texel[1]) };
     let trace = units.trace().load(texel[2]);
@@ -42,7 +87,7 @@ pub(super) fn decode(units: Units, texel: &[f32]) -> Moments {
     Moments::from_mean_and_covariance(mean, Covariance::isotropic(variance))
 }
 
-pub(super) fn bounds(units: Units, peaks: &Peaks) -> Bounds {
+fn bounds(units: Units, peaks: &Peaks) -> Bounds {
     let slope = units.error(units.slope(), peaks.component);
     let trace = units.error(units.trace(), peaks.slope * peaks.slope + 2.0 * peaks.variance);
     // tr Σ = m - |B|²; |B| is off by at most sqrt(2) of a component, and half of the whole is one axis.

@@ -2,7 +2,8 @@
 
 use super::TextureInfo;
 use crate::SampleType;
-use crate::options::NormalRange;
+use crate::convention::NormalRange;
+use crate::named::named_enum;
 use crate::row::{Extra, RowView};
 
 /// Turns a row of moments into the planes of stored values of all of a layout's channels.
@@ -18,6 +19,16 @@ pub struct LayerSpec {
     pub name: &'static str,
     /// The names of its channels.
     pub channels: &'static [&'static str],
+}
+
+named_enum! {
+    /// Whether textures are shaped for block compression: two channels for what will be BC5, one for BC4.
+    pub enum Blocks: "compression" {
+        /// Plain texels.
+        None = "none",
+        /// BC4, BC5 and BC7.
+        Bc = "bc",
+    }
 }
 
 /// A filler of one for layouts with three channels: graphics hardware has no three-channel textures.
@@ -89,7 +100,7 @@ impl Units {
         self.unsigned(2.0 * self.scale * self.scale)
     }
 
-    /// A variance or a deviation, over 0 ..= variance_scale.
+    /// A variance or a standard deviation, over 0 ..= variance_scale.
     pub fn variance(self) -> Affine {
         self.unsigned(self.variance_scale)
     }

@@ -3,10 +3,7 @@
 use rayon::prelude::*;
 
 use super::codec::Units;
-use super::{
-    Layout, Part, TextureArray, bump_slopes, clean, join_layers, lean, moments as moments_layout, pbr,
-    schilling, toksvig, variance,
-};
+use super::{Layout, Part, ShapeFault, TextureArray, TextureInfo, join_layers};
 use crate::moments::Moments;
 
 /// A level of moments, row by row from the top.
@@ -22,6 +19,7 @@ pub struct MomentLevel {
 
 /// Why textures do not decode.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DecodeError {
     /// There is nothing to decode.
     #[error("there are no textures: give at least one file of a layout")]
@@ -58,7 +56,7 @@ pub enum DecodeError {
         /// The layout.
         layout: Layout,
         /// What does not fit.
-        fault: String,
+        fault: ShapeFault,
     },
 }
 
@@ -73,16 +71,16 @@ pub fn decode(arrays: &[TextureArray]) -> Result<Vec<MomentLevel>, DecodeError> 
     if arrays.iter().any(|array| array.info.layer.is_some()) {
         return decode(&join_layers(arrays.to_vec())?);
     }
-    let first = arrays.first().ok_or(DecodeError::NoFiles)?;
     arrays.iter().try_for_each(TextureArray::check)?;
-    let parts = Parts::find(arrays, first.info.layout)?;
-    let levels = (0..first.level_count()).map(|level| {
-        let image = &first.layers[0].levels[level];
+    let files = Files::find(arrays)?;
+    let decode_texel = files.main().info.layout.rules().decoder(&files);
+    let levels = files.main().layers[0].levels.iter().enumerate().map(|(level, image)| {
         let (width, height) = (image.width(), image.height());
         let mut moments = vec![Moments::default(); width * height];
         moments.par_chunks_mut(width).enumerate().for_each_init(Vec::new, |texel, (y, row)| {
             for (x, moments) in row.iter_mut().enumerate() {
-                let decoded = parts.decode_texel(level, x, y, texel);
+                files.load(level, x, y, texel);
+                let decoded = decode_texel(texel);
                 *moments = Moments::from_mean_and_covariance(decoded.mean, decoded.covariance());
             }
         });
@@ -91,121 +89,100 @@ pub fn decode(arrays: &[TextureArray]) -> Result<Vec<MomentLevel>, DecodeError> 
     Ok(levels.collect())
 }
 
-/// The files of a layout, found by their part.
-struct Parts<'a> {
-    main: &'a TextureArray,
-    roughness: Option<&'a TextureArray>,
-    anisotropy: Option<&'a TextureArray>,
-    /// The widths along x and y.
-    alphas: Option<[&'a TextureArray; 2]>,
-    gloss: Option<&'a TextureArray>,
-}
+/// Turns the channels of a texel of all files of a layout, one after the other, into moments.
+pub(crate) type TexelDecoder = Box<dyn Fn(&[f32]) -> Moments + Sync>;
 
-impl<'a> Parts<'a> {
-    fn find(arrays: &'a [TextureArray], layout: Layout) -> Result<Self, DecodeError> {
-        let find = |wanted: &[Part]| arrays.iter().find(|array| wanted.contains(&array.info.part));
-        let missing = |part| DecodeError::MissingPart { layout, part };
-        let main = find(&[Part::Whole, Part::Split, Part::Normal]).ok_or(missing(Part::Normal))?;
-        let parts = Self {
-            main,
-            roughness: find(&[Part::Roughness, Part::OcclusionRoughnessMetallic]),
-            anisotropy: find(&[Part::Anisotropy]),
-            alphas: match (find(&[Part::AlphaX]), find(&[Part::AlphaY])) {
-                (Some(x), Some(y)) => Some([x, y]),
-                (Some(_), None) => return Err(missing(Part::AlphaY)),
-                (None, Some(_)) => return Err(missing(Part::AlphaX)),
-                (None, None) => None,
-            },
-            gloss: find(&[Part::Gloss]),
-        };
-        if layout == Layout::Pbr && parts.roughness.is_none() {
-            return Err(missing(Part::Roughness));
+/// The files of one layout, one for each part that is there, in the order of [`Layout::parts`]. They fit each other.
+pub(crate) struct Files<'a>(Vec<&'a TextureArray>);
+
+impl<'a> Files<'a> {
+    fn find(arrays: &'a [TextureArray]) -> Result<Self, DecodeError> {
+        let layout = arrays.first().ok_or(DecodeError::NoFiles)?.info.layout;
+        let parts = layout.parts();
+        let find = |part: &Part| arrays.iter().find(|array| array.info.part == *part);
+        let files = Self(parts.iter().filter_map(find).collect());
+        let given: Vec<Part> = files.0.iter().map(|array| array.info.part).collect();
+        if let Some(part) = layout.rules().missing_part(&given) {
+            return Err(DecodeError::MissingPart { layout, part });
         }
-        if layout == Layout::Toksvig && main.info.part == Part::Normal && parts.gloss.is_none() {
-            return Err(missing(Part::Gloss));
+        if let Some(foreign) = arrays.iter().find(|array| !parts.contains(&array.info.part)) {
+            let fault = ShapeFault::ForeignPart { part: foreign.info.part };
+            return Err(DecodeError::Shape { layout, fault });
         }
-        parts.check(layout)?;
-        Ok(parts)
+        files.0.iter().try_for_each(|array| files.check(array, layout))?;
+        Ok(files)
     }
 
-    /// All sizes and channels fit, so that decoding a texel cannot fail.
-    fn check(&self, layout: Layout) -> Result<(), DecodeError> {
-        let fault = |fault: String| Err(DecodeError::Shape { layout, fault });
-        let parts = [Some(self.main), self.roughness, self.anisotropy, self.gloss];
-        let all = parts.into_iter().flatten().chain(self.alphas.into_iter().flatten());
-        for array in all {
-            if array.info.set != self.main.info.set {
-                return Err(DecodeError::OtherSet { part: array.info.part, first: self.main.info.part });
-            }
-            if array.info.layout != layout {
-                return fault(format!("one file holds '{}'", array.info.layout));
-            }
-            if !layout.parts().contains(&array.info.part) {
-                return fault(format!("it has no part '{}'", array.info.part));
-            }
-            if array.size() != self.main.size() || array.level_count() != self.main.level_count() {
-                return fault("the files differ in size or in number of levels".to_owned());
-            }
-            let wanted = super::layers_of(&array.info);
-            if array.layers.len() != wanted.len() {
-                return fault(format!("{} layers instead of {}", array.layers.len(), wanted.len()));
-            }
-            for (layer, spec) in array.layers.iter().zip(wanted) {
-                let channels = layer.levels[0].channels();
-                // A block-compressed normal has lost its third channel and the filler; nothing else may be missing.
-                let short_normal = array.info.part == Part::Normal && channels == 2;
-                if channels < spec.channels.len() && !short_normal {
-                    return fault(format!("{channels} channels instead of {}", spec.channels.len()));
-                }
+    /// The size and the channels of a file fit, so that decoding a texel cannot fail.
+    fn check(&self, array: &TextureArray, layout: Layout) -> Result<(), DecodeError> {
+        let fault = |fault| Err(DecodeError::Shape { layout, fault });
+        let main = self.main();
+        if array.info.set != main.info.set {
+            return Err(DecodeError::OtherSet { part: array.info.part, first: main.info.part });
+        }
+        if array.info.layout != layout {
+            return fault(ShapeFault::OtherLayout { other: array.info.layout });
+        }
+        if array.size() != main.size() || array.level_count() != main.level_count() {
+            return fault(ShapeFault::FileSizes);
+        }
+        let wanted = super::layers_of(&array.info);
+        if array.layers.len() != wanted.len() {
+            return fault(ShapeFault::LayerCount { got: array.layers.len(), wanted: wanted.len() });
+        }
+        for (layer, spec) in array.layers.iter().zip(wanted) {
+            let (got, wanted) = (layer.levels[0].channels(), spec.channels.len());
+            // A block-compressed normal has lost its third channel and the filler; nothing else may be missing.
+            let short_normal = array.info.part == Part::Normal && got == 2;
+            if got < wanted && !short_normal {
+                return fault(ShapeFault::ChannelCount { got, wanted });
             }
         }
         Ok(())
     }
 
-    fn decode_texel(&self, level: usize, x: usize, y: usize, texel: &mut Vec<f32>) -> Moments {
-        load(self.main, level, x, y, texel);
-        let info = &self.main.info;
-        let units = Units::new(info, self.main.layers[0].sample_type());
-        match (info.layout, info.part) {
-            (Layout::Lean, _) => lean::decode(units, texel),
-            (Layout::Clean, _) => clean::decode(units, texel),
-            (Layout::Schilling, _) => schilling::decode(units, texel),
-            (Layout::SchillingIsotropic, _) => schilling::decode_isotropic(units, texel),
-            (Layout::Variance, _) => variance::decode(units, texel),
-            (Layout::BumpSlopes, _) => bump_slopes::decode(texel),
-            (Layout::Moments, _) => moments_layout::decode(texel),
-            (Layout::Toksvig, Part::Normal) => {
-                texel.truncate(2);
-                append(self.gloss, level, x, y, texel);
-                toksvig::decode_parts(units, info, texel)
-            }
-            (Layout::Toksvig, _) => toksvig::decode(units, texel),
-            (Layout::Pbr, _) => {
-                let normal_channels = texel.len();
-                if let Some(alphas) = self.alphas {
-                    let widths = alphas.map(|array| array.layers[0].levels[level].get(x, y, 0));
-                    return pbr::decode_alphas(units, texel, widths);
-                }
-                let roughness = self.roughness.expect("checked to be there");
-                append(self.roughness, level, x, y, texel);
-                let value = texel[normal_channels + roughness.info.roughness_texture.roughness_channel()];
-                let anisotropy_at = texel.len();
-                append(self.anisotropy, level, x, y, texel);
-                let anisotropy = self.anisotropy.map(|_| &texel[anisotropy_at..]);
-                pbr::decode(units, info, &texel[..normal_channels], value, anisotropy)
-            }
+    /// The main file.
+    fn main(&self) -> &'a TextureArray {
+        self.0[0]
+    }
+
+    /// What the texels of the main file mean.
+    pub fn main_info(&self) -> &'a TextureInfo {
+        &self.main().info
+    }
+
+    /// How the texels of the main file are stored.
+    pub fn units(&self) -> Units {
+        Units::new(self.main_info(), self.main().layers[0].sample_type())
+    }
+
+    /// Channels of the main file, which a texel begins with.
+    pub fn channels_of_main(&self) -> usize {
+        channels_of(self.main())
+    }
+
+    /// What the texels of a part mean, where there is one.
+    pub fn info_of(&self, part: Part) -> Option<&'a TextureInfo> {
+        self.0.iter().map(|array| &array.info).find(|info| info.part == part)
+    }
+
+    /// The place of a part's first channel in a texel, where there is one.
+    pub fn channel_of(&self, part: Part) -> Option<usize> {
+        let place = self.0.iter().position(|array| array.info.part == part)?;
+        Some(self.0[..place].iter().map(|array| channels_of(array)).sum())
+    }
+
+    /// Reads the channels of all files at a texel.
+    fn load(&self, level: usize, x: usize, y: usize, texel: &mut Vec<f32>) {
+        texel.clear();
+        for layer in self.0.iter().flat_map(|array| &array.layers) {
+            let image = &layer.levels[level];
+            texel.extend((0..image.channels()).map(|channel| image.get(x, y, channel)));
         }
     }
 }
 
-fn load(array: &TextureArray, level: usize, x: usize, y: usize, texel: &mut Vec<f32>) {
-    texel.clear();
-    append(Some(array), level, x, y, texel);
-}
-
-fn append(array: Option<&TextureArray>, level: usize, x: usize, y: usize, texel: &mut Vec<f32>) {
-    for layer in array.into_iter().flat_map(|array| &array.layers) {
-        let image = &layer.levels[level];
-        texel.extend((0..image.channels()).map(|channel| image.get(x, y, channel)));
-    }
+/// Channels of all layers of a file.
+fn channels_of(array: &TextureArray) -> usize {
+    array.layers.iter().map(|layer| layer.levels[0].channels()).sum()
 }

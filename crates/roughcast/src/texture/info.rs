@@ -6,34 +6,10 @@ mod words;
 
 use std::collections::BTreeMap;
 
-use super::layers_of;
-use crate::SampleType;
+use super::{Layout, layers_of};
+use crate::convention::{NormalRange, Wrap};
 use crate::named::named_enum;
-use crate::options::{NormalRange, RoughnessTexture, Wrap};
-
-named_enum! {
-    /// The layouts in which moments are stored, one file each in [`crate::texture`].
-    pub enum Layout: "layout" {
-        /// LEAN mapping: mean normal, mean slope and second moments in two RGBA layers.
-        Lean = "lean",
-        /// CLEAN mapping: mean slope and the trace of the second moments.
-        Clean = "clean",
-        /// Schilling's bump and roughness pyramid: mean slope and a triangular factor of the covariance.
-        Schilling = "schilling",
-        /// Schilling's isotropic pyramid: mean slope and the larger standard deviation.
-        SchillingIsotropic = "schilling-isotropic",
-        /// Mean slope and the variance along each axis.
-        Variance = "variance",
-        /// Toksvig: the unnormalised averaged normal and its gloss factor.
-        Toksvig = "toksvig",
-        /// The six channels of OpenImageIO's and RenderMan's bump slopes.
-        BumpSlopes = "bump-slopes",
-        /// Normal and roughness textures of a physically based material.
-        Pbr = "pbr",
-        /// The moments themselves, as floats.
-        Moments = "moments",
-    }
-}
+use crate::roughness::{Base, Brdf, RoughnessStored, RoughnessTexture};
 
 named_enum! {
     /// Which of a layout's files this is; layouts whose textures share one format have a single part.
@@ -59,84 +35,6 @@ named_enum! {
     }
 }
 
-impl Layout {
-    /// The parts that files of this layout can be.
-    pub const fn parts(self) -> &'static [Part] {
-        match self {
-            Layout::Pbr => &[
-                Part::Normal,
-                Part::Roughness,
-                Part::OcclusionRoughnessMetallic,
-                Part::Anisotropy,
-                Part::AlphaX,
-                Part::AlphaY,
-            ],
-            Layout::Toksvig => &[Part::Whole, Part::Normal, Part::Gloss],
-            Layout::Variance => &[Part::Whole, Part::Split],
-            Layout::Lean
-            | Layout::Clean
-            | Layout::Schilling
-            | Layout::SchillingIsotropic
-            | Layout::BumpSlopes
-            | Layout::Moments => &[Part::Whole],
-        }
-    }
-
-    /// Whether the layout holds variances or standard deviations themselves.
-    pub const fn stores_variance(self) -> bool {
-        matches!(self, Layout::Schilling | Layout::SchillingIsotropic | Layout::Variance)
-    }
-
-    /// Whether texels of this type hold slopes or their moments over [`TextureInfo::scale`]. Floats hold the values themselves.
-    pub fn uses_scale(self, sample_type: SampleType) -> bool {
-        let stores_slopes = matches!(self, Layout::Lean | Layout::Clean) || self.stores_variance();
-        stores_slopes && !sample_type.is_float()
-    }
-
-    /// Whether texels of this type hold variances or standard deviations over [`TextureInfo::variance_scale`].
-    pub fn uses_variance_scale(self, sample_type: SampleType) -> bool {
-        self.stores_variance() && !sample_type.is_float()
-    }
-}
-
-named_enum! {
-    /// Whether the base roughness of the material is in the second moments already.
-    pub enum Base: "base" {
-        /// Not in: add it once, at shading.
-        None = "none",
-        /// Folded in when the map was made (LEAN Eq. 6): add nothing at shading.
-        Baked = "baked",
-    }
-}
-
-named_enum! {
-    /// The lobe for which a stored roughness is meant.
-    pub enum Brdf: "BRDF" {
-        /// GGX, by the convention `alpha^2 = alpha0^2 + 2 sigma^2`: it has no finite slope variance of its own.
-        Ggx = "ggx",
-        /// Beckmann, where `alpha^2 = 2 sigma^2` exactly.
-        Beckmann = "beckmann",
-        /// Blinn-Phong, where `sigma^2 = 1 / s`.
-        BlinnPhong = "blinn-phong",
-    }
-}
-
-named_enum! {
-    /// The quantity by which a roughness is stored. `alpha` is the width of the lobe.
-    pub enum RoughnessStored: "way to store roughness" {
-        /// glTF's perceptual roughness, `sqrt(alpha)`.
-        Perceptual = "perceptual",
-        /// The width itself.
-        Alpha = "alpha",
-        /// The square of the width.
-        AlphaSquared = "alpha-squared",
-        /// One minus the perceptual roughness.
-        Gloss = "gloss",
-        /// A Blinn-Phong exponent, `2 / alpha^2`.
-        SpecularPower = "specular-power",
-    }
-}
-
 /// What the texels of a file mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextureInfo {
@@ -146,7 +44,7 @@ pub struct TextureInfo {
     pub part: Part,
     /// Slopes are stored over `-scale ..= scale`, second moments over `scale^2`. One in float files, which hold values as they are.
     pub scale: f32,
-    /// Full scale of a stored variance, or of a stored deviation for Schilling's layouts. One in float files.
+    /// Full scale of a stored variance, or of a stored standard deviation for Schilling's layouts. One in float files.
     pub variance_scale: f32,
     /// Whether base roughness is in the second moments.
     pub base: Base,
@@ -171,7 +69,8 @@ pub struct TextureInfo {
 }
 
 /// Why the metadata of a file could not be read.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum InfoError {
     /// It is not a file of ours, or its metadata was stripped.
     #[error(
@@ -223,11 +122,7 @@ impl TextureInfo {
             set: 0,
             layer: None,
             wrap: Wrap::Repeat,
-            normal_range: if matches!(layout, Layout::Pbr) {
-                NormalRange::Unorm
-            } else {
-                NormalRange::Signed
-            },
+            normal_range: if layout.reads_pbr_options() { NormalRange::Unorm } else { NormalRange::Signed },
             roughness_texture: before_there_was_a_choice(part),
         }
     }
@@ -259,7 +154,7 @@ impl TextureInfo {
             (NORMAL_RANGE, self.normal_range.name().to_owned()),
             (CONVENTIONS, CONVENTIONS_OF_ALL_FILES.to_owned()),
         ];
-        let layout = (self.layout == Layout::Pbr)
+        let layout = (self.layout.reads_pbr_options())
             .then(|| (ROUGHNESS_LAYOUT, self.roughness_texture.name().to_owned()));
         let power = self.specular_power().map(|power| (SPECULAR_POWER, power.to_string()));
         let set = (self.set != 0).then(|| (SET, format!("{:016x}", self.set)));
@@ -356,10 +251,11 @@ impl TextureInfo {
         if self.base_variance < 0.0 || self.base_variance.is_infinite() {
             return Err(InfoError::Invalid { key: BASE_VARIANCE, value: self.base_variance.to_string() });
         }
-        // Only pbr has the choice, and text does not name it elsewhere: words that do are read like the text.
-        let roughness_texture = match self.layout {
-            Layout::Pbr => self.roughness_texture,
-            _ => before_there_was_a_choice(self.part),
+        // Only pbr has the choice, and pairs do not name it elsewhere: DDS words that do are read like the pairs.
+        let roughness_texture = if self.layout.reads_pbr_options() {
+            self.roughness_texture
+        } else {
+            before_there_was_a_choice(self.part)
         };
         Ok(Self { roughness_texture, ..self })
     }

@@ -1,6 +1,6 @@
 //! LEAN mapping: mean slope and raw second moments, in two RGBA textures.
 //!
-//! Source: Olano & Baker, "LEAN Mapping", 2010, Eq. 3 to 6, Figures 15 and 16, with the listing's two faults mended
+//! Source: Olano & Baker, "LEAN Mapping", 2010, Eq. 3 to 6, Figures 15 and 16, with the listing's two faults repaired
 //! (a base roughness is added before the scale is divided out; the scale covers the second moments too).
 //!
 //! | texture | R | G | B | A |
@@ -15,19 +15,73 @@
 //! Bounds: with a rounding of `e` in the stored code, `B` is off by `2 sc e`, `Mxx` by `sc² e`, `Mxy` by `2 sc² e`.
 
 use super::codec::{
-    Affine, Bounds, LayerSpec, Peaks, RowEncoder, Units, map1, map2, map3, subtraction_error,
+    Affine, Bounds, LayerSpec, NORMAL, Peaks, RowEncoder, Units, map1, map2, map3, subtraction_error,
 };
+use super::decode::{Files, TexelDecoder};
+use super::rules::{BlockCompression, LayoutRules, Storage, Stores};
+use super::{TexelReader, TextureInfo, texels};
 use crate::moments::Moments;
-use crate::row::RowView;
+use crate::roughness::Lobe;
+use crate::row::{Extra, RowView};
+use crate::shading::Wanted;
 use crate::slope::Slope;
 use crate::vectorised::vectorised;
 
-pub(super) const LAYERS: &[LayerSpec] = &[
+pub(super) struct Lean;
+
+impl LayoutRules for Lean {
+    fn summary(&self) -> &'static str {
+        "LEAN mapping: normal, mean slope and second moments in two RGBA textures; keeps anisotropy; wants 16 bits"
+    }
+
+    fn number(&self) -> u8 {
+        0
+    }
+
+    fn stores(&self) -> Stores {
+        Stores::RawMoments
+    }
+
+    fn block_compression(&self) -> BlockCompression {
+        BlockCompression::WouldLoseVariance
+    }
+
+    fn layers(&self, _: &TextureInfo) -> &'static [LayerSpec] {
+        LAYERS
+    }
+
+    fn extras(&self, _: &TextureInfo) -> &'static [Extra] {
+        &NORMAL
+    }
+
+    fn encoder(&self, storage: &Storage<'_>) -> Box<dyn RowEncoder> {
+        Box::new(Encoder(storage.units()))
+    }
+
+    fn decoder(&self, files: &Files<'_>) -> TexelDecoder {
+        let units = files.units();
+        Box::new(move |texel| decode(units, texel))
+    }
+
+    fn texel_reader(&self, wanted: Wanted, _: Lobe) -> Option<&'static TexelReader> {
+        Some(match wanted {
+            Wanted::Normal => &texels::lean::NORMAL,
+            Wanted::Distribution => &texels::lean::MOMENTS,
+        })
+    }
+
+    fn bounds(&self, storage: &Storage<'_>, peaks: &Peaks) -> Bounds {
+        let units = storage.units();
+        raw_moment_bounds(units, peaks, units.slope(), units.second(), units.mixed())
+    }
+}
+
+const LAYERS: &[LayerSpec] = &[
     LayerSpec { name: "lean1", channels: &["N.x", "N.y", "N.z", "M.xy"] },
     LayerSpec { name: "lean2", channels: &["B.x", "B.y", "M.xx", "M.yy"] },
 ];
 
-pub(super) struct Encoder(pub Units);
+struct Encoder(Units);
 
 impl RowEncoder for Encoder {
     fn encode(&self, row: RowView<'_>, planes: &mut [Vec<f32>]) {
@@ -58,10 +112,6 @@ pub(super) fn decode(units: Units, texel: &[f32]) -> Moments {
         yy: second.load(texel[7]),
         xy: mixed.load(texel[3]),
     }
-}
-
-pub(super) fn bounds(units: Units, peaks: &Peaks) -> Bounds {
-    raw_moment_bounds(units, peaks, units.slope(), units.second(), units.mixed())
 }
 
 /// Bounds of any layout that stores B and the three raw second moments.

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::Texture;
 use super::codec::Affine;
-use crate::options::Wrap;
+use crate::convention::Wrap;
 use crate::{Image, Samples};
 
 /// Gives the directions in the first two channels of all levels signs that agree. The third channel is their strength.

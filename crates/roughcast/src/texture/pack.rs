@@ -118,8 +118,15 @@ mod tests {
     }
 
     #[test]
+    fn every_layout_can_be_packed() {
+        for layout in crate::texture::Layout::ALL {
+            assert!((1..=MOST_CHANNELS).contains(&layout.most_channels()), "{layout}");
+        }
+    }
+
+    #[test]
     fn every_number_of_channels_interleaves() {
-        for channels in 1..=8_usize {
+        for channels in 1..=MOST_CHANNELS {
             let width = 300; // more than one block of the half conversion
             let planes: Vec<Vec<f32>> =
                 (0..channels).map(|c| (0..width).map(|x| (c * width + x) as f32).collect()).collect();

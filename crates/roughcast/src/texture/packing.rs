@@ -1,8 +1,9 @@
 //! How to read stored texels as a shader does: one affine map for each kind of quantity, and what the maps hold of the base roughness.
 
+use super::TextureInfo;
 use super::codec::{Affine, Units};
-use super::{Base, RoughnessStored, TextureInfo};
 use crate::SampleType;
+use crate::roughness::{Base, RoughnessStored};
 
 /// The way from stored texels, as a sampler returns them, to values: `value = stored * scale + offset`, each pair a
 /// `[scale, offset]`. For float texels, which hold values as they are, every pair is `[1, 0]`, except for unit

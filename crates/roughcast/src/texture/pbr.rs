@@ -21,39 +21,199 @@
 //! has two channels; z follows from them. In EXR files the channels are called R, G, B, A, or Y where there is one, so that
 //! any viewer shows them.
 
-use super::codec::{LayerSpec, OPAQUE, RowEncoder, Units, map1};
-use super::{RoughnessStored, TextureInfo};
+use super::codec::{Blocks, Bounds, LayerSpec, OPAQUE, Peaks, RowEncoder, Units, map1};
+use super::decode::{Files, TexelDecoder};
+use super::orient::orient;
+use super::rules::{BaseRole, BlockCompression, LayoutRules, Storage, Stores};
+use super::{Part, TexelReader, TextureArray, TextureInfo, pbr_bounds, texels};
+use crate::SampleType;
+use crate::convention::NormalRange;
 use crate::moments::{Covariance, Moments};
-use crate::options::{AnisotropyOutput, RoughnessTexture};
-use crate::row::RowView;
-use crate::slope::{Normal, Slope, normal_from_slope, slope_from_normal};
-use crate::source::{stored_from_variance, variance_from_stored};
+use crate::named::named_enum;
+use crate::roughness::Lobe;
+use crate::roughness::{RoughnessStored, RoughnessTexture, stored_from_variance, variance_from_stored};
+use crate::row::{Extra, RowView};
+use crate::shading::Wanted;
+use crate::slope::{LEAST_NORMAL_Z, Normal, Slope, normal_from_slope, slope_from_normal};
 
-pub(super) const NORMAL_LAYERS: &[LayerSpec] =
-    &[LayerSpec { name: "normal", channels: &["R", "G", "B", OPAQUE] }];
+named_enum! {
+    /// How `pbr` says in which direction a roughness is larger.
+    pub enum AnisotropyOutput: "form of anisotropy" {
+        /// Direction and strength, as KHR_materials_anisotropy has them; the roughness is the one across.
+        Khr = "khr",
+        /// The widths of the lobe along the x and the y axis of the tangent frame, each in a file of one channel.
+        Alpha = "alpha",
+    }
+}
 
-pub(super) const ROUGHNESS_LAYERS: &[LayerSpec] = &[LayerSpec { name: "roughness", channels: &["Y"] }];
+/// The choices of [`Layout::Pbr`](super::Layout::Pbr). No other layout reads them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct PbrOptions {
+    /// How roughness is stored.
+    pub roughness_stored: RoughnessStored,
+    /// How the direction in which the roughness is larger is stored; `None` for one roughness in every direction.
+    pub anisotropy: Option<AnisotropyOutput>,
+    /// The channels of the roughness.
+    pub roughness_texture: RoughnessTexture,
+    /// How floats hold the components of unit vectors; unsigned types always hold `v / 2 + 1/2`.
+    pub normal_range: NormalRange,
+}
 
-pub(super) const GREEN_ROUGHNESS_LAYERS: &[LayerSpec] =
+impl Default for PbrOptions {
+    /// As glTF reads it: one perceptual roughness, in green.
+    fn default() -> Self {
+        Self {
+            roughness_stored: RoughnessStored::Perceptual,
+            anisotropy: None,
+            roughness_texture: RoughnessTexture::Green,
+            normal_range: NormalRange::Unorm,
+        }
+    }
+}
+
+pub(super) struct Pbr;
+
+impl LayoutRules for Pbr {
+    fn summary(&self) -> &'static str {
+        "normal and roughness textures for any renderer or engine"
+    }
+
+    fn number(&self) -> u8 {
+        7
+    }
+
+    fn stores(&self) -> Stores {
+        Stores::Normals
+    }
+
+    fn default_sample_type(&self) -> SampleType {
+        SampleType::U8
+    }
+
+    fn base_role(&self) -> BaseRole {
+        BaseRole::Contained
+    }
+
+    fn reads_pbr_options(&self) -> bool {
+        true
+    }
+
+    fn block_compression(&self) -> BlockCompression {
+        BlockCompression::FromEightBits
+    }
+
+    fn parts(&self) -> &'static [Part] {
+        &[
+            Part::Normal,
+            Part::Roughness,
+            Part::OcclusionRoughnessMetallic,
+            Part::Anisotropy,
+            Part::AlphaX,
+            Part::AlphaY,
+        ]
+    }
+
+    fn parts_written(&self, _: Blocks, pbr: &PbrOptions) -> Vec<Part> {
+        let roughness = match pbr.roughness_texture {
+            RoughnessTexture::Alone | RoughnessTexture::Green => Part::Roughness,
+            RoughnessTexture::Packed => Part::OcclusionRoughnessMetallic,
+        };
+        let anisotropy: &[Part] = match pbr.anisotropy {
+            None => &[],
+            Some(AnisotropyOutput::Khr) => &[Part::Anisotropy],
+            Some(AnisotropyOutput::Alpha) => &[Part::AlphaX, Part::AlphaY],
+        };
+        [&[Part::Normal, roughness], anisotropy].concat()
+    }
+
+    fn missing_part(&self, given: &[Part]) -> Option<Part> {
+        let has = |part| given.contains(&part);
+        match () {
+            () if !has(Part::Normal) => Some(Part::Normal),
+            () if has(Part::AlphaX) && !has(Part::AlphaY) => Some(Part::AlphaY),
+            () if has(Part::AlphaY) && !has(Part::AlphaX) => Some(Part::AlphaX),
+            () if !has(Part::Roughness) && !has(Part::OcclusionRoughnessMetallic) => Some(Part::Roughness),
+            () => None,
+        }
+    }
+
+    fn layers(&self, info: &TextureInfo) -> &'static [LayerSpec] {
+        match info.part {
+            Part::Roughness if info.roughness_texture == RoughnessTexture::Green => GREEN_ROUGHNESS_LAYERS,
+            Part::Roughness => ROUGHNESS_LAYERS,
+            Part::OcclusionRoughnessMetallic => ORM_LAYERS,
+            Part::Anisotropy => ANISOTROPY_LAYERS,
+            Part::AlphaX => ALPHA_X_LAYERS,
+            Part::AlphaY => ALPHA_Y_LAYERS,
+            _ => NORMAL_LAYERS,
+        }
+    }
+
+    fn extras(&self, info: &TextureInfo) -> &'static [Extra] {
+        match info.roughness_texture {
+            RoughnessTexture::Alone | RoughnessTexture::Green => &[],
+            RoughnessTexture::Packed => &[Extra::Occlusion, Extra::Metalness],
+        }
+    }
+
+    fn encoder(&self, storage: &Storage<'_>) -> Box<dyn RowEncoder> {
+        Box::new(Encoder {
+            units: storage.units(),
+            normal_channels: storage.normal_channels(),
+            stored: storage.info.roughness_stored,
+            anisotropy: storage.pbr.anisotropy,
+            texture: storage.info.roughness_texture,
+        })
+    }
+
+    fn finish(&self, arrays: &mut [TextureArray]) {
+        if let Some(directions) = arrays.iter_mut().find(|array| array.info.part == Part::Anisotropy) {
+            let unit = Units::new(&directions.info, directions.layers[0].sample_type()).unit();
+            orient(&mut directions.layers[0], directions.info.wrap, unit);
+        }
+    }
+
+    fn decoder(&self, files: &Files<'_>) -> TexelDecoder {
+        decoder(files)
+    }
+
+    fn texel_reader(&self, wanted: Wanted, lobe: Lobe) -> Option<&'static TexelReader> {
+        Some(match (wanted, lobe) {
+            (Wanted::Normal, _) => &texels::pbr::NORMAL,
+            (Wanted::Distribution, Lobe::Isotropic) => &texels::pbr::MOMENTS,
+            (Wanted::Distribution, Lobe::Anisotropic) => &texels::pbr::ANISOTROPIC_MOMENTS,
+        })
+    }
+
+    fn bounds(&self, storage: &Storage<'_>, peaks: &Peaks) -> Bounds {
+        pbr_bounds::bounds(storage, peaks)
+    }
+}
+
+const NORMAL_LAYERS: &[LayerSpec] = &[LayerSpec { name: "normal", channels: &["R", "G", "B", OPAQUE] }];
+
+const ROUGHNESS_LAYERS: &[LayerSpec] = &[LayerSpec { name: "roughness", channels: &["Y"] }];
+
+const GREEN_ROUGHNESS_LAYERS: &[LayerSpec] =
     &[LayerSpec { name: "roughness", channels: &["R", "G", "B", OPAQUE] }];
 
-pub(super) const ORM_LAYERS: &[LayerSpec] = &[LayerSpec { name: "orm", channels: &["R", "G", "B", OPAQUE] }];
+const ORM_LAYERS: &[LayerSpec] = &[LayerSpec { name: "orm", channels: &["R", "G", "B", OPAQUE] }];
 
-pub(super) const ANISOTROPY_LAYERS: &[LayerSpec] =
+const ANISOTROPY_LAYERS: &[LayerSpec] =
     &[LayerSpec { name: "anisotropy", channels: &["R", "G", "B", OPAQUE] }];
 
-pub(super) const ALPHA_X_LAYERS: &[LayerSpec] = &[LayerSpec { name: "alpha-x", channels: &["Y"] }];
+const ALPHA_X_LAYERS: &[LayerSpec] = &[LayerSpec { name: "alpha-x", channels: &["Y"] }];
 
-pub(super) const ALPHA_Y_LAYERS: &[LayerSpec] = &[LayerSpec { name: "alpha-y", channels: &["Y"] }];
+const ALPHA_Y_LAYERS: &[LayerSpec] = &[LayerSpec { name: "alpha-y", channels: &["Y"] }];
 
 /// Encodes the parts one after the other.
-pub(super) struct Encoder {
-    pub units: Units,
+struct Encoder {
+    units: Units,
     /// Channels of the normal texture: 4, or 2 where it will be block-compressed.
-    pub normal_channels: usize,
-    pub stored: RoughnessStored,
-    pub anisotropy: Option<AnisotropyOutput>,
-    pub texture: RoughnessTexture,
+    normal_channels: usize,
+    stored: RoughnessStored,
+    anisotropy: Option<AnisotropyOutput>,
+    texture: RoughnessTexture,
 }
 
 impl RowEncoder for Encoder {
@@ -140,28 +300,45 @@ pub(super) fn normal_from_stored(units: Units, texel: &[f32]) -> Normal {
         Some(z) => unit.load(*z),
         None => (1.0 - x * x - y * y).max(0.0).sqrt(),
     };
-    Normal { x, y, z: z.max(FLATTEST) }
+    Normal { x, y, z: z.max(LEAST_NORMAL_Z) }
 }
 
-/// Steeper than any slope that an eight-bit normal can tell from horizontal.
-pub(crate) const FLATTEST: f32 = 1.0 / 512.0;
+/// Finds the parts' channels in a texel of all files.
+fn decoder(files: &Files<'_>) -> TexelDecoder {
+    let (units, info) = (files.units(), *files.main_info());
+    // A third channel is z; a fourth is a filler.
+    let normal = files.channels_of_main().min(3);
+    if let (Some(x), Some(y)) = (files.channel_of(Part::AlphaX), files.channel_of(Part::AlphaY)) {
+        return Box::new(move |texel| decode_alphas(units, &texel[..normal], [texel[x], texel[y]]));
+    }
+    let (first, roughness) = [Part::Roughness, Part::OcclusionRoughnessMetallic]
+        .into_iter()
+        .find_map(|part| files.channel_of(part).zip(files.info_of(part)))
+        .expect("checked to be there");
+    let roughness = first + roughness.roughness_texture.roughness_channel();
+    let anisotropy = files.channel_of(Part::Anisotropy);
+    Box::new(move |texel| {
+        let anisotropy = anisotropy.map(|at| &texel[at..]);
+        decode(units, &info, &texel[..normal], texel[roughness], anisotropy)
+    })
+}
 
 /// Moments of base and bumps together, from a normal's texel and the widths along the axes.
-pub(super) fn decode_alphas(units: Units, normal: &[f32], alphas: [f32; 2]) -> Moments {
-    let mean = slope_from_normal(normal_from_stored(units, &normal[..normal.len().min(3)]));
+fn decode_alphas(units: Units, normal: &[f32], alphas: [f32; 2]) -> Moments {
+    let mean = slope_from_normal(normal_from_stored(units, normal));
     let [xx, yy] = alphas.map(|alpha| variance_from_stored(alpha, RoughnessStored::Alpha));
     Moments::from_mean_and_covariance(mean, Covariance { xx, yy, xy: 0.0 })
 }
 
 /// Moments of base and bumps together, from the parts' texels.
-pub(super) fn decode(
+fn decode(
     units: Units,
     info: &TextureInfo,
     normal: &[f32],
     roughness: f32,
     anisotropy: Option<&[f32]>,
 ) -> Moments {
-    let mean = slope_from_normal(normal_from_stored(units, &normal[..normal.len().min(3)]));
+    let mean = slope_from_normal(normal_from_stored(units, normal));
     let variance = variance_from_stored(roughness, info.roughness_stored);
     let Some(anisotropy) = anisotropy else {
         return Moments::from_mean_and_covariance(mean, Covariance::isotropic(variance));

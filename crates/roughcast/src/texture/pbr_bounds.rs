@@ -2,16 +2,19 @@
 //!
 //! All speak of widths up to 1, the roughest that the stored forms can say.
 
+use super::TextureInfo;
 use super::codec::{Affine, Bounds, Peaks, Units};
-use super::pbr::FLATTEST;
-use super::{Base, EncoderShape, RoughnessStored, TextureInfo};
-use crate::options::AnisotropyOutput;
+use super::pbr::AnisotropyOutput;
+use super::rules::Storage;
+use crate::roughness::{Base, RoughnessStored};
+use crate::slope::LEAST_NORMAL_Z;
 
 /// Bounds of all parts together.
-pub(super) fn bounds(units: Units, info: &TextureInfo, shape: EncoderShape, peaks: &Peaks) -> Bounds {
-    let slope = slope_error(units, shape.normal_channels, peaks);
+pub(super) fn bounds(storage: &Storage<'_>, peaks: &Peaks) -> Bounds {
+    let (units, info) = (storage.units(), storage.info);
+    let slope = slope_error(units, storage.normal_channels(), peaks);
     let variance = variance_error(units, info.roughness_stored, peaks);
-    match shape.anisotropy {
+    match storage.pbr.anisotropy {
         None => Bounds { slope, variance, eigenvalue: variance },
         Some(AnisotropyOutput::Alpha) => {
             let variance = variance_error(units, RoughnessStored::Alpha, peaks);
@@ -37,7 +40,7 @@ pub(super) fn slope_error(units: Units, normal_channels: usize, peaks: &Peaks) -
     // z² = 1 - x² - y² is off by 2 (x dx + y dy) and the squares of the errors, so a steep normal's z by much more.
     let across = peaks.slope * z;
     let off = 2.0 * std::f32::consts::SQRT_2 * across * component + 2.0 * component * component;
-    let z_off = (z * z - off).max(0.0).sqrt().max(FLATTEST);
+    let z_off = (z * z - off).max(0.0).sqrt().max(LEAST_NORMAL_Z);
     component / z_off + peaks.component * (z / z_off - 1.0).max(0.0)
 }
 

@@ -1,7 +1,7 @@
-//! Schilling's bump and roughness pyramids: mean slope and a factor of the covariance, or its larger deviation.
+//! Schilling's bump and roughness pyramids: mean slope and a factor of the covariance, or its larger standard deviation.
 //!
 //! Source: Schilling, "Antialiasing of Bump-Maps", 1997, "The roughness pyramid". `K = D Dᵀ` with D upper triangular,
-//! so the stored numbers are deviations, of even accuracy over their range, and D is what filters an environment map.
+//! so the stored numbers are standard deviations, of even accuracy over their range, and D is what filters an environment map.
 //!
 //! `schilling`, two textures:
 //!
@@ -14,19 +14,114 @@
 //! bound.
 //!
 //! Unsigned types hold `B / (2 sc) + 1/2`, `d1 / vs`, `d3 / vs`, `σ1 / vs` and `d2 / (2 vs) + 1/2`, where vs is the
-//! largest deviation of any level.
+//! largest standard deviation of any level.
 
-use super::codec::{Bounds, LayerSpec, OPAQUE, Peaks, RowEncoder, Units, map1};
+use super::codec::{Bounds, LayerSpec, NORMAL, OPAQUE, Peaks, RowEncoder, Units, map1};
+use super::decode::{Files, TexelDecoder};
+use super::rules::{LayoutRules, SMALLEST_SCALE, Storage, Stores};
+use super::{TexelReader, TextureInfo, texels};
 use crate::moments::{Covariance, Moments};
-use crate::row::RowView;
+use crate::roughness::Lobe;
+use crate::row::{Extra, RowView};
+use crate::shading::Wanted;
 use crate::slope::Slope;
 
-pub(super) const LAYERS: &[LayerSpec] = &[
+pub(super) struct Schilling;
+
+impl LayoutRules for Schilling {
+    fn summary(&self) -> &'static str {
+        "mean slope and a factor of the covariance (Schilling) in two RGBA textures"
+    }
+
+    fn number(&self) -> u8 {
+        2
+    }
+
+    fn stores(&self) -> Stores {
+        Stores::Variances
+    }
+
+    fn layers(&self, _: &TextureInfo) -> &'static [LayerSpec] {
+        LAYERS
+    }
+
+    fn extras(&self, _: &TextureInfo) -> &'static [Extra] {
+        &NORMAL
+    }
+
+    fn variance_scale(&self, largest_variance: f32) -> f32 {
+        largest_variance.sqrt().max(SMALLEST_SCALE)
+    }
+
+    fn encoder(&self, storage: &Storage<'_>) -> Box<dyn RowEncoder> {
+        Box::new(Encoder(storage.units()))
+    }
+
+    fn decoder(&self, files: &Files<'_>) -> TexelDecoder {
+        let units = files.units();
+        Box::new(move |texel| decode(units, texel))
+    }
+
+    fn texel_reader(&self, wanted: Wanted, _: Lobe) -> Option<&'static TexelReader> {
+        Some(match wanted {
+            Wanted::Normal => &texels::schilling::NORMAL,
+            Wanted::Distribution => &texels::schilling::MOMENTS,
+        })
+    }
+
+    fn bounds(&self, storage: &Storage<'_>, peaks: &Peaks) -> Bounds {
+        bounds(storage.units(), peaks)
+    }
+}
+
+pub(super) struct SchillingIsotropic;
+
+impl LayoutRules for SchillingIsotropic {
+    fn summary(&self) -> &'static str {
+        "mean slope and the larger deviation in one texture"
+    }
+
+    fn number(&self) -> u8 {
+        3
+    }
+
+    fn stores(&self) -> Stores {
+        Stores::Variances
+    }
+
+    fn layers(&self, _: &TextureInfo) -> &'static [LayerSpec] {
+        ISOTROPIC_LAYERS
+    }
+
+    fn variance_scale(&self, largest_variance: f32) -> f32 {
+        // The larger eigenvalue can reach the sum of both variances.
+        (2.0 * largest_variance).sqrt().max(SMALLEST_SCALE)
+    }
+
+    fn encoder(&self, storage: &Storage<'_>) -> Box<dyn RowEncoder> {
+        Box::new(IsotropicEncoder(storage.units()))
+    }
+
+    fn decoder(&self, files: &Files<'_>) -> TexelDecoder {
+        let units = files.units();
+        Box::new(move |texel| decode_isotropic(units, texel))
+    }
+
+    fn texel_reader(&self, _: Wanted, _: Lobe) -> Option<&'static TexelReader> {
+        Some(&texels::schilling::ISOTROPIC_MOMENTS)
+    }
+
+    fn bounds(&self, storage: &Storage<'_>, peaks: &Peaks) -> Bounds {
+        isotropic_bounds(storage.units(), peaks)
+    }
+}
+
+const LAYERS: &[LayerSpec] = &[
     LayerSpec { name: "schilling1", channels: &["N.x", "N.y", "N.z", "D.2"] },
     LayerSpec { name: "schilling2", channels: &["B.x", "B.y", "D.1", "D.3"] },
 ];
 
-pub(super) const ISOTROPIC_LAYERS: &[LayerSpec] =
+const ISOTROPIC_LAYERS: &[LayerSpec] =
     &[LayerSpec { name: "schilling-isotropic", channels: &["B.x", "B.y", "sigma", OPAQUE] }];
 
 /// The upper triangular factor of a covariance: `[d1 d2; 0 d3]`.
@@ -55,7 +150,7 @@ impl Factor {
     }
 }
 
-pub(super) struct Encoder(pub Units);
+struct Encoder(Units);
 
 impl RowEncoder for Encoder {
     fn encode(&self, row: RowView<'_>, planes: &mut [Vec<f32>]) {
@@ -76,7 +171,7 @@ impl RowEncoder for Encoder {
     }
 }
 
-pub(super) fn decode(units: Units, texel: &[f32]) -> Moments {
+fn decode(units: Units, texel: &[f32]) -> Moments {
     let (slope, deviation) = (units.slope(), units.variance());
     let factor = Factor {
         d1: deviation.load(texel[6]),
@@ -87,11 +182,11 @@ pub(super) fn decode(units: Units, texel: &[f32]) -> Moments {
     Moments::from_mean_and_covariance(mean, factor.covariance())
 }
 
-pub(super) fn bounds(units: Units, peaks: &Peaks) -> Bounds {
+fn bounds(units: Units, peaks: &Peaks) -> Bounds {
     let deviation = peaks.variance.sqrt();
     let unsigned = units.error(units.variance(), deviation);
     let signed = units.error(units.signed_variance(), deviation);
-    // (d + e)² - d² for each square of a sum; xx has two of them, and |(d1, d2)| is the deviation itself.
+    // (d + e)² - d² for each square of a sum; xx has two of them, and |(d1, d2)| is the standard deviation itself.
     let length = unsigned.hypot(signed);
     let variance = 2.0 * deviation * length + length * length;
     // D is off by a matrix whose norm is at most its Frobenius norm.
@@ -104,7 +199,7 @@ pub(super) fn bounds(units: Units, peaks: &Peaks) -> Bounds {
     }
 }
 
-pub(super) struct IsotropicEncoder(pub Units);
+struct IsotropicEncoder(Units);
 
 impl RowEncoder for IsotropicEncoder {
     fn encode(&self, row: RowView<'_>, planes: &mut [Vec<f32>]) {
@@ -120,14 +215,14 @@ impl RowEncoder for IsotropicEncoder {
     }
 }
 
-pub(super) fn decode_isotropic(units: Units, texel: &[f32]) -> Moments {
+fn decode_isotropic(units: Units, texel: &[f32]) -> Moments {
     let slope = units.slope();
     let sigma = units.variance().load(texel[2]);
     let mean = Slope { x: slope.load(texel[0]), y: slope.load(texel[1]) };
     Moments::from_mean_and_covariance(mean, Covariance::isotropic(sigma * sigma))
 }
 
-pub(super) fn isotropic_bounds(units: Units, peaks: &Peaks) -> Bounds {
+fn isotropic_bounds(units: Units, peaks: &Peaks) -> Bounds {
     // The larger eigenvalue is at most the sum of both variances.
     let sigma = (2.0 * peaks.variance).sqrt();
     let error = units.error(units.variance(), sigma);

@@ -1,7 +1,96 @@
 //! Whether textures have the shape that all code relies on.
 
-use super::{DecodeError, Texture, TextureArray};
-use crate::level_sizes;
+use super::{DecodeError, Layout, Part, Texture, TextureArray};
+use crate::levels::level_sizes;
+
+/// Why textures are not those of their layout.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ShapeFault {
+    /// A file has no layers.
+    #[error("there are no layers")]
+    NoLayers,
+    /// A layer has no levels.
+    #[error("'{layer}' has no levels")]
+    NoLevels {
+        /// The layer's name.
+        layer: &'static str,
+    },
+    /// The layers of a file have different numbers of levels.
+    #[error("its layers differ in number of levels")]
+    LevelCounts,
+    /// There are more levels than it takes to reach 1x1.
+    #[error("'{layer}' has levels beyond 1x1")]
+    TooManyLevels {
+        /// The layer's name.
+        layer: &'static str,
+    },
+    /// A level has not the size that follows from that of level 0.
+    #[error(
+        "level {level} of '{layer}' has {}x{} texels instead of {}x{}", .got.0, .got.1, .wanted.0, .wanted.1
+    )]
+    LevelSize {
+        /// The layer's name.
+        layer: &'static str,
+        /// The level; 0 is the largest.
+        level: usize,
+        /// Its width and height in texels.
+        got: (usize, usize),
+        /// Those that it should have.
+        wanted: (usize, usize),
+    },
+    /// A level is stored in another way than level 0.
+    #[error("level {level} of '{layer}' has another sample type or number of channels")]
+    LevelFormat {
+        /// The layer's name.
+        layer: &'static str,
+        /// The level; 0 is the largest.
+        level: usize,
+    },
+    /// A file is of another layout than the first.
+    #[error("one file holds '{other}'")]
+    OtherLayout {
+        /// The layout of that file.
+        other: Layout,
+    },
+    /// A file is of a part that the layout does not have.
+    #[error("it has no part '{part}'")]
+    ForeignPart {
+        /// The part.
+        part: Part,
+    },
+    /// The files of a layout have different sizes or numbers of levels.
+    #[error("the files differ in size or in number of levels")]
+    FileSizes,
+    /// A file has not the layers of its part.
+    #[error("{got} layers instead of {wanted}")]
+    LayerCount {
+        /// Layers that it has.
+        got: usize,
+        /// Layers of the part.
+        wanted: usize,
+    },
+    /// A layer has too few channels.
+    #[error("{got} channels instead of {wanted}")]
+    ChannelCount {
+        /// Channels that it has.
+        got: usize,
+        /// Channels of the layer.
+        wanted: usize,
+    },
+    /// Two files contain the same layer.
+    #[error("a layer is there twice")]
+    RepeatedLayer,
+    /// The files of a part's layers have different metadata.
+    #[error("the files of its layers say different things of their texels")]
+    LayerInfos,
+    /// The files of a part's layers have different sizes or numbers of levels.
+    #[error("the files of its layers differ in size or in number of levels")]
+    LayerSizes,
+    /// A file that should contain one layer contains more.
+    #[error("a file of one layer contains several")]
+    SeveralLayers,
+}
 
 impl TextureArray {
     /// Checks that there are layers, that all have the same levels, each `max(1, floor(n / 2))` of the one before, and that the
@@ -16,18 +105,18 @@ impl TextureArray {
         }
     }
 
-    fn fault(&self) -> Option<String> {
-        let Some(first) = self.layers.first() else { return Some("there are no layers".to_owned()) };
+    fn fault(&self) -> Option<ShapeFault> {
+        let Some(first) = self.layers.first() else { return Some(ShapeFault::NoLayers) };
         let Some(finest) = first.levels.first() else {
-            return Some(format!("'{}' has no levels", first.name));
+            return Some(ShapeFault::NoLevels { layer: first.name });
         };
         let sizes = level_sizes(finest.width(), finest.height());
         for layer in &self.layers {
             if layer.levels.len() != first.levels.len() {
-                return Some("its layers differ in number of levels".to_owned());
+                return Some(ShapeFault::LevelCounts);
             }
             if layer.levels.len() > sizes.len() {
-                return Some(format!("'{}' has levels beyond 1x1", layer.name));
+                return Some(ShapeFault::TooManyLevels { layer: layer.name });
             }
             if let Some(fault) = level_fault(layer, &sizes) {
                 return Some(fault);
@@ -38,21 +127,15 @@ impl TextureArray {
 }
 
 /// The first level that has not its size, or not the format of level 0.
-fn level_fault(layer: &Texture, sizes: &[(usize, usize)]) -> Option<String> {
+fn level_fault(layer: &Texture, sizes: &[(usize, usize)]) -> Option<ShapeFault> {
     let format = (layer.levels[0].samples().sample_type(), layer.levels[0].channels());
-    layer.levels.iter().zip(sizes).enumerate().find_map(|(number, (level, (width, height)))| {
+    layer.levels.iter().zip(sizes).enumerate().find_map(|(number, (level, wanted))| {
         let got = (level.width(), level.height());
-        if got != (*width, *height) {
-            let name = layer.name;
-            return Some(format!(
-                "level {number} of '{name}' has {}x{} texels instead of {width}x{height}",
-                got.0, got.1
-            ));
+        if got != *wanted {
+            return Some(ShapeFault::LevelSize { layer: layer.name, level: number, got, wanted: *wanted });
         }
         let other = (level.samples().sample_type(), level.channels()) != format;
-        other.then(|| {
-            format!("level {number} of '{}' has another sample type or number of channels", layer.name)
-        })
+        other.then_some(ShapeFault::LevelFormat { layer: layer.name, level: number })
     })
 }
 

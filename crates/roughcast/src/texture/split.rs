@@ -1,6 +1,6 @@
 //! One file a layer instead of one file with array layers, for readers that know no array textures.
 
-use super::{DecodeError, Texture, TextureArray, TextureInfo, layers_of, set_id};
+use super::{DecodeError, ShapeFault, Texture, TextureArray, TextureInfo, layers_of, set_id};
 
 /// Gives textures a common [`TextureInfo::set`], by which files of one bake are known, where they have none yet.
 pub fn mark_set(arrays: &mut [TextureArray]) {
@@ -46,11 +46,11 @@ fn join(mut layers: Vec<TextureArray>) -> Result<TextureArray, DecodeError> {
     layers.sort_by_key(|array| array.info.layer);
     let info = layers[0].info.of_whole_part();
     let layout = info.layout;
-    let shape = |fault: &str| DecodeError::Shape { layout, fault: fault.to_owned() };
+    let shape = |fault| DecodeError::Shape { layout, fault };
     for (place, spec) in layers_of(&info).iter().enumerate() {
         match layers.get(place).and_then(|array| array.info.layer).map(usize::from) {
             Some(layer) if layer == place => {}
-            Some(layer) if layer < place => return Err(shape("a layer is there twice")),
+            Some(layer) if layer < place => return Err(shape(ShapeFault::RepeatedLayer)),
             _ => return Err(DecodeError::MissingLayer { layout, layer: spec.name }),
         }
     }
@@ -60,15 +60,15 @@ fn join(mut layers: Vec<TextureArray>) -> Result<TextureArray, DecodeError> {
             return Err(DecodeError::OtherSet { part: array.info.part, first: info.part });
         }
         if array.info.of_whole_part() != info && !info.base_variance.is_nan() {
-            return Err(shape("the files of its layers say different things of their texels"));
+            return Err(shape(ShapeFault::LayerInfos));
         }
         if array.size() != first_size || array.level_count() != layers[0].level_count() {
-            return Err(shape("the files of its layers differ in size or in number of levels"));
+            return Err(shape(ShapeFault::LayerSizes));
         }
     }
     let textures: Vec<Texture> = layers.into_iter().flat_map(|array| array.layers).collect();
     if textures.len() != layers_of(&info).len() {
-        return Err(shape("a file of one layer contains several"));
+        return Err(shape(ShapeFault::SeveralLayers));
     }
     Ok(TextureArray { info, layers: textures })
 }

@@ -14,22 +14,111 @@
 //! is stored at unit length and the factor in a texture of its own. An s that varies over the map is averaged as 1/s; the
 //! factor alone then says nothing of the length, which stands beside it.
 
-use super::codec::{Affine, Bounds, LayerSpec, Peaks, RowEncoder, Units, map1};
+use super::codec::{Affine, Blocks, Bounds, LayerSpec, Peaks, RowEncoder, Units, map1};
+use super::decode::{Files, TexelDecoder};
 use super::pbr::normal_from_stored;
 use super::pbr_bounds::slope_error;
-use super::{Part, TextureInfo};
+use super::rules::{BaseRole, BlockCompression, LayoutRules, Storage, Stores};
+use super::{Part, PbrOptions, TexelReader, TextureInfo, texels};
+use crate::SampleType;
 use crate::moments::{Covariance, Moments};
-use crate::row::RowView;
+use crate::roughness::Lobe;
+use crate::row::{Extra, RowView};
+use crate::shading::Wanted;
 use crate::slope::{Normal, slope_from_normal};
 
-pub(super) const LAYERS: &[LayerSpec] = &[LayerSpec { name: "toksvig", channels: &["R", "G", "B", "A"] }];
+pub(super) struct Toksvig;
 
-pub(super) const NORMAL_LAYERS: &[LayerSpec] = &[LayerSpec { name: "normal", channels: &["R", "G"] }];
+impl LayoutRules for Toksvig {
+    fn summary(&self) -> &'static str {
+        "averaged normal and gloss factor"
+    }
 
-pub(super) const GLOSS_LAYERS: &[LayerSpec] = &[LayerSpec { name: "gloss", channels: &["Y"] }];
+    fn number(&self) -> u8 {
+        5
+    }
 
-pub(super) const GLOSS_AND_LENGTH_LAYERS: &[LayerSpec] =
-    &[LayerSpec { name: "gloss", channels: &["R", "G"] }];
+    fn stores(&self) -> Stores {
+        Stores::Normals
+    }
+
+    fn default_sample_type(&self) -> SampleType {
+        SampleType::U8
+    }
+
+    fn base_role(&self) -> BaseRole {
+        BaseRole::Apart
+    }
+
+    fn block_compression(&self) -> BlockCompression {
+        BlockCompression::FromEightBits
+    }
+
+    fn parts(&self) -> &'static [Part] {
+        &[Part::Whole, Part::Normal, Part::Gloss]
+    }
+
+    fn parts_written(&self, blocks: Blocks, _: &PbrOptions) -> Vec<Part> {
+        match blocks {
+            Blocks::None => vec![Part::Whole],
+            Blocks::Bc => vec![Part::Normal, Part::Gloss],
+        }
+    }
+
+    fn missing_part(&self, given: &[Part]) -> Option<Part> {
+        let needed: &[Part] = if given.contains(&Part::Whole) { &[] } else { &[Part::Normal, Part::Gloss] };
+        needed.iter().copied().find(|part| !given.contains(part))
+    }
+
+    fn layers(&self, info: &TextureInfo) -> &'static [LayerSpec] {
+        match info.part {
+            Part::Normal => NORMAL_LAYERS,
+            // An exponent that varies does not tell what the length was.
+            Part::Gloss if info.base_variance.is_nan() => GLOSS_AND_LENGTH_LAYERS,
+            Part::Gloss => GLOSS_LAYERS,
+            _ => LAYERS,
+        }
+    }
+
+    fn extras(&self, _: &TextureInfo) -> &'static [Extra] {
+        &[Extra::NormalX, Extra::NormalY, Extra::NormalZ, Extra::BaseVariance]
+    }
+
+    fn encoder(&self, storage: &Storage<'_>) -> Box<dyn RowEncoder> {
+        let form = match storage.info.part {
+            Part::Normal if storage.info.base_variance.is_nan() => Form::PartsWithLength,
+            Part::Normal => Form::Parts,
+            _ => Form::Whole,
+        };
+        Box::new(Encoder { units: storage.units(), form })
+    }
+
+    fn decoder(&self, files: &Files<'_>) -> TexelDecoder {
+        let (units, info) = (files.units(), *files.main_info());
+        match files.channel_of(Part::Gloss) {
+            Some(gloss) if info.part == Part::Normal => {
+                Box::new(move |texel| decode_parts(units, &info, &texel[..2], &texel[gloss..]))
+            }
+            _ => Box::new(move |texel| decode(units, texel)),
+        }
+    }
+
+    fn texel_reader(&self, _: Wanted, _: Lobe) -> Option<&'static TexelReader> {
+        Some(&texels::toksvig::MOMENTS)
+    }
+
+    fn bounds(&self, storage: &Storage<'_>, peaks: &Peaks) -> Bounds {
+        bounds(storage.units(), storage.info, peaks)
+    }
+}
+
+const LAYERS: &[LayerSpec] = &[LayerSpec { name: "toksvig", channels: &["R", "G", "B", "A"] }];
+
+const NORMAL_LAYERS: &[LayerSpec] = &[LayerSpec { name: "normal", channels: &["R", "G"] }];
+
+const GLOSS_LAYERS: &[LayerSpec] = &[LayerSpec { name: "gloss", channels: &["Y"] }];
+
+const GLOSS_AND_LENGTH_LAYERS: &[LayerSpec] = &[LayerSpec { name: "gloss", channels: &["R", "G"] }];
 
 /// The gloss factor for a length of the averaged normal and the variance `1 / s` of the base.
 #[inline(always)]
@@ -41,7 +130,7 @@ fn gloss_factor(length: f32, base_variance: f32) -> f32 {
 
 /// What is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Form {
+enum Form {
     /// `N.x, N.y, N.z, gloss` in one texture.
     Whole,
     /// `n.x, n.y` and `gloss` in two.
@@ -51,9 +140,9 @@ pub(super) enum Form {
 }
 
 /// Encodes the whole layout, or its block-compressed parts one after the other.
-pub(super) struct Encoder {
-    pub units: Units,
-    pub form: Form,
+struct Encoder {
+    units: Units,
+    form: Form,
 }
 
 impl RowEncoder for Encoder {
@@ -87,7 +176,7 @@ impl RowEncoder for Encoder {
 }
 
 /// Toksvig's estimate of the moments from the whole layout.
-pub(super) fn decode(units: Units, texel: &[f32]) -> Moments {
+fn decode(units: Units, texel: &[f32]) -> Moments {
     let unit = units.unit();
     let normal = Normal {
         x: unit.load(texel[0]),
@@ -107,10 +196,10 @@ fn variance_from_length(length: f32) -> f32 {
 
 /// The same from the block-compressed parts, where the gloss factor says what the length was, or the length stands beside
 /// it.
-pub(super) fn decode_parts(units: Units, info: &TextureInfo, texel: &[f32]) -> Moments {
-    let mean = slope_from_normal(normal_from_stored(units, &texel[..2]));
-    let gloss = texel[2].clamp(0.0, 1.0);
-    let variance = match texel.get(3) {
+fn decode_parts(units: Units, info: &TextureInfo, normal: &[f32], gloss_and_length: &[f32]) -> Moments {
+    let mean = slope_from_normal(normal_from_stored(units, normal));
+    let gloss = gloss_and_length[0].clamp(0.0, 1.0);
+    let variance = match gloss_and_length.get(1) {
         Some(length) => variance_from_length(*length),
         None if gloss > 0.0 => info.base_variance * (1.0 - gloss) / gloss,
         None => 1.0,
@@ -118,7 +207,7 @@ pub(super) fn decode_parts(units: Units, info: &TextureInfo, texel: &[f32]) -> M
     Moments::from_mean_and_covariance(mean, Covariance::isotropic(variance))
 }
 
-pub(super) fn bounds(units: Units, info: &TextureInfo, peaks: &Peaks) -> Bounds {
+fn bounds(units: Units, info: &TextureInfo, peaks: &Peaks) -> Bounds {
     // No texel is steeper than the peak, so neither N.z nor the length is below this.
     let shortest = 1.0 / (1.0 + peaks.slope * peaks.slope).sqrt();
     let of_length = |error: f32| {

@@ -12,7 +12,7 @@ pub mod pyramid_oracle;
 pub mod real_files;
 pub mod slope_oracle;
 
-use roughcast::{BakeOptions, Baked, BaseRoughness, Bits, Image, PyramidFilter, SourceOptions, bake};
+use roughcast::{BakeOptions, Baked, BaseRoughness, Image, PyramidFilter, SampleType, SourceOptions, bake};
 
 /// Bakes, where it must not fail.
 pub fn baked(image: &Image, source: &SourceOptions, options: &BakeOptions) -> Baked {
@@ -30,13 +30,13 @@ pub fn baked_with(
 }
 
 /// Options for a layout and a sample type, everything else as by default.
-pub fn options(layout: roughcast::texture::Layout, bits: Bits) -> BakeOptions {
+pub fn options(layout: roughcast::texture::Layout, bits: SampleType) -> BakeOptions {
     BakeOptions { layout, bits, ..BakeOptions::default() }
 }
 
 /// Options for the moments themselves in single floats.
 pub fn float_moments(filter: PyramidFilter) -> BakeOptions {
-    BakeOptions { filter, ..options(roughcast::texture::Layout::Moments, Bits::Float) }
+    BakeOptions { filter, ..options(roughcast::texture::Layout::Moments, SampleType::F32) }
 }
 
 /// The oracle's levels of a map; `base` is the slope variance of each texel's base roughness.

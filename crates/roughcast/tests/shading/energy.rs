@@ -4,11 +4,11 @@ use std::f64::consts::TAU;
 
 use roughcast::Slope;
 use roughcast::shading::{
-    BaseLobe, FootprintRatio, Form, LobeOptions, ModelSurface, Shading, Surface, beckmann_surface,
+    BaseLobe, FootprintRatio, Form, LobeOptions, ModelSurface, Shading, Surface, Wanted, beckmann_surface,
     blinn_phong_surface, gaussian_lobe, ggx_surface, mixture_surface, phong_surface, slope_gaussian,
 };
 use roughcast::texture::{
-    Base, Layout, Packing, RoughnessStored, TextureInfo, Wanted, layers_of, normal_moments, pbr_moments,
+    Base, Layout, Packing, RoughnessStored, TextureInfo, layers_of, normal_moments, pbr_moments,
 };
 use roughcast::{Covariance, Distribution, Lobe};
 

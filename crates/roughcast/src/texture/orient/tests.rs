@@ -1,7 +1,7 @@
 //! Tests of signs that agree.
 
 use super::*;
-use crate::pyramid::level_sizes;
+use crate::levels::level_sizes;
 
 const SIDE: usize = 64;
 const SIGNED: Affine = Affine::IDENTITY;

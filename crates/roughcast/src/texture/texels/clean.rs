@@ -11,7 +11,7 @@ use crate::slope::Slope;
 use crate::texture::packing::unpack;
 use crate::texture::{Packing, Part};
 
-pub(super) const MOMENTS: TexelReader = TexelReader {
+pub(in crate::texture) const MOMENTS: TexelReader = TexelReader {
     module: "clean",
     inputs: &[Input { part: Part::Whole, layer: "clean" }],
     mean_input: Some(0),

@@ -14,7 +14,7 @@ use crate::texture::{Packing, Part};
 const LEAN1: Input = Input { part: Part::Whole, layer: "lean1" };
 const LEAN2: Input = Input { part: Part::Whole, layer: "lean2" };
 
-pub(super) const NORMAL: TexelReader = TexelReader {
+pub(in crate::texture) const NORMAL: TexelReader = TexelReader {
     module: "lean-normal",
     inputs: &[LEAN1],
     mean_input: None,
@@ -23,7 +23,7 @@ pub(super) const NORMAL: TexelReader = TexelReader {
     read: |texels, packing, _| normal_moments(bump_normal(texels[0], packing)),
 };
 
-pub(super) const MOMENTS: TexelReader = TexelReader {
+pub(in crate::texture) const MOMENTS: TexelReader = TexelReader {
     module: "lean",
     inputs: &[LEAN1, LEAN2],
     mean_input: Some(1),

@@ -4,13 +4,13 @@
 //! [`pixel_distribution`](crate::shading::pixel_distribution)'s to say, what a model makes of it
 //! [`Shading::surface_of`](crate::shading::Shading::surface_of)'s.
 
-mod clean;
-mod lean;
+pub(super) mod clean;
+pub(super) mod lean;
 mod normal;
-mod pbr;
-mod schilling;
-mod toksvig;
-mod variance;
+pub(super) mod pbr;
+pub(super) mod schilling;
+pub(super) mod toksvig;
+pub(super) mod variance;
 
 pub use clean::clean_moments;
 pub use lean::lean_moments;
@@ -20,9 +20,8 @@ pub use schilling::{schilling_isotropic_moments, schilling_moments};
 pub use toksvig::{toksvig_moments, toksvig_normal};
 pub use variance::variance_moments;
 
-use super::{Layout, Packing, Part};
+use super::{Packing, Part};
 use crate::distribution::Distribution;
-use crate::options::Lobe;
 use crate::shading::{FootprintRatio, Gaussians, LobeOptions, PixelPart, pixel_distribution};
 
 /// A texture of a layout: which of its files, and which layer of that.
@@ -32,15 +31,6 @@ pub struct Input {
     pub part: Part,
     /// The layer's name.
     pub layer: &'static str,
-}
-
-/// What a renderer wants to know of a surface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Wanted {
-    /// The filtered normal alone.
-    Normal,
-    /// The distribution of slopes.
-    Distribution,
 }
 
 /// What a texture filter averages, which tells how much of the variance under it is the pixel's.
@@ -103,27 +93,6 @@ impl TexelReader {
         match self.pixel_part(ratio) {
             Some(part) => pixel_distribution(&filtered, ratio, part, options),
             None => filtered,
-        }
-    }
-}
-
-impl Layout {
-    /// How a renderer reads this layout's textures for what it wants; `None` for layouts with more channels than a sampler returns.
-    /// `lobe` says whether a material has an anisotropy texture; other layouts do not care.
-    pub fn texel_reader(self, wanted: Wanted, lobe: Lobe) -> Option<&'static TexelReader> {
-        match (self, wanted, lobe) {
-            (Self::Lean, Wanted::Normal, _) => Some(&lean::NORMAL),
-            (Self::Lean, Wanted::Distribution, _) => Some(&lean::MOMENTS),
-            (Self::Clean, ..) => Some(&clean::MOMENTS),
-            (Self::Schilling, Wanted::Normal, _) => Some(&schilling::NORMAL),
-            (Self::Schilling, Wanted::Distribution, _) => Some(&schilling::MOMENTS),
-            (Self::SchillingIsotropic, ..) => Some(&schilling::ISOTROPIC_MOMENTS),
-            (Self::Variance, ..) => Some(&variance::MOMENTS),
-            (Self::Toksvig, ..) => Some(&toksvig::MOMENTS),
-            (Self::Pbr, Wanted::Normal, _) => Some(&pbr::NORMAL),
-            (Self::Pbr, Wanted::Distribution, Lobe::Isotropic) => Some(&pbr::MOMENTS),
-            (Self::Pbr, Wanted::Distribution, Lobe::Anisotropic) => Some(&pbr::ANISOTROPIC_MOMENTS),
-            (Self::BumpSlopes | Self::Moments, ..) => None,
         }
     }
 }

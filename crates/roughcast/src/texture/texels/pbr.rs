@@ -3,13 +3,13 @@
 //! The direction and the strength of the anisotropy are those of glTF's KHR_materials_anisotropy: across the direction the width
 //! is the roughness texture's, along it `mix(α, 1, strength²)`.
 
+use super::normal::normal_moments;
 use super::{Filtered, Input, TexelReader};
 use crate::distribution::Distribution;
 use crate::moments::Covariance;
+use crate::roughness::variance_from_stored;
 use crate::shading::{Gaussians, LEAST_COSINE, unit_normal};
 use crate::slope::{Normal, Slope, slope_from_normal};
-use crate::source::variance_from_stored;
-use crate::texture::normal_moments;
 use crate::texture::packing::unpack;
 use crate::texture::{Packing, Part, RoughnessStored};
 
@@ -17,7 +17,7 @@ const NORMAL_INPUT: Input = Input { part: Part::Normal, layer: "normal" };
 const ROUGHNESS: Input = Input { part: Part::Roughness, layer: "roughness" };
 const ANISOTROPY: Input = Input { part: Part::Anisotropy, layer: "anisotropy" };
 
-pub(super) const NORMAL: TexelReader = TexelReader {
+pub(in crate::texture) const NORMAL: TexelReader = TexelReader {
     module: "pbr-normal",
     inputs: &[NORMAL_INPUT],
     mean_input: None,
@@ -26,7 +26,7 @@ pub(super) const NORMAL: TexelReader = TexelReader {
     read: |texels, packing, _| normal_moments(pbr_normal(texels[0], packing)),
 };
 
-pub(super) const MOMENTS: TexelReader = TexelReader {
+pub(in crate::texture) const MOMENTS: TexelReader = TexelReader {
     module: "pbr",
     inputs: &[NORMAL_INPUT, ROUGHNESS],
     mean_input: None,
@@ -35,7 +35,7 @@ pub(super) const MOMENTS: TexelReader = TexelReader {
     read: |texels, packing, _| pbr_moments(texels[0], texels[1][0], ISOTROPIC, packing),
 };
 
-pub(super) const ANISOTROPIC_MOMENTS: TexelReader = TexelReader {
+pub(in crate::texture) const ANISOTROPIC_MOMENTS: TexelReader = TexelReader {
     module: "pbr-anisotropic",
     inputs: &[NORMAL_INPUT, ROUGHNESS, ANISOTROPY],
     read: |texels, packing, _| pbr_moments(texels[0], texels[1][0], texels[2], packing),

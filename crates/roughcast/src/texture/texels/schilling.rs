@@ -15,7 +15,7 @@ const SCHILLING1: Input = Input { part: Part::Whole, layer: "schilling1" };
 const SCHILLING2: Input = Input { part: Part::Whole, layer: "schilling2" };
 
 /// The normal is stored as in LEAN's first texture.
-pub(super) const NORMAL: TexelReader = TexelReader {
+pub(in crate::texture) const NORMAL: TexelReader = TexelReader {
     module: "lean-normal",
     inputs: &[SCHILLING1],
     mean_input: None,
@@ -25,7 +25,7 @@ pub(super) const NORMAL: TexelReader = TexelReader {
 };
 
 /// Interpolated standard deviations are closest to what interpolated variances are: none is added between texels.
-pub(super) const MOMENTS: TexelReader = TexelReader {
+pub(in crate::texture) const MOMENTS: TexelReader = TexelReader {
     module: "schilling",
     inputs: &[SCHILLING1, SCHILLING2],
     mean_input: Some(1),
@@ -34,7 +34,7 @@ pub(super) const MOMENTS: TexelReader = TexelReader {
     read: |texels, packing, _| schilling_moments(texels[0], texels[1], packing),
 };
 
-pub(super) const ISOTROPIC_MOMENTS: TexelReader = TexelReader {
+pub(in crate::texture) const ISOTROPIC_MOMENTS: TexelReader = TexelReader {
     module: "schilling-isotropic",
     inputs: &[Input { part: Part::Whole, layer: "schilling-isotropic" }],
     mean_input: Some(0),

@@ -6,12 +6,12 @@
 use super::{Filtered, Input, TexelReader};
 use crate::distribution::Distribution;
 use crate::moments::Covariance;
-use crate::shading::{Gaussians, LEAST_NORMAL_Z, LobeOptions};
-use crate::slope::{Normal, Slope};
+use crate::shading::{Gaussians, LobeOptions};
+use crate::slope::{LEAST_NORMAL_Z, Normal, Slope};
 use crate::texture::packing::unpack;
 use crate::texture::{Packing, Part};
 
-pub(super) const MOMENTS: TexelReader = TexelReader {
+pub(in crate::texture) const MOMENTS: TexelReader = TexelReader {
     module: "toksvig",
     inputs: &[Input { part: Part::Whole, layer: "toksvig" }],
     mean_input: None,

@@ -10,7 +10,7 @@ use crate::slope::Slope;
 use crate::texture::packing::unpack;
 use crate::texture::{Packing, Part};
 
-pub(super) const MOMENTS: TexelReader = TexelReader {
+pub(in crate::texture) const MOMENTS: TexelReader = TexelReader {
     module: "variance",
     inputs: &[Input { part: Part::Whole, layer: "variance" }],
     mean_input: Some(0),

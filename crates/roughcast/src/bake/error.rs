@@ -1,0 +1,98 @@
+//! Why a bake is refused.
+
+use crate::SampleType;
+use crate::source::SourceError;
+use crate::texture::{BlockCompression, Layout};
+
+/// Why a map could not be baked.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BakeError {
+    /// The map or the base roughness cannot be read.
+    #[error(transparent)]
+    Source(#[from] SourceError),
+    /// The layout holds floats, and texels of another type were asked for.
+    #[error("the layout '{layout}' holds floats, not {bits} bits: choose half or single floats")]
+    FloatsOnly {
+        /// The layout.
+        layout: Layout,
+        /// The type asked for.
+        bits: SampleType,
+    },
+    /// The base roughness was to be folded in, and there is none.
+    #[error("folding in the base roughness needs a roughness: give one")]
+    NoBaseToFoldIn,
+    /// The layout cannot be made without a base roughness.
+    #[error("what the layout '{layout}' stores depends on the base roughness: give one")]
+    NeedsBase {
+        /// The layout.
+        layout: Layout,
+    },
+    /// Roughness was to be stored as specular powers in unsigned texels.
+    #[error("specular powers do not fit into 0 to 1: choose floats, or another way to store roughness")]
+    SpecularPowersNeedFloats {
+        /// The type asked for.
+        bits: SampleType,
+    },
+    /// A scale was chosen for a layout without slopes.
+    #[error("the layout '{layout}' stores normals, not slopes: it has no scale to choose")]
+    NoScale {
+        /// The layout.
+        layout: Layout,
+    },
+    /// A scale was chosen for floats.
+    #[error("float texels hold slopes as they are: they have no scale to choose")]
+    ScaleOfFloats {
+        /// The type asked for.
+        bits: SampleType,
+    },
+    /// A scale is not above zero, or not finite.
+    #[error("the scale must be above zero, not {scale}")]
+    InvalidScale {
+        /// The scale.
+        scale: f32,
+    },
+    /// Textures shaped for block compression were asked for in another type than 8 bits.
+    #[error("blocks are compressed from 8 bits, not from {bits}")]
+    BlocksNeedEightBits {
+        /// The type asked for.
+        bits: SampleType,
+    },
+    /// The layout cannot be block-compressed.
+    #[error("the layout '{layout}' cannot be block-compressed{}", in_words(*reason))]
+    NotCompressible {
+        /// The layout.
+        layout: Layout,
+        /// Why.
+        reason: BlockCompression,
+    },
+    /// Slopes were allowed whose squares half floats cannot hold.
+    #[error(
+        "the square of a slope of {max_slope} does not fit into a half float: allow slopes up to {largest}, or choose single floats"
+    )]
+    SlopeBeyondHalf {
+        /// The largest slope allowed.
+        max_slope: f32,
+        /// The largest slope whose square fits.
+        largest: f32,
+    },
+    /// The base roughness, which is folded in, leaves no room for slopes.
+    #[error(
+        "the base roughness alone has a variance of {base_variance}, which a scale of {scale} cannot hold: choose a larger scale"
+    )]
+    BaseBeyondScale {
+        /// The largest slope variance of the base.
+        base_variance: f32,
+        /// The scale that was chosen.
+        scale: f32,
+    },
+}
+
+fn in_words(reason: BlockCompression) -> &'static str {
+    match reason {
+        BlockCompression::WouldLoseVariance => {
+            ": its variance is a small difference of large numbers, and the blocks' errors are larger than it"
+        }
+        BlockCompression::FromEightBits | BlockCompression::Undefined => "",
+    }
+}

@@ -1,0 +1,184 @@
+//! What a layout says of itself. The rest of the code asks these questions and never which layout it is.
+//!
+//! Each layout answers in its own file. [`super::layout`] is the registry.
+
+use super::codec::{Blocks, Bounds, LayerSpec, Peaks, RowEncoder, Units};
+use super::decode::{Files, TexelDecoder};
+use super::pbr::PbrOptions;
+use super::{Part, TexelReader, TextureArray, TextureInfo};
+use crate::SampleType;
+use crate::roughness::Lobe;
+use crate::row::Extra;
+use crate::shading::Wanted;
+
+/// A flat map has no slopes to scale by; slopes below this cannot be told from it.
+pub(crate) const SMALLEST_SCALE: f32 = 1.0 / 1024.0;
+
+/// The quantities that texels hold. Unsigned types hold them over ranges that [`TextureInfo`] records.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stores {
+    /// Mean slopes over `-scale ..= scale` and raw second moments over `scale^2`.
+    RawMoments,
+    /// Mean slopes over `-scale ..= scale`, and variances or standard deviations over `variance_scale`.
+    Variances,
+    /// Unit normals and roughness, whose ranges do not depend on the map.
+    Normals,
+}
+
+impl Stores {
+    /// The smallest scale that holds every slope and every second moment that is stored. Layouts of normals record the scale that
+    /// raw moments would have, although they hold nothing over it.
+    pub fn smallest_scale(self, peaks: &Peaks) -> f32 {
+        let needed = match self {
+            Stores::Variances => peaks.component,
+            Stores::RawMoments | Stores::Normals => peaks.second().sqrt(),
+        };
+        needed.max(SMALLEST_SCALE)
+    }
+}
+
+/// What a layout makes of the base roughness of a material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum BaseRole {
+    /// The base is folded into the second moments where [`Base::Baked`](crate::texture::Base::Baked) asks for it; otherwise the
+    /// shader adds it.
+    OnRequest,
+    /// The base is always part of the stored roughness, and of the moments that it decodes to. Without one it is zero: a mirror.
+    Contained,
+    /// The layout cannot be made without a base, which it averages apart from the bumps. What it stores depends on the base, but
+    /// the moments that it decodes to do not contain it.
+    Apart,
+}
+
+/// Whether the textures of a layout can be block-compressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum BlockCompression {
+    /// From 8 bits, in textures of one, two or four channels.
+    FromEightBits,
+    /// The variance is a small difference of large numbers, and the errors of blocks are larger than it.
+    WouldLoseVariance,
+    /// No textures for blocks are defined.
+    Undefined,
+}
+
+/// How a bake stores its texels: what encoders and bounds depend on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Storage<'a> {
+    /// The meaning of the first file.
+    pub info: &'a TextureInfo,
+    pub sample_type: SampleType,
+    /// Whether textures are shaped for block compression.
+    pub blocks: Blocks,
+    /// The choices of `pbr`.
+    pub pbr: &'a PbrOptions,
+}
+
+impl Storage<'_> {
+    pub fn units(&self) -> Units {
+        Units::new(self.info, self.sample_type)
+    }
+
+    /// Channels of a texture of unit normals: x and y alone where it will be block-compressed.
+    pub fn normal_channels(&self) -> usize {
+        if self.blocks == Blocks::Bc { 2 } else { 4 }
+    }
+}
+
+/// All sample types, for layouts that unsigned types can hold.
+pub(super) const ANY_TYPE: &[SampleType] =
+    &[SampleType::U8, SampleType::U16, SampleType::F16, SampleType::F32];
+
+/// The sample types of layouts that hold values as they are.
+pub(super) const FLOATS: &[SampleType] = &[SampleType::F16, SampleType::F32];
+
+/// The rules of one layout. Where a method has a default, it is what most layouts do.
+pub(crate) trait LayoutRules: Sync {
+    /// What is stored, for lists of layouts: one line without a full stop.
+    fn summary(&self) -> &'static str;
+
+    /// The number by which DDS files know the layout: 0 to 255, the next free one for a new layout, and never another.
+    fn number(&self) -> u8;
+
+    /// The quantities that texels hold.
+    fn stores(&self) -> Stores;
+
+    /// The sample types that can hold the layout.
+    fn sample_types(&self) -> &'static [SampleType] {
+        ANY_TYPE
+    }
+
+    /// The sample type to store in where nothing speaks for another: the smallest that suits common materials.
+    fn default_sample_type(&self) -> SampleType {
+        SampleType::U16
+    }
+
+    /// What becomes of a base roughness.
+    fn base_role(&self) -> BaseRole {
+        BaseRole::OnRequest
+    }
+
+    /// Whether [`PbrOptions`] have a meaning here.
+    fn reads_pbr_options(&self) -> bool {
+        false
+    }
+
+    /// Whether textures can be block-compressed.
+    fn block_compression(&self) -> BlockCompression {
+        BlockCompression::Undefined
+    }
+
+    /// The parts that files of this layout can be, the main ones first.
+    fn parts(&self) -> &'static [Part] {
+        &[Part::Whole]
+    }
+
+    /// The parts that a bake writes, the main one first.
+    fn parts_written(&self, blocks: Blocks, pbr: &PbrOptions) -> Vec<Part> {
+        let _ = (blocks, pbr);
+        vec![Part::Whole]
+    }
+
+    /// A part without which these cannot be decoded.
+    fn missing_part(&self, given: &[Part]) -> Option<Part> {
+        given.is_empty().then(|| self.parts()[0])
+    }
+
+    /// The textures of a file with this meaning, all layers of it.
+    fn layers(&self, info: &TextureInfo) -> &'static [LayerSpec];
+
+    /// The quantities that are averaged beside the moments of slopes, in the order of [`RowView`](crate::row::RowView)'s extras.
+    fn extras(&self, info: &TextureInfo) -> &'static [Extra] {
+        let _ = info;
+        &[]
+    }
+
+    /// The range of stored variances or standard deviations, given the largest variance along an axis of any level.
+    fn variance_scale(&self, largest_variance: f32) -> f32 {
+        let _ = largest_variance;
+        1.0
+    }
+
+    /// Turns rows of moments into the channels of all files that are written, one after the other.
+    fn encoder(&self, storage: &Storage<'_>) -> Box<dyn RowEncoder>;
+
+    /// Changes textures of which all levels are made.
+    fn finish(&self, arrays: &mut [TextureArray]) {
+        let _ = arrays;
+    }
+
+    /// Turns the channels of a texel of all these files, one after the other, into moments. The files are whole: none of them is
+    /// [missing](Self::missing_part), and each has at least the channels of [`layers`](Self::layers), but for a block-compressed
+    /// normal, which has two.
+    fn decoder(&self, files: &Files<'_>) -> TexelDecoder;
+
+    /// How a renderer reads filtered texels of this layout for what it wants. `lobe` tells whether a material has an anisotropy texture.
+    /// `None` where a texture has more channels than a sampler returns.
+    fn texel_reader(&self, wanted: Wanted, lobe: Lobe) -> Option<&'static TexelReader> {
+        let _ = (wanted, lobe);
+        None
+    }
+
+    /// Largest errors of what the textures give back, where nothing stored exceeds `peaks`. Block compression adds its own.
+    fn bounds(&self, storage: &Storage<'_>, peaks: &Peaks) -> Bounds;
+}
