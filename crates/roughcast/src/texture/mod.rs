@@ -1,7 +1,7 @@
 //! Stored textures: what a baked file holds, level by level, and what is needed to read it back.
 //!
-//! One layout a file: its description ([`rules`] has the questions), the encoding of moments into texels, their decoding, and
-//! the bounds of its error. [`layout`] lists them.
+//! One layout a file: its description (`rules.rs` has the questions), the encoding of moments into texels, their decoding, and
+//! the bounds of its error. [`Layout`] lists them.
 
 mod bump_slopes;
 mod clean;
