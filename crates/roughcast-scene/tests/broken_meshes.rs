@@ -273,6 +273,9 @@ fn impossible_parts_are_refused() {
     assert!(matches!(broken(|p| p.indices.push(0)), MeshFault::Count { .. }));
     assert!(matches!(broken(|p| p.indices[2] = 3), MeshFault::IndexOutOfRange { index: 3, vertices: 3 }));
     assert!(matches!(broken(|p| p.normals.push([0.0; 3])), MeshFault::Count { .. }));
-    assert!(matches!(broken(|p| p.uvs = vec![[f32::NAN; 2]; 3]), MeshFault::NotFinite { vertex: 0, .. }));
+    assert!(matches!(
+        broken(|p| p.uv_sets = vec![vec![[f32::NAN; 2]; 3]]),
+        MeshFault::NotFinite { vertex: 0, .. }
+    ));
     assert!(matches!(broken(|p| p.positions[1] = [1e20, 0.0, 0.0]), MeshFault::Size { .. }));
 }

@@ -137,7 +137,7 @@ impl Scene<'_> {
                 Semantic::Positions => part.positions = self.buffers.floats(&accessor)?,
                 Semantic::Normals => part.normals = self.buffers.floats(&accessor)?,
                 Semantic::Tangents => part.tangents = self.buffers.floats(&accessor)?,
-                Semantic::TexCoords(0) => part.uvs = self.buffers.floats(&accessor)?,
+                Semantic::TexCoords(0) => part.uv_sets = vec![self.buffers.floats(&accessor)?],
                 _ => {}
             }
         }

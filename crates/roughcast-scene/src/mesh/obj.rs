@@ -21,11 +21,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<TriangleMesh>, MeshFault> {
 }
 
 fn part(mesh: tobj::Mesh) -> TriangleMesh {
+    let uvs: Vec<_> = groups(&mesh.texcoords).into_iter().map(|[u, v]: [f32; 2]| [u, 1.0 - v]).collect();
     TriangleMesh {
         positions: groups(&mesh.positions),
         normals: groups(&mesh.normals),
         tangents: Vec::new(),
-        uvs: groups(&mesh.texcoords).into_iter().map(|[u, v]: [f32; 2]| [u, 1.0 - v]).collect(),
+        uv_sets: if uvs.is_empty() { Vec::new() } else { vec![uvs] },
         indices: mesh.indices,
     }
 }

@@ -81,8 +81,9 @@ impl Method<'_> {
             let (x, y) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
             let ray = rays.ray(x, y);
             let Some(hit) = scene.shape.hit(&ray) else { return Shaded::background(scene) };
-            let footprint = hit.footprint(&rays.ray(x + 1.0, y), &rays.ray(x, y + 1.0));
-            let at = Lookup { uv: hit.uv * scene.repeats, footprint: footprint.scaled(scene.repeats), quad };
+            let footprint = hit.footprint(0, &rays.ray(x + 1.0, y), &rays.ray(x, y + 1.0));
+            let at =
+                Lookup { uv: hit.uv(0) * scene.repeats, footprint: footprint.scaled(scene.repeats), quad };
             let surface = self.surface(&at, &options);
             Shaded::lit(scene, &ray, &hit, &surface, &options)
         })

@@ -89,7 +89,7 @@ impl Truth<'_> {
             let background = Shaded::background(scene);
             return sums.iter_mut().for_each(|sum| sum.add(&background));
         };
-        let slope = self.slopes.at(hit.uv * scene.repeats, self.wrap, self.reconstruction);
+        let slope = self.slopes.at(hit.uv(0) * scene.repeats, self.wrap, self.reconstruction);
         for (sum, shading) in sums.iter_mut().zip(shadings) {
             let surface = shading.surface_of_slope(slope, &self.options);
             sum.add(&Shaded::lit(scene, ray, &hit, &surface, &self.options));
