@@ -33,7 +33,7 @@ pub use camera::{Camera, CameraError, PixelRays};
 pub use filter::{Filter, Sampler, SummedAreaTable};
 pub use hit::{Footprint, Frame, Hit, MAX_UV_SETS, Ray, Side, UvPoint, UvSets};
 pub use light::Light;
-pub use mesh::{MAX_FILE_BYTES, MAX_TRIANGLES, MAX_VERTICES, Mesh, MeshError, MeshFault, load_mesh};
+pub use mesh::{MAX_TRIANGLES, MAX_VERTICES, Mesh, MeshFault};
 pub use mipmap::{Level, Mipmap, MipmapError};
 pub use picture::{Picture, luminance};
 pub use scene::Scene;

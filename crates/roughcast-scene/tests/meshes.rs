@@ -4,7 +4,8 @@ mod common;
 
 use common::{hits, unorthonormality};
 use glam::{DVec2, DVec3, Vec3};
-use roughcast_scene::{Hit, Mesh, Ray, Shape, Sphere, Torus, TriangleMesh, load_mesh};
+use roughcast_io::mesh::load_mesh;
+use roughcast_scene::{Hit, Mesh, MeshFault, Ray, Shape, Sphere, Torus, TriangleMesh};
 use roughcast_testdata::{available, files_in, find};
 
 /// Every model: file, triangles as its nodes show them, whether it has texture coordinates, whether it has tangents.
@@ -269,4 +270,29 @@ fn constant_texture_coordinates_have_no_footprint() {
     assert!(unorthonormality(&hit) < ORTHONORMAL);
     let aside = Ray { direction: DVec3::new(0.1, 0.0, -1.0).normalize(), ..front() };
     assert_eq!(hit.footprint(0, &aside, &aside).dx, DVec2::ZERO);
+}
+
+#[test]
+fn impossible_parts_are_refused() {
+    let whole = TriangleMesh {
+        positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        indices: vec![0, 1, 2],
+        ..Default::default()
+    };
+    assert!(Mesh::new(vec![whole.clone()]).is_ok());
+    let broken = |edit: fn(&mut TriangleMesh)| {
+        let mut part = whole.clone();
+        edit(&mut part);
+        Mesh::new(vec![part]).unwrap_err()
+    };
+    assert!(matches!(Mesh::new(vec![]), Err(MeshFault::NoTriangles)));
+    assert!(matches!(broken(|p| p.indices.clear()), MeshFault::NoTriangles));
+    assert!(matches!(broken(|p| p.indices.push(0)), MeshFault::Count { .. }));
+    assert!(matches!(broken(|p| p.indices[2] = 3), MeshFault::IndexOutOfRange { index: 3, vertices: 3 }));
+    assert!(matches!(broken(|p| p.normals.push([0.0; 3])), MeshFault::Count { .. }));
+    assert!(matches!(
+        broken(|p| p.uv_sets = vec![vec![[f32::NAN; 2]; 3]]),
+        MeshFault::NotFinite { vertex: 0, .. }
+    ));
+    assert!(matches!(broken(|p| p.positions[1] = [1e20, 0.0, 0.0]), MeshFault::Size { .. }));
 }

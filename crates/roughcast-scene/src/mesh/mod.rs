@@ -1,29 +1,20 @@
-//! Triangle meshes, from files or from memory.
+//! Triangle meshes.
 
-mod accessor;
 mod bvh;
 mod error;
-mod gltf;
 mod merge;
 mod normals;
-mod obj;
 mod tangents;
-mod uri;
-
-use std::io::Read;
-use std::path::Path;
 
 use glam::{DVec2, DVec3, DVec4, Vec2, Vec3, Vec4};
 
-pub use error::{MeshError, MeshFault};
+pub use error::MeshFault;
 
 use crate::shape::facing;
 use crate::{Bounds, Frame, Hit, Ray, Side, TriangleMesh, UvPoint};
 use bvh::TriangleBvh;
 
-/// The largest file that is read, and the most bytes of buffers of a glTF file.
-pub const MAX_FILE_BYTES: usize = 1 << 29;
-/// The most triangles of a mesh. Reading one this large takes about two gigabytes.
+/// The most triangles of a mesh. Reading one this large from a file takes about two gigabytes.
 pub const MAX_TRIANGLES: usize = 1 << 22;
 /// The most vertices of a mesh.
 pub const MAX_VERTICES: usize = 3 * MAX_TRIANGLES;
@@ -32,7 +23,7 @@ pub const MAX_VERTICES: usize = 3 * MAX_TRIANGLES;
 /// u and v grow: single floats do not resolve it.
 const MIN_UV_SINE: f64 = 1e-7;
 
-/// A triangle mesh with a frame and, where its file has them, texture coordinates at each vertex.
+/// A triangle mesh with a frame and, where it has them, texture coordinates at each vertex.
 #[derive(Clone)]
 pub struct Mesh {
     triangles: TriangleMesh,
@@ -51,39 +42,6 @@ impl std::fmt::Debug for Mesh {
             .field("bounds", &self.bounds)
             .finish_non_exhaustive()
     }
-}
-
-/// Reads a mesh: Wavefront OBJ (`.obj`) or glTF 2.0 (`.gltf`, `.glb`).
-///
-/// Of glTF all triangles of the default scene are taken, in the places that its nodes give them, with the first set of
-/// texture coordinates; materials, skins, morph targets and animations are not. Textures are not read. Tangents of a file
-/// are taken as they are. Some exporters write them with the bitangent along growing v, against the convention of this
-/// crate; maps for such a mesh have green down.
-pub fn load_mesh(path: impl AsRef<Path>) -> Result<Mesh, MeshError> {
-    let path = path.as_ref();
-    parts_of_file(path).and_then(Mesh::new).map_err(|fault| MeshError { path: path.to_owned(), fault })
-}
-
-fn parts_of_file(path: &Path) -> Result<Vec<TriangleMesh>, MeshFault> {
-    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-    match extension.as_str() {
-        "obj" => obj::read(&read_file(path)?),
-        "gltf" | "glb" => gltf::read(&read_file(path)?, path.parent().unwrap_or(Path::new(""))),
-        _ => Err(MeshFault::UnknownExtension),
-    }
-}
-
-/// The bytes of a file, or an error before more than the limit are held.
-fn read_file(path: &Path) -> Result<Vec<u8>, MeshFault> {
-    let too_large = MeshFault::TooLarge { what: "bytes", limit: MAX_FILE_BYTES };
-    let file = std::fs::File::open(path)?;
-    if file.metadata()?.len() > MAX_FILE_BYTES as u64 {
-        return Err(too_large);
-    }
-    // Pipes and devices do not state their length.
-    let mut bytes = Vec::new();
-    file.take(MAX_FILE_BYTES as u64 + 1).read_to_end(&mut bytes)?;
-    if bytes.len() > MAX_FILE_BYTES { Err(too_large) } else { Ok(bytes) }
 }
 
 impl Mesh {
