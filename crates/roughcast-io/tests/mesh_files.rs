@@ -64,7 +64,11 @@ fn gltf_keeps_primitives_materials_and_every_set() {
     assert_eq!(first.triangles.uv_sets, [UV0.to_vec(), UV1.to_vec()]);
     assert_eq!(second.triangles.uv_sets, [UV0.to_vec()]);
     assert_eq!(first.triangles.indices, [0, 1, 2]);
-    assert_eq!(first.triangles.positions, [[0.0, 0.0, 5.0], [1.0, 0.0, 5.0], [0.0, 1.0, 5.0]], "in the world");
+    assert_eq!(
+        first.triangles.positions,
+        [[0.0, 0.0, 5.0], [1.0, 0.0, 5.0], [0.0, 1.0, 5.0]],
+        "in the world"
+    );
 
     let [plain, lacquer] = file.materials.as_slice() else { panic!("{:?}", file.materials) };
     let mut default = MeshMaterial::default();
@@ -74,7 +78,10 @@ fn gltf_keeps_primitives_materials_and_every_set() {
     assert_eq!(lacquer.base_color, [0.1, 0.2, 0.3, 0.4]);
     assert_eq!((lacquer.metallic, lacquer.roughness), (0.6, 0.7));
     assert_eq!((lacquer.normal_scale, lacquer.occlusion_strength), (0.5, 0.75));
-    assert_eq!((lacquer.alpha_mode, lacquer.alpha_cutoff, lacquer.double_sided), (AlphaMode::Mask, 0.25, true));
+    assert_eq!(
+        (lacquer.alpha_mode, lacquer.alpha_cutoff, lacquer.double_sided),
+        (AlphaMode::Mask, 0.25, true)
+    );
     let normal = lacquer.normal_texture.as_ref().unwrap();
     assert_eq!(normal.image, MeshImage::File("maps/a normal.png".into()));
     assert_eq!((normal.uv_set, normal.wrap), (1, [Wrap::Clamp, Wrap::Mirror]));
@@ -113,7 +120,13 @@ fn a_faulty_second_set_is_named_and_the_mesh_is_read_by_the_first() {
     let cases: [(&str, [[f32; 2]; 3], Edit, usize, &str); 5] = [
         ("nan", nan, |s| s, 1, "texture coordinates that are not finite"),
         ("gap", UV1, |s| s.replace("TEXCOORD_1", "TEXCOORD_2"), 2, "before it are missing"),
-        ("huge", UV1, |s| s.replace("TEXCOORD_1", "TEXCOORD_4294967295"), 4294967295, "before it are missing"),
+        (
+            "huge",
+            UV1,
+            |s| s.replace("TEXCOORD_1", "TEXCOORD_4294967295"),
+            4294967295,
+            "before it are missing",
+        ),
         ("kind", UV1, |s| s.replace(r#""TEXCOORD_1":2"#, r#""TEXCOORD_1":0"#), 1, "should hold vectors of 2"),
         (
             "count",

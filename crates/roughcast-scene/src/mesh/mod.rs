@@ -1,7 +1,9 @@
 //! Triangle meshes.
 
+#[cfg(feature = "render")]
 mod bvh;
 mod error;
+mod intersect;
 mod merge;
 mod normals;
 mod tangents;
@@ -12,7 +14,10 @@ pub use error::MeshFault;
 
 use crate::shape::facing;
 use crate::{Bounds, Frame, Hit, Ray, Side, TriangleMesh, UvPoint};
-use bvh::TriangleBvh;
+#[cfg(feature = "render")]
+use bvh::TriangleBvh as Triangles;
+#[cfg(not(feature = "render"))]
+use intersect::AllTriangles as Triangles;
 
 /// The most triangles of a mesh. Reading one this large from a file takes about two gigabytes.
 pub const MAX_TRIANGLES: usize = 1 << 22;
@@ -30,7 +35,8 @@ pub struct Mesh {
     /// Those that every part has.
     uv_set_count: usize,
     bounds: Bounds,
-    bvh: TriangleBvh,
+    /// Finds the one that a ray meets.
+    finder: Triangles,
 }
 
 impl std::fmt::Debug for Mesh {
@@ -59,8 +65,8 @@ impl Mesh {
         normals::turn_towards_normals(&mut triangles);
         normals::complete(&mut triangles);
         tangents::complete(&mut triangles);
-        let bvh = TriangleBvh::new(&triangles, bounds);
-        Ok(Self { triangles, uv_set_count, bounds, bvh })
+        let finder = Triangles::new(&triangles, bounds);
+        Ok(Self { triangles, uv_set_count, bounds, finder })
     }
 
     /// Whether every part has texture coordinates. Without them hits have no set of them, and a frame whose tangent is
@@ -89,10 +95,11 @@ impl Mesh {
         self.bounds
     }
 
-    /// See [`crate::Shape::hit`]. The point, the texture coordinates and the geometric normal are those of the flat triangle;
+    /// See [`crate::Shape::hit`]. It takes time that grows with the logarithm of the number of triangles; without the feature `render`,
+    /// which has the hierarchy for it, with their number. The point, the texture coordinates and the geometric normal are those of the flat triangle;
     /// the frame is interpolated between its vertices.
     pub fn hit(&self, ray: &Ray) -> Option<Hit> {
-        let found = self.bvh.nearest(&self.triangles, ray)?;
+        let found = self.finder.nearest(&self.triangles, ray)?;
         Some(facing(self.hit_on_triangle(found.triangle, found.weights, found.distance), ray))
     }
 
