@@ -115,9 +115,10 @@ fn skipped(file: &MeshFile) -> (usize, usize, &MeshFileFault) {
 
 #[test]
 fn a_faulty_second_set_is_named_and_the_mesh_is_read_by_the_first() {
-    type Edit = fn(String) -> String;
+    /// A name, the second set, a change of the JSON, the set that is left out, and a part of the reason.
+    type Case = (&'static str, [[f32; 2]; 3], fn(String) -> String, usize, &'static str);
     let nan = [[f32::NAN; 2]; 3];
-    let cases: [(&str, [[f32; 2]; 3], Edit, usize, &str); 5] = [
+    let cases: [Case; 5] = [
         ("nan", nan, |s| s, 1, "texture coordinates that are not finite"),
         ("gap", UV1, |s| s.replace("TEXCOORD_1", "TEXCOORD_2"), 2, "before it are missing"),
         (
