@@ -11,7 +11,7 @@ from workspace import cargo_metadata, members, report
 # Crate -> crates of this workspace that it may depend on, at run time or in its build script.
 ALLOWED = {
     "roughcast": set(),
-    "roughcast-io": {"roughcast"},
+    "roughcast-io": {"roughcast", "roughcast-scene"},
     "roughcast-scene": {"roughcast"},
     "roughcast-gpu": {"roughcast", "roughcast-scene"},
     "roughcast-cli": {"roughcast", "roughcast-io", "roughcast-scene", "roughcast-gpu"},
@@ -26,6 +26,12 @@ ALLOWED_IN_TESTS = {
     "roughcast-scene": {"roughcast-io"},
     "roughcast-gpu": {"roughcast-io"},
     "roughcast-py": {"roughcast-io"},
+}
+
+# Who takes the description of a scene must not get the CPU renderer with it: a page in a browser, or a reader of meshes, has no use
+# for it. The crate whose default features are left out, and by whom.
+WITHOUT_FEATURES = {
+    "roughcast-scene": {"roughcast-io", "roughcast-gpu"},
 }
 
 FIXTURES = "roughcast-testdata"
@@ -49,6 +55,9 @@ def arrow_faults(package, workspace_names):
             allowed = ALLOWED[name] | (in_tests_too if in_tests else set())
             if target not in allowed:
                 yield f"{name} -> {target}: this arrow is not allowed{' in tests' if in_tests else ''}"
+            has_features = dependency.get("uses_default_features") or dependency.get("features")
+            if not in_tests and has_features and name in WITHOUT_FEATURES.get(target, set()):
+                yield f"{name} -> {target}: this arrow takes no features of {target}"
         elif dependency["source"] is None:
             yield f"{name} -> {target}: a path outside the workspace"
         elif name == LIBRARY and not in_tests and target not in LIBRARY_MAY_USE:

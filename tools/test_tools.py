@@ -59,6 +59,17 @@ class Arrows(unittest.TestCase):
         scene = package("roughcast-scene", ("roughcast-io", None))
         self.assertEqual(len(self.faults(package("roughcast-io"), scene)), 1)
 
+    def test_the_description_of_a_scene_is_taken_without_the_renderer(self):
+        scene = package("roughcast-scene")
+        bare, default, feature, tests = (package("roughcast-gpu", ("roughcast-scene", None)) for _ in range(4))
+        self.assertEqual(self.faults(scene, bare), [])
+        default["dependencies"][0]["uses_default_features"] = True
+        feature["dependencies"][0]["features"] = ["render"]
+        tests["dependencies"][0].update(kind="dev", features=["render"])
+        for user in [default, feature]:
+            self.assertIn("takes no features", self.faults(scene, user)[0])
+        self.assertEqual(self.faults(scene, tests), [])
+
     def test_an_unknown_crate_fails(self):
         self.assertIn("unknown crate", self.faults(package("roughcast-extra"))[0])
 

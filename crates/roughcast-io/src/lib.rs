@@ -6,6 +6,7 @@
 //!   wrote; [`png_levels`] writes one level as a PNG;
 //! - [`picture`] writes rendered pictures as PNG, animated PNG and EXR;
 //! - [`compress`] makes BC4, BC5 and BC7 blocks, and [`decompress`] shows what a graphics processor will see of them;
+//! - `mesh`, with the feature of that name (on by default), reads Wavefront OBJ and glTF;
 //! - [`AtomicFile`] and [`AtomicSet`] let files appear whole or not at all.
 //!
 //! Readers take any bytes: none panics, and no memory is taken that [`Limits`] do not allow. Errors are one line with the
@@ -47,6 +48,8 @@ pub mod exr;
 mod file_info;
 pub mod ktx2;
 pub mod material_names;
+#[cfg(feature = "mesh")]
+pub mod mesh;
 mod metadata;
 mod payload;
 pub mod picture;

@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::{Footprint, Hit, Ray};
+use crate::{Footprint, Hit, Ray, UvPoint};
 
 /// The neighbour's ray is followed at most this many times as far as the hit is away. At the horizon it meets the plane
 /// arbitrarily far off, or behind the eye; footprints as long as this take the coarsest level of any texture.
@@ -13,21 +13,36 @@ const MAX_REACH: f64 = 1e4;
 /// worth of repeats under a pixel and detail left.
 const MAX_CHANGE: f64 = 1024.0;
 
-/// Squared sine of the angle between dpdu and dpdv below which they count as parallel.
+/// Squared sine of the angle between dpds and dpdt below which they count as parallel.
 const MIN_SINE_SQUARED: f64 = 1e-20;
 
 impl Hit {
-    /// How the texture coordinates change from this pixel to its right neighbour, whose ray is `dx`, and to the one below it,
-    /// whose ray is `dy`.
+    /// How the coordinates of a set change from this pixel to its right neighbour, whose ray is `dx`, and to the one below
+    /// it, whose ray is `dy`: [`Hit::surface_footprint`] and [`Hit::footprint_in_set`] together.
     ///
-    /// The surface is taken for its tangent plane. Always finite: beyond the horizon the footprint is the long one that is
-    /// reached just before it; where the surface has no texture coordinates, or where they do not change with the
-    /// position, it is zero.
-    pub fn footprint(&self, dx: &Ray, dy: &Ray) -> Footprint {
+    /// Always finite: beyond the horizon the footprint is the long one that is reached just before it; where the surface has
+    /// no such texture coordinates, or where they do not change with the position, it is zero.
+    pub fn footprint(&self, set: usize, dx: &Ray, dy: &Ray) -> Footprint {
+        self.footprint_in_set(set, &self.surface_footprint(dx, dy))
+    }
+
+    /// How the surface's own parameters (s, t) change from this pixel to its right neighbour, whose ray is `dx`, and to the
+    /// one below it, whose ray is `dy`. The surface is taken for its tangent plane. Always finite.
+    pub fn surface_footprint(&self, dx: &Ray, dy: &Ray) -> Footprint {
         Footprint {
-            dx: self.change_of_uv(self.offset_on_plane(dx)),
-            dy: self.change_of_uv(self.offset_on_plane(dy)),
+            dx: self.change_of_parameters(self.offset_on_plane(dx)),
+            dy: self.change_of_parameters(self.offset_on_plane(dy)),
         }
+    }
+
+    /// A [surface footprint](Hit::surface_footprint) in the texture coordinates of a set, by the chain rule.
+    pub fn footprint_in_set(&self, set: usize, surface: &Footprint) -> Footprint {
+        let UvPoint { ds, dt, .. } = self.uv_sets.get(set);
+        let change = |st: DVec2| {
+            let uv = ds * st.x + dt * st.y;
+            if uv.is_finite() { uv.clamp_length_max(MAX_CHANGE) } else { DVec2::ZERO }
+        };
+        Footprint { dx: change(surface.dx), dy: change(surface.dy) }
     }
 
     /// From the hit to where a ray meets the tangent plane.
@@ -44,18 +59,19 @@ impl Hit {
         offset - n * offset.dot(n)
     }
 
-    /// The change (du, dv) that moves the point nearest to `offset`: least squares of `dpdu du + dpdv dv = offset`.
-    fn change_of_uv(&self, offset: DVec3) -> DVec2 {
-        let (uu, uv, vv) = (self.dpdu.length_squared(), self.dpdu.dot(self.dpdv), self.dpdv.length_squared());
-        let (ou, ov) = (self.dpdu.dot(offset), self.dpdv.dot(offset));
-        let det = uu * vv - uv * uv;
-        let change = if det > MIN_SINE_SQUARED * uu * vv {
-            DVec2::new(vv * ou - uv * ov, uu * ov - uv * ou) / det
-        } else if uu >= vv {
-            DVec2::new(ou / uu, 0.0)
+    /// The change (ds, dt) that moves the point nearest to `offset`: least squares of `dpds ds + dpdt dt = offset`. Zero
+    /// where the position does not change with either.
+    fn change_of_parameters(&self, offset: DVec3) -> DVec2 {
+        let (ss, st, tt) = (self.dpds.length_squared(), self.dpds.dot(self.dpdt), self.dpdt.length_squared());
+        let (os, ot) = (self.dpds.dot(offset), self.dpdt.dot(offset));
+        let det = ss * tt - st * st;
+        let change = if det > MIN_SINE_SQUARED * ss * tt {
+            DVec2::new(tt * os - st * ot, ss * ot - st * os) / det
+        } else if ss >= tt {
+            DVec2::new(os / ss, 0.0)
         } else {
-            DVec2::new(0.0, ov / vv)
+            DVec2::new(0.0, ot / tt)
         };
-        if change.is_finite() { change.clamp_length_max(MAX_CHANGE) } else { DVec2::ZERO }
+        if change.is_finite() { change } else { DVec2::ZERO }
     }
 }

@@ -1,5 +1,10 @@
-//! Cameras, meshes and lights; the CPU reference renderer, which is the supersampled truth of every comparison; and the
+//! Cameras, shapes, meshes and lights; the CPU reference renderer, which is the supersampled truth of every comparison; and the
 //! measures by which pictures are compared.
+//!
+//! # Features
+//!
+//! - `render`, on by default: the CPU renderer with its texture filters, the hierarchy by which rays find the triangles of
+//!   a mesh, and the measures of pictures. Without it the crate is the description of a scene, for other renderers.
 //!
 //! # Conventions
 //!
@@ -12,34 +17,43 @@
 
 mod camera;
 mod detail;
+#[cfg(feature = "render")]
 mod filter;
 mod footprint;
 mod hit;
 mod light;
 mod mesh;
+#[cfg(feature = "render")]
 pub mod metrics;
+#[cfg(feature = "render")]
 mod mipmap;
 pub mod pattern;
 mod picture;
 pub mod render;
+mod sampler;
 mod scene;
 mod sequence;
 mod shape;
+mod slope_frame;
 mod split_mix;
 mod views;
 
 pub use camera::{Camera, CameraError, PixelRays};
-pub use detail::{
-    BakedTextures, Detail, DetailError, DetailPoint, Reconstruction, SlopeDetail, SlopeMap, TextureDetail,
-    TextureInputs, model_inputs, texture_inputs,
-};
-pub use filter::{Filter, Sampler, SummedAreaTable};
-pub use hit::{Footprint, Frame, Hit, Ray};
+#[cfg(feature = "render")]
+pub use detail::{BakedTextures, Detail, DetailPoint, Reconstruction, SlopeDetail, SlopeMap, TextureDetail};
+pub use detail::{DetailError, TextureInputs, model_inputs, texture_inputs};
+#[cfg(feature = "render")]
+pub use filter::SummedAreaTable;
+pub use hit::{Footprint, Frame, Hit, MAX_UV_SETS, Ray, Side, UvPoint, UvSets};
 pub use light::Light;
-pub use mesh::{MAX_FILE_BYTES, MAX_TRIANGLES, MAX_VERTICES, Mesh, MeshError, MeshFault, load_mesh};
-pub use mipmap::{Level, Mipmap, MipmapError};
+pub use mesh::{MAX_TRIANGLES, MAX_VERTICES, Mesh, MeshFault};
+#[cfg(feature = "render")]
+pub use mipmap::{Level, Mipmap};
 pub use picture::{Picture, luminance};
+pub use render::MipmapError;
+pub use sampler::{Filter, Sampler};
 pub use scene::Scene;
 pub use sequence::slow_move;
 pub use shape::{Bounds, MAX_DETAIL, Plane, Shape, ShapeError, Sphere, Torus, TriangleMesh};
+pub use slope_frame::SlopeFrame;
 pub use views::{View, default_light, repeats};

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use roughcast::texture::Texture;
 use roughcast::{Image, Wrap};
 
+use crate::MipmapError;
 use crate::filter::SummedAreaTable;
 
 /// One level: `height` rows of `width` texels. The centre of texel i of n lies at `(i + 0.5) / n`.
@@ -25,33 +26,6 @@ pub struct Level {
 pub struct Mipmap {
     levels: Vec<Level>,
     table: OnceLock<SummedAreaTable>,
-}
-
-/// Why a texture cannot be sampled.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum MipmapError {
-    /// More channels than a sampler returns.
-    #[error("the texture '{name}' has {channels} channels and a sampler returns four; bake another layout")]
-    Channels {
-        /// The texture.
-        name: String,
-        /// Its channels.
-        channels: usize,
-    },
-    /// No level, or a level whose texels are not as many as its size says.
-    #[error(
-        "level {level} of {width}x{height} has {got} texels; a texture needs at least one level, and every texel of it"
-    )]
-    Size {
-        /// The level.
-        level: usize,
-        /// Its width.
-        width: usize,
-        /// Its height.
-        height: usize,
-        /// Its texels.
-        got: usize,
-    },
 }
 
 impl Level {

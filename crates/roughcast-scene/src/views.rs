@@ -100,7 +100,7 @@ pub fn repeats(
         let hit = shape.hit(&camera.ray(x, y, size.0, size.1))?;
         let right = camera.ray(x + 1.0, y, size.0, size.1);
         let below = camera.ray(x, y + 1.0, size.0, size.1);
-        let span = narrow_side(hit.footprint(&right, &below), texels);
+        let span = narrow_side(hit.footprint(0, &right, &below), texels);
         (span.is_finite() && span > 0.0).then_some(span)
     });
     median(spans.collect()).map_or(1.0, |span| texels_per_pixel / span)
@@ -132,14 +132,14 @@ pub fn default_light(shape: &Shape, camera: &Camera, size: (u32, u32), view: Vie
     let cost = |x: f64, y: f64, ray: &Ray, hit: &Hit| {
         let aside = (x - wanted.0).hypot(y - wanted.1) / f64::from(size.1);
         // Light from below would look odd.
-        let below = if ray.direction.reflect(hit.frame.normal).y < 0.0 { 10.0 } else { 0.0 };
-        let off = cosine.map_or(0.0, |cosine| (hit.frame.normal.dot(-ray.direction) - cosine).abs());
+        let below = if ray.direction.reflect(hit.frame.normal()).y < 0.0 { 10.0 } else { 0.0 };
+        let off = cosine.map_or(0.0, |cosine| (hit.frame.normal().dot(-ray.direction) - cosine).abs());
         10.0 * off + aside + below
     };
     let candidates = grid(size).filter_map(|(x, y)| {
         let ray = camera.ray(x, y, size.0, size.1);
         let hit = shape.hit(&ray)?;
-        Some((cost(x, y, &ray, &hit), ray.direction.reflect(hit.frame.normal)))
+        Some((cost(x, y, &ray, &hit), ray.direction.reflect(hit.frame.normal())))
     });
     let best = candidates.min_by(|a, b| a.0.total_cmp(&b.0));
     let fallback = DVec3::new(0.0, FRAC_PI_4.sin(), FRAC_PI_4.cos());
@@ -183,7 +183,7 @@ mod tests {
                 assert!(part > 0.25, "{shape:?}, {view}: {part} of the picture is covered");
                 let (towards, _) = scene.lights[0].at(DVec3::ZERO);
                 let aligned =
-                    |(ray, hit): &(Ray, Hit)| (towards - ray.direction).normalize().dot(hit.frame.normal);
+                    |(ray, hit): &(Ray, Hit)| (towards - ray.direction).normalize().dot(hit.frame.normal());
                 let best = hits.iter().map(aligned).fold(0.0, f64::max);
                 // Within three degrees, where lobes of exponents up to 400 are bright.
                 assert!(best > 0.9986, "{shape:?}, {view}: the highlight is off by {best}");

@@ -4,7 +4,8 @@ mod common;
 
 use common::{hits, unorthonormality};
 use glam::{DVec2, DVec3, Vec3};
-use roughcast_scene::{Hit, Mesh, Ray, Shape, Sphere, Torus, TriangleMesh, load_mesh};
+use roughcast_io::mesh::load_mesh;
+use roughcast_scene::{Hit, Mesh, MeshFault, Ray, Shape, Sphere, Torus, TriangleMesh};
 use roughcast_testdata::{available, files_in, find};
 
 /// Every model: file, triangles as its nodes show them, whether it has texture coordinates, whether it has tangents.
@@ -66,9 +67,9 @@ fn every_model_loads_and_is_hit() {
             assert!(hit.geometric_normal.dot(ray.direction) <= 0.0, "{name}");
             let on_ray = ray.origin + ray.direction * hit.distance;
             assert!(on_ray.distance(hit.position) < 1e-12 * hit.distance, "{name}");
-            assert!(hit.dpdu.is_finite() && hit.dpdv.is_finite() && hit.uv.is_finite());
+            assert!(hit.dpdu(0).is_finite() && hit.dpdv(0).is_finite() && hit.uv(0).is_finite());
             if !has_uv {
-                assert_eq!((hit.uv, hit.dpdu, hit.dpdv), (DVec2::ZERO, DVec3::ZERO, DVec3::ZERO));
+                assert_eq!((hit.uv(0), hit.dpdu(0), hit.dpdv(0)), (DVec2::ZERO, DVec3::ZERO, DVec3::ZERO));
             }
         }
     }
@@ -76,7 +77,11 @@ fn every_model_loads_and_is_hit() {
 
 fn check_vertices(name: &str, mesh: &TriangleMesh) {
     let vertices = mesh.positions.len();
-    assert!(mesh.normals.len() == vertices && mesh.tangents.len() == vertices && mesh.uvs.len() == vertices);
+    assert!(
+        mesh.normals.len() == vertices
+            && mesh.tangents.len() == vertices
+            && mesh.uv_sets.iter().all(|set| set.len() == vertices)
+    );
     assert!(mesh.indices.iter().all(|&i| (i as usize) < vertices), "{name}");
     for (&normal, &[x, y, z, w]) in mesh.normals.iter().zip(&mesh.tangents) {
         let (normal, tangent) = (Vec3::from(normal), Vec3::new(x, y, z));
@@ -87,10 +92,10 @@ fn check_vertices(name: &str, mesh: &TriangleMesh) {
 
 /// The part of the hits whose frame has its axes on the sides of growing u and falling v; from behind, on the opposite.
 fn agreement_with_uv(hits: &[(Ray, Hit)]) -> f64 {
-    let mapped: Vec<_> = hits.iter().filter(|(_, h)| h.dpdu != DVec3::ZERO).collect();
-    let agreeing = mapped
-        .iter()
-        .filter(|(_, h)| h.dpdu.dot(h.frame.tangent).signum() == -h.dpdv.dot(h.frame.bitangent).signum());
+    let mapped: Vec<_> = hits.iter().filter(|(_, h)| h.dpdu(0) != DVec3::ZERO).collect();
+    let agreeing = mapped.iter().filter(|(_, h)| {
+        h.dpdu(0).dot(h.frame.tangent()).signum() == -h.dpdv(0).dot(h.frame.bitangent()).signum()
+    });
     agreeing.count() as f64 / mapped.len() as f64
 }
 
@@ -121,8 +126,8 @@ fn tangents_of_files_agree_with_mikktspace() {
             let same = |a: DVec3, b: DVec3| a.dot(b) > 0.99;
             all += 1;
             agreeing += usize::from(
-                same(other.frame.tangent, hit.frame.tangent)
-                    && same(other.frame.bitangent, hit.frame.bitangent),
+                same(other.frame.tangent(), hit.frame.tangent())
+                    && same(other.frame.bitangent(), hit.frame.bitangent()),
             );
         }
         // Exporters may round, weld or split vertices otherwise.
@@ -143,21 +148,31 @@ fn a_tessellated_shape_is_the_shape() {
             for (ray, hit) in hits(&analytic, 4_000) {
                 let cosine = -hit.geometric_normal.dot(ray.direction);
                 // Silhouettes differ, MikkTSpace's tangents turn quickly around poles, and u jumps at the seam.
-                let seam = hit.uv.x.min(1.0 - hit.uv.x) < 0.02;
-                if cosine < 0.3 || hit.dpdu.length() < 1.0 || seam {
+                let seam = hit.uv(0).x.min(1.0 - hit.uv(0).x) < 0.02;
+                if cosine < 0.3 || hit.dpdu(0).length() < 1.0 || seam {
                     continue;
                 }
                 let other = mesh.hit(&ray).unwrap();
                 // Chords of 1/192 turn lie 1.3e-4 of the radius below the arc, those of 1/96 turn 5.4e-4: together
                 // 4e-4 on the torus, and more along an inclined ray.
                 assert!((other.distance - hit.distance).abs() < 2e-3, "{what}");
-                assert!((other.uv - hit.uv).length() < 2e-3, "{what}: {} {}", other.uv, hit.uv);
+                assert!((other.uv(0) - hit.uv(0)).length() < 2e-3, "{what}: {} {}", other.uv(0), hit.uv(0));
                 // Differences over a triangle: the second derivatives, at most 2 pi^2, times its size of 1/96.
-                assert!((other.dpdu - hit.dpdu).length() < 0.25, "{what}: {} {}", other.dpdu, hit.dpdu);
-                assert!((other.dpdv - hit.dpdv).length() < 0.25, "{what}: {} {}", other.dpdv, hit.dpdv);
-                worst_normal = worst_normal.max((other.frame.normal - hit.frame.normal).length());
-                worst_tangent = worst_tangent.max((other.frame.tangent - hit.frame.tangent).length());
-                assert!((other.frame.bitangent - hit.frame.bitangent).length() < 0.05);
+                assert!(
+                    (other.dpdu(0) - hit.dpdu(0)).length() < 0.25,
+                    "{what}: {} {}",
+                    other.dpdu(0),
+                    hit.dpdu(0)
+                );
+                assert!(
+                    (other.dpdv(0) - hit.dpdv(0)).length() < 0.25,
+                    "{what}: {} {}",
+                    other.dpdv(0),
+                    hit.dpdv(0)
+                );
+                worst_normal = worst_normal.max((other.frame.normal() - hit.frame.normal()).length());
+                worst_tangent = worst_tangent.max((other.frame.tangent() - hit.frame.tangent()).length());
+                assert!((other.frame.bitangent() - hit.frame.bitangent()).length() < 0.05);
                 compared += 1;
             }
             assert!(compared > 500, "{what}: {compared}");
@@ -170,7 +185,7 @@ fn a_tessellated_shape_is_the_shape() {
 fn square(uvs: [[f32; 2]; 4]) -> TriangleMesh {
     TriangleMesh {
         positions: vec![[0.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]],
-        uvs: uvs.into(),
+        uv_sets: vec![uvs.into()],
         indices: vec![0, 2, 1, 1, 2, 3],
         ..Default::default()
     }
@@ -189,18 +204,18 @@ fn handedness_is_that_of_gltf() {
         let mesh = Mesh::new(vec![square(uvs)]).unwrap();
         assert!(mesh.triangles().tangents.iter().all(|t| t[3] == w));
         let hit = mesh.hit(&front()).unwrap();
-        assert_eq!(hit.uv, DVec2::new(u, 0.25));
-        assert!((hit.frame.tangent - tangent).length() < ORTHONORMAL);
-        assert!((hit.frame.bitangent - DVec3::Y).length() < ORTHONORMAL, "falling v is up");
-        assert!((hit.frame.normal - DVec3::Z).length() < ORTHONORMAL);
-        assert_eq!((hit.dpdu, hit.dpdv), (tangent, DVec3::NEG_Y));
+        assert_eq!(hit.uv(0), DVec2::new(u, 0.25));
+        assert!((hit.frame.tangent() - tangent).length() < ORTHONORMAL);
+        assert!((hit.frame.bitangent() - DVec3::Y).length() < ORTHONORMAL, "falling v is up");
+        assert!((hit.frame.normal() - DVec3::Z).length() < ORTHONORMAL);
+        assert_eq!((hit.dpdu(0), hit.dpdv(0)), (tangent, DVec3::NEG_Y));
         // From behind all axes are reversed.
         let back = Ray { origin: DVec3::new(0.25, 0.75, -2.0), direction: DVec3::Z };
         let behind = mesh.hit(&back).unwrap();
-        assert_eq!(behind.frame.normal, -hit.frame.normal);
-        assert_eq!(behind.frame.tangent, -hit.frame.tangent);
-        assert_eq!(behind.frame.bitangent, -hit.frame.bitangent);
-        assert_eq!(behind.uv, hit.uv);
+        assert_eq!(behind.frame.normal(), -hit.frame.normal());
+        assert_eq!(behind.frame.tangent(), -hit.frame.tangent());
+        assert_eq!(behind.frame.bitangent(), -hit.frame.bitangent());
+        assert_eq!(behind.uv(0), hit.uv(0));
     }
 }
 
@@ -239,11 +254,11 @@ fn triangles_in_one_place_take_no_more_time() {
 
 #[test]
 fn a_part_without_texture_coordinates_leaves_the_mesh_without() {
-    let bare = TriangleMesh { uvs: Vec::new(), ..square(UPRIGHT) };
+    let bare = TriangleMesh { uv_sets: Vec::new(), ..square(UPRIGHT) };
     let mesh = Mesh::new(vec![square(UPRIGHT), bare]).unwrap();
     assert!(!mesh.has_texture_coordinates());
     let hit = mesh.hit(&front()).unwrap();
-    assert_eq!((hit.uv, hit.dpdu, hit.dpdv), (DVec2::ZERO, DVec3::ZERO, DVec3::ZERO));
+    assert_eq!((hit.uv(0), hit.dpdu(0), hit.dpdv(0)), (DVec2::ZERO, DVec3::ZERO, DVec3::ZERO));
     assert!(unorthonormality(&hit) < ORTHONORMAL);
 }
 
@@ -251,8 +266,33 @@ fn a_part_without_texture_coordinates_leaves_the_mesh_without() {
 fn constant_texture_coordinates_have_no_footprint() {
     let mesh = Mesh::new(vec![square([[0.5, 0.5]; 4])]).unwrap();
     let hit = mesh.hit(&front()).unwrap();
-    assert_eq!((hit.dpdu, hit.dpdv), (DVec3::ZERO, DVec3::ZERO));
+    assert_eq!((hit.dpdu(0), hit.dpdv(0)), (DVec3::ZERO, DVec3::ZERO));
     assert!(unorthonormality(&hit) < ORTHONORMAL);
     let aside = Ray { direction: DVec3::new(0.1, 0.0, -1.0).normalize(), ..front() };
-    assert_eq!(hit.footprint(&aside, &aside).dx, DVec2::ZERO);
+    assert_eq!(hit.footprint(0, &aside, &aside).dx, DVec2::ZERO);
+}
+
+#[test]
+fn impossible_parts_are_refused() {
+    let whole = TriangleMesh {
+        positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        indices: vec![0, 1, 2],
+        ..Default::default()
+    };
+    assert!(Mesh::new(vec![whole.clone()]).is_ok());
+    let broken = |edit: fn(&mut TriangleMesh)| {
+        let mut part = whole.clone();
+        edit(&mut part);
+        Mesh::new(vec![part]).unwrap_err()
+    };
+    assert!(matches!(Mesh::new(vec![]), Err(MeshFault::NoTriangles)));
+    assert!(matches!(broken(|p| p.indices.clear()), MeshFault::NoTriangles));
+    assert!(matches!(broken(|p| p.indices.push(0)), MeshFault::Count { .. }));
+    assert!(matches!(broken(|p| p.indices[2] = 3), MeshFault::IndexOutOfRange { index: 3, vertices: 3 }));
+    assert!(matches!(broken(|p| p.normals.push([0.0; 3])), MeshFault::Count { .. }));
+    assert!(matches!(
+        broken(|p| p.uv_sets = vec![vec![[f32::NAN; 2]; 3]]),
+        MeshFault::NotFinite { vertex: 0, .. }
+    ));
+    assert!(matches!(broken(|p| p.positions[1] = [1e20, 0.0, 0.0]), MeshFault::Size { .. }));
 }

@@ -58,8 +58,12 @@ fn hits_lie_on_the_surface_and_on_the_ray() {
             let on_ray = ray.origin + ray.direction * hit.distance;
             assert!(on_ray.distance(hit.position) < ON_SURFACE, "{name}");
             assert!(hit.distance > 0.0);
-            assert!(hit.uv.min_element() >= 0.0 && hit.uv.max_element() <= 1.0, "{name}: {}", hit.uv);
-            assert!(point(&shape, hit.uv).distance(hit.position) < ON_SURFACE, "{name}: {}", hit.uv);
+            assert!(
+                hit.uv(0).min_element() >= 0.0 && hit.uv(0).max_element() <= 1.0,
+                "{name}: {}",
+                hit.uv(0)
+            );
+            assert!(point(&shape, hit.uv(0)).distance(hit.position) < ON_SURFACE, "{name}: {}", hit.uv(0));
         }
     }
 }
@@ -71,9 +75,9 @@ fn frames_are_orthonormal_and_face_the_viewer() {
             assert!(unorthonormality(&hit) < ORTHONORMAL, "{name}");
             assert!(hit.geometric_normal.dot(ray.direction) <= 0.0, "{name}");
             // Right, up, out: the tangent along growing u, the bitangent along falling v. From behind all are reversed.
-            let side = hit.dpdv.cross(hit.dpdu).dot(hit.frame.normal).signum();
-            assert!(hit.dpdu.dot(hit.frame.tangent) * side > 0.0, "{name}");
-            assert!(hit.dpdv.dot(hit.frame.bitangent) * side < 0.0, "{name}");
+            let side = hit.dpdv(0).cross(hit.dpdu(0)).dot(hit.frame.normal()).signum();
+            assert!(hit.dpdu(0).dot(hit.frame.tangent()) * side > 0.0, "{name}");
+            assert!(hit.dpdv(0).dot(hit.frame.bitangent()) * side < 0.0, "{name}");
         }
     }
 }
@@ -85,9 +89,10 @@ fn derivatives_agree_with_finite_differences() {
     const TOLERANCE: f64 = 1e-7;
     for (name, shape) in shapes() {
         for (_, hit) in hits(&shape, 3_000) {
-            let along = |d: DVec2| (point(&shape, hit.uv + d) - point(&shape, hit.uv - d)) / (2.0 * STEP);
-            assert!((along(DVec2::X * STEP) - hit.dpdu).length() < TOLERANCE, "{name} u");
-            assert!((along(DVec2::Y * STEP) - hit.dpdv).length() < TOLERANCE, "{name} v");
+            let along =
+                |d: DVec2| (point(&shape, hit.uv(0) + d) - point(&shape, hit.uv(0) - d)) / (2.0 * STEP);
+            assert!((along(DVec2::X * STEP) - hit.dpdu(0)).length() < TOLERANCE, "{name} u");
+            assert!((along(DVec2::Y * STEP) - hit.dpdv(0)).length() < TOLERANCE, "{name} v");
         }
     }
 }
@@ -176,13 +181,13 @@ fn from_inside_and_from_behind() {
         let ray = Ray { origin, direction: DVec3::Z };
         let hit = shape.hit(&ray).unwrap();
         assert!((hit.geometric_normal + DVec3::Z).length() < ORTHONORMAL);
-        assert!((hit.frame.tangent + DVec3::X).length() < ORTHONORMAL);
-        assert!((hit.frame.bitangent + DVec3::Y).length() < ORTHONORMAL);
+        assert!((hit.frame.tangent() + DVec3::X).length() < ORTHONORMAL);
+        assert!((hit.frame.bitangent() + DVec3::Y).length() < ORTHONORMAL);
     }
     let below = Ray { origin: DVec3::new(0.1, -2.0, 0.2), direction: DVec3::Y };
     let hit = Shape::Plane(Plane::default()).hit(&below).unwrap();
-    assert_eq!(hit.frame.normal, DVec3::NEG_Y);
-    assert_eq!(hit.dpdu, DVec3::X * 2.0);
+    assert_eq!(hit.frame.normal(), DVec3::NEG_Y);
+    assert_eq!(hit.dpdu(0), DVec3::X * 2.0);
     let away = Ray { origin: DVec3::new(0.0, 3.0, 0.0), direction: DVec3::Y };
     for (name, shape) in shapes() {
         assert!(shape.hit(&away).is_none(), "{name}");
@@ -202,14 +207,14 @@ fn maps_are_upright_where_the_camera_stands() {
             shape.hit(&Ray { origin: DVec3::new(x, y, 9.0), direction: DVec3::NEG_Z }).unwrap()
         };
         let middle = look(0.0, 0.0);
-        assert!((middle.uv - 0.5).length() < ORTHONORMAL, "{name}");
+        assert!((middle.uv(0) - 0.5).length() < ORTHONORMAL, "{name}");
         assert!((middle.position - DVec3::Z * outer).length() < ON_SURFACE, "{name}");
-        assert!(look(0.1, 0.0).uv.x > 0.5 && look(0.0, 0.1).uv.y < 0.5, "{name}");
+        assert!(look(0.1, 0.0).uv(0).x > 0.5 && look(0.0, 0.1).uv(0).y < 0.5, "{name}");
     }
     let plane = Shape::Plane(Plane::default());
     let eye = DVec3::new(0.0, 2.0, 3.0);
     let look =
-        |target: DVec3| plane.hit(&Ray { origin: eye, direction: (target - eye).normalize() }).unwrap().uv;
+        |target: DVec3| plane.hit(&Ray { origin: eye, direction: (target - eye).normalize() }).unwrap().uv(0);
     assert!(look(DVec3::X * 0.5).x > 0.5);
     // Farther away is higher in the picture, and nearer to the top of the map.
     assert!(look(DVec3::Z * -0.5).y < 0.5);
@@ -222,7 +227,7 @@ fn poles_are_defined() {
         let hit = Shape::Sphere(Sphere).hit(&ray).unwrap();
         assert!(unorthonormality(&hit) < ORTHONORMAL);
         let neighbour = Ray { direction: DVec3::new(1e-3, -sign, 1e-3).normalize(), ..ray };
-        let footprint = hit.footprint(&neighbour, &neighbour);
+        let footprint = hit.footprint(0, &neighbour, &neighbour);
         assert!(footprint.dx.is_finite() && footprint.dy.is_finite());
     }
 }
@@ -262,8 +267,8 @@ fn differences(shape: &Shape, ray: &Ray, hit: &Hit, aside: DVec3) -> Option<(DVe
     };
     const STEP: f64 = 1e-5;
     let ((neighbour, after), (_, before)) = (moved(STEP)?, moved(-STEP)?);
-    let measured = wrapped(after.uv - before.uv) / (2.0 * STEP);
-    Some((measured, hit.footprint(&neighbour, ray).dx / STEP))
+    let measured = wrapped(after.uv(0) - before.uv(0)) / (2.0 * STEP);
+    Some((measured, hit.footprint(0, &neighbour, ray).dx / STEP))
 }
 
 #[test]
@@ -274,7 +279,7 @@ fn footprints_agree_with_neighbouring_hits() {
         for (ray, hit) in hits(&shape, 4_000) {
             // Where the ray grazes, or near a pole, the surface leaves its tangent plane within one step.
             let cosine = -hit.geometric_normal.dot(ray.direction);
-            if cosine < 0.2 || hit.dpdu.length() < 0.5 {
+            if cosine < 0.2 || hit.dpdu(0).length() < 0.5 {
                 continue;
             }
             let aside = numbers.direction();
@@ -285,10 +290,10 @@ fn footprints_agree_with_neighbouring_hits() {
             let Some(right) = error(&hit) else { continue };
             // First order in a step of 1e-5 times the distance of 10, over a radius of curvature of 0.4 and the squared
             // cosine: 6e-3.
-            assert!(right < 2e-2, "{name}: {right} at {}", hit.uv);
+            assert!(right < 2e-2, "{name}: {right} at {}", hit.uv(0));
             compared += 1;
             // The comparison can fail: with u and v exchanged it does.
-            let exchanged = Hit { dpdu: hit.dpdv, dpdv: hit.dpdu, ..hit };
+            let exchanged = Hit { dpds: hit.dpdt, dpdt: hit.dpds, ..hit };
             noticed += usize::from(error(&exchanged).is_some_and(|wrong| wrong > 2e-2));
         }
         assert!(compared > 300, "{name}: {compared}");
@@ -305,7 +310,7 @@ fn footprints_end_at_the_horizon() {
     let hit = plane.hit(&ray).unwrap();
     let mut last = 0.0;
     for y in [-1e-3, -5e-4, -1e-6, -1e-9, 0.0, 1e-3, 0.5] {
-        let footprint = hit.footprint(&ray, &towards(y));
+        let footprint = hit.footprint(0, &ray, &towards(y));
         assert!(footprint.dx.length() < 1e-9, "{footprint:?}");
         // Upwards in the picture is farther away: towards -z, falling v.
         assert!(footprint.dy.is_finite() && -footprint.dy.y >= last * 0.5, "{y}: {footprint:?}");
@@ -320,13 +325,13 @@ fn footprints_without_texture_coordinates_are_zero() {
     let ray = Ray { origin: DVec3::new(0.1, 1.0, 0.2), direction: DVec3::NEG_Y };
     let aside = Ray { direction: DVec3::new(0.01, -1.0, 0.0).normalize(), ..ray };
     let hit = plane.hit(&ray).unwrap();
-    let none = Hit { dpdu: DVec3::ZERO, dpdv: DVec3::ZERO, ..hit };
-    assert_eq!(none.footprint(&aside, &aside).dx, DVec2::ZERO);
+    let none = Hit { dpds: DVec3::ZERO, dpdt: DVec3::ZERO, ..hit };
+    assert_eq!(none.footprint(0, &aside, &aside).dx, DVec2::ZERO);
     // Only one of two: the other one's share is kept.
-    let one = Hit { dpdv: DVec3::ZERO, ..hit };
-    assert!((one.footprint(&aside, &ray).dx - DVec2::new(0.005, 0.0)).length() < 1e-12);
-    let parallel = Hit { dpdv: hit.dpdu, ..hit };
-    assert!(parallel.footprint(&aside, &ray).dx.is_finite());
+    let one = Hit { dpdt: DVec3::ZERO, ..hit };
+    assert!((one.footprint(0, &aside, &ray).dx - DVec2::new(0.005, 0.0)).length() < 1e-12);
+    let parallel = Hit { dpdt: hit.dpds, ..hit };
+    assert!(parallel.footprint(0, &aside, &ray).dx.is_finite());
 }
 
 // Tessellation
@@ -376,7 +381,7 @@ fn vertices_are_exact_and_fronts_turn_counter_clockwise() {
     for (name, shape) in shapes() {
         let mesh = shape.triangles(24);
         for k in 0..mesh.positions.len() {
-            let uv = DVec2::new(f64::from(mesh.uvs[k][0]), f64::from(mesh.uvs[k][1]));
+            let uv = DVec2::new(f64::from(mesh.uv_sets[0][k][0]), f64::from(mesh.uv_sets[0][k][1]));
             let position = Vec3::from(mesh.positions[k]).as_dvec3();
             assert!(point(&shape, uv).distance(position) < 20.0 * SINGLE, "{name}");
             let normal = Vec3::from(mesh.normals[k]);
@@ -387,15 +392,17 @@ fn vertices_are_exact_and_fronts_turn_counter_clockwise() {
             // The frame of a hit at that vertex, from outside.
             let n = normal.as_dvec3();
             let hit = shape.hit(&Ray { origin: position * (1.0 - 1e-6) + n, direction: -n });
-            if let Some(hit) = hit.filter(|h| h.dpdu.length() > 0.1 && h.position.distance(position) < 1e-4) {
-                assert!((hit.frame.normal - n).length() < 1e-4, "{name} normal {}", hit.uv);
+            if let Some(hit) =
+                hit.filter(|h| h.dpdu(0).length() > 0.1 && h.position.distance(position) < 1e-4)
+            {
+                assert!((hit.frame.normal() - n).length() < 1e-4, "{name} normal {}", hit.uv(0));
                 assert!(
-                    (hit.frame.tangent - tangent.as_dvec3()).length() < 1e-4,
+                    (hit.frame.tangent() - tangent.as_dvec3()).length() < 1e-4,
                     "{name} tangent {}",
-                    hit.uv
+                    hit.uv(0)
                 );
                 let bitangent = w * normal.cross(tangent);
-                assert!((hit.frame.bitangent - bitangent.as_dvec3()).length() < 1e-4, "{name} bitangent");
+                assert!((hit.frame.bitangent() - bitangent.as_dvec3()).length() < 1e-4, "{name} bitangent");
             }
         }
         for [a, b, c] in triangles(&mesh) {

@@ -47,7 +47,7 @@ fn vertices_of(mesh: &TriangleMesh) -> Vec<f32> {
         vertices.extend(mesh.positions[i]);
         vertices.extend(mesh.normals[i]);
         vertices.extend(mesh.tangents[i]);
-        vertices.extend(mesh.uvs[i]);
+        vertices.extend(mesh.uv_sets.first().map_or([0.0; 2], |set| set[i]));
     }
     vertices
 }

@@ -8,7 +8,7 @@ use crate::read_back::stage_texture;
 use crate::{Gpu, GpuError};
 
 /// Renders a picture of `(width, height)` pixels and waits for it: one sample at each pixel's centre, as
-/// [`roughcast_scene::render::Method::render`] makes it. `renderer` must be one for [`RenderTarget::Parts`].
+/// `roughcast_scene::render::Method` makes it. `renderer` must be one for [`RenderTarget::Parts`].
 ///
 /// # Errors
 /// [`GpuError`] where the picture or the scene is not one that can be rendered, or the device was lost.

@@ -145,8 +145,8 @@ pub fn well_placed(scene: &Scene, (width, height): (u32, u32), i: usize, side: f
     let ray = scene.camera.ray(x as f64 + 0.5, y as f64 + 0.5, width, height);
     let Some(hit) = scene.shape.hit(&ray) else { return false };
     let round = matches!(*scene.shape, Shape::Sphere(_) | Shape::Torus(_));
-    let at_pole = matches!(*scene.shape, Shape::Sphere(_)) && !(POLE..1.0 - POLE).contains(&hit.uv.y);
-    let at = hit.uv * scene.repeats * side;
+    let at_pole = matches!(*scene.shape, Shape::Sphere(_)) && !(POLE..1.0 - POLE).contains(&hit.uv(0).y);
+    let at = hit.uv(0) * scene.repeats * side;
     let from_edge = (at - at.round()).abs().min_element();
     let oblique = round && -hit.geometric_normal.dot(ray.direction) < OBLIQUE;
     from_edge >= margin && !oblique && !at_pole

@@ -6,7 +6,8 @@ use glam::DVec3;
 use roughcast::shading::{Material, Shading};
 use roughcast::texture::{Base, TextureArray};
 use roughcast::{BakeOptions, BaseRoughness, SampleType, ScaleChoice, bake};
-use roughcast_scene::{Bounds, Light, Mesh, Plane, Scene, Shape, Sphere, Torus, View, load_mesh, pattern};
+use roughcast_io::mesh::load_mesh;
+use roughcast_scene::{Bounds, Light, Mesh, Plane, Scene, Shape, Sphere, Torus, View, pattern};
 
 pub const SIZE: (u32, u32) = (128, 96);
 

@@ -15,51 +15,12 @@ pub use summed_area::SummedAreaTable;
 pub(crate) use variances::Quad;
 
 use glam::DVec2;
-use roughcast::Wrap;
 
-use crate::Footprint;
 use crate::mipmap::Mipmap;
-
-roughcast::named_enum! {
-    /// How a texture is averaged over a pixel.
-    pub enum Filter: "texture filter" {
-        /// Not at all: the nearest texel of level 0.
-        Nearest = "nearest",
-        /// Between the texels of two levels, by the footprint's larger extent.
-        Trilinear = "trilinear",
-        /// As graphics hardware: at most 16 trilinear taps along the footprint.
-        Anisotropic = "anisotropic",
-        /// Elliptical weighted average, with axes up to 32:1.
-        Ewa = "ewa",
-        /// Summed-area table: the box around the footprint.
-        SummedArea = "summed-area",
-    }
-}
+use crate::{Filter, Footprint, Sampler};
 
 /// Levels that no texture has: beyond them nothing changes.
 const MAX_LEVEL: f64 = 32.0;
-
-/// How textures are sampled.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sampler {
-    /// The filter.
-    pub filter: Filter,
-    /// A level of detail, 0 the finest, instead of the footprint's: a footprint of `2^level` texels each way. The bias
-    /// does not apply to it.
-    pub level: Option<f64>,
-    /// Added to the footprint's level of detail. As in graphics hardware the taps of [`Filter::Anisotropic`] stay where
-    /// they are. Filters that know no levels take the footprint `2^bias` times as large; [`Filter::Nearest`] has none.
-    pub mip_bias: f64,
-    /// What lies beyond the edges.
-    pub wrap: Wrap,
-}
-
-impl Default for Sampler {
-    /// Anisotropic, repeating.
-    fn default() -> Self {
-        Self { filter: Filter::Anisotropic, level: None, mip_bias: 0.0, wrap: Wrap::Repeat }
-    }
-}
 
 impl Sampler {
     /// The texture's four channels at texture coordinates, averaged over a footprint in units of the texture.

@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use roughcast::Wrap;
+
 use super::*;
 use crate::mipmap::{Level, wrapped};
 

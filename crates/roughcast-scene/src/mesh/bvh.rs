@@ -4,12 +4,13 @@
 //! that rounding of the former loses none of the latter, the hierarchy is built in units of the mesh's bounding sphere,
 //! rays are started close to it, and boxes are padded.
 
-use glam::{DVec3, Vec3A};
+use glam::Vec3A;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use obvhs::ray::RayHit;
 
+use super::intersect::{Found, Intersector};
 use super::{corners, position};
 use crate::{Bounds, Ray, TriangleMesh};
 
@@ -25,15 +26,6 @@ const START: f64 = 2.0;
 pub(super) struct TriangleBvh {
     bvh: Bvh2,
     bounds: Bounds,
-}
-
-/// A point of a triangle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Found {
-    pub triangle: usize,
-    pub distance: f64,
-    /// Barycentric coordinates, one a vertex; they sum to one.
-    pub weights: DVec3,
 }
 
 impl TriangleBvh {
@@ -96,51 +88,11 @@ fn unevenness(triangle: usize) -> f32 {
     (spread >> 8) as f32 / (1 << 24) as f32
 }
 
-/// A ray made ready to be intersected with triangles.
-///
-/// After Woop, Benthin and Wald, Watertight Ray/Triangle Intersection, 2013: space is sheared so that the ray is its z
-/// axis, and a point is inside where it lies on the same side of three edges. An edge that two triangles share is
-/// computed from the same numbers for both, with the opposite sign, so no ray passes between them.
-pub(super) struct Intersector {
-    origin: DVec3,
-    /// The axes in the order (x, y, z) of the sheared space: z is the one along which the ray is longest.
-    axes: [usize; 3],
-    shear: DVec3,
-}
-
-impl Intersector {
-    pub fn new(ray: &Ray) -> Self {
-        let d = ray.direction;
-        let z = d.abs().max_position();
-        let (mut x, mut y) = ((z + 1) % 3, (z + 2) % 3);
-        if d[z] < 0.0 {
-            std::mem::swap(&mut x, &mut y);
-        }
-        Self { origin: ray.origin, axes: [x, y, z], shear: DVec3::new(d[x], d[y], 1.0) / d[z] }
-    }
-
-    /// Distance along the ray and barycentric coordinates, if the ray meets the triangle in front of its origin.
-    pub fn meet(&self, corners: [DVec3; 3]) -> Option<(f64, DVec3)> {
-        let [x, y, z] = self.axes;
-        let [a, b, c] = corners.map(|p| {
-            let p = p - self.origin;
-            DVec3::new(p[x] - self.shear.x * p[z], p[y] - self.shear.y * p[z], self.shear.z * p[z])
-        });
-        let edge = |p: DVec3, q: DVec3| p.x * q.y - p.y * q.x;
-        let sides = DVec3::new(edge(b, c), edge(c, a), edge(a, b));
-        if sides.min_element() < 0.0 && sides.max_element() > 0.0 {
-            return None;
-        }
-        let sum = sides.x + sides.y + sides.z;
-        let weights = sides / sum;
-        let distance = weights.dot(DVec3::new(a.z, b.z, c.z));
-        // False for NaN: a triangle seen edge on, whose sides are all zero.
-        (distance > 0.0 && distance.is_finite()).then_some((distance, weights))
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
+    use super::super::intersect::AllTriangles;
     use super::*;
     use crate::{Shape, Torus};
 
@@ -162,14 +114,6 @@ mod tests {
         })
     }
 
-    fn brute_force(mesh: &TriangleMesh, ray: &Ray) -> Option<f64> {
-        let intersector = Intersector::new(ray);
-        (0..mesh.indices.len() / 3)
-            .filter_map(|t| intersector.meet(corners(mesh, t).map(|i| position(mesh, i))))
-            .map(|(distance, _)| distance)
-            .min_by(f64::total_cmp)
-    }
-
     #[test]
     fn the_hierarchy_finds_what_all_triangles_have() {
         for (scale, shift) in
@@ -187,7 +131,8 @@ mod tests {
                 let direction = if i % 5 == 0 { DVec3::AXES[i % 3] } else { (aim - origin).normalize() };
                 let ray = Ray { origin, direction };
                 let found = bvh.nearest(&mesh, &ray).map(|f| f.distance);
-                assert_eq!(found, brute_force(&mesh, &ray), "{scale} {shift:?} {ray:?}");
+                let wanted = AllTriangles::new(&mesh, bounds).nearest(&mesh, &ray).map(|f| f.distance);
+                assert_eq!(found, wanted, "{scale} {shift:?} {ray:?}");
                 hits += usize::from(found.is_some());
             }
             assert!(hits > 100, "{hits}");
@@ -208,20 +153,5 @@ mod tests {
                 assert!(bvh.nearest(&mesh, &ray).is_some(), "{target}");
             }
         }
-    }
-
-    #[test]
-    fn a_triangle_is_met_where_it_is() {
-        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
-        let meet = |x: f64, y: f64, z: f64, d: f64| {
-            Intersector::new(&Ray { origin: DVec3::new(x, y, z), direction: DVec3::Z * d }).meet(corners)
-        };
-        let (distance, weights) = meet(0.25, 0.5, 2.0, -1.0).unwrap();
-        assert_eq!((distance, weights), (2.0, DVec3::new(0.25, 0.25, 0.5)));
-        assert!(meet(0.25, 0.5, -2.0, 1.0).is_some(), "from behind");
-        assert!(meet(0.6, 0.6, 2.0, -1.0).is_none(), "beside it");
-        assert!(meet(0.25, 0.5, 2.0, 1.0).is_none(), "behind the eye");
-        let along = Ray { origin: DVec3::new(-1.0, 0.25, 0.0), direction: DVec3::X };
-        assert!(Intersector::new(&along).meet(corners).is_none(), "edge on");
     }
 }

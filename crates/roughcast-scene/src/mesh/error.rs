@@ -1,61 +1,17 @@
 //! Why a mesh cannot be used.
 
-use std::path::PathBuf;
-
-/// Why a file does not make a mesh.
-#[derive(Debug, thiserror::Error)]
-#[error("{}: {fault}", path.display())]
-pub struct MeshError {
-    /// The file that was asked for.
-    pub path: PathBuf,
-    /// What is wrong with it, or with a file that it names.
-    pub fault: MeshFault,
-}
-
-/// What is wrong with a mesh, with the mend.
-#[derive(Debug, thiserror::Error)]
+/// What is wrong with a mesh, and what helps.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MeshFault {
-    /// The file could not be opened or read.
-    #[error("cannot be read ({0}): check the path")]
-    Io(#[from] std::io::Error),
-    /// A file of buffers that a glTF file names.
-    #[error("its buffer '{uri}' cannot be read ({error}): put the file beside the .gltf or export a .glb")]
-    Buffer {
-        /// The buffer as the file names it.
-        uri: String,
-        /// Why not.
-        error: std::io::Error,
-    },
-    /// The name does not end as meshes do.
-    #[error("not a mesh that roughcast reads: give a .obj, .gltf or .glb file")]
-    UnknownExtension,
-    /// More than [`super::MAX_FILE_BYTES`], [`super::MAX_TRIANGLES`] or [`super::MAX_VERTICES`].
+    /// More than [`super::MAX_TRIANGLES`] or [`super::MAX_VERTICES`].
     #[error("more {what} than the limit of {limit}: simplify the mesh or split it")]
     TooLarge {
-        /// Bytes, triangles or vertices.
+        /// Triangles or vertices.
         what: &'static str,
         /// The most there may be.
         limit: usize,
     },
-    /// A line of an OBJ file breaks its rules.
-    #[error("line {line}: {fault}: mend the line or export the mesh anew")]
-    ObjLine {
-        /// Counted from one.
-        line: usize,
-        /// What is wrong.
-        fault: String,
-    },
-    /// A file breaks the rules of its format.
-    #[error("broken {format} file: {fault}: export the mesh anew")]
-    Malformed {
-        /// OBJ or glTF.
-        format: &'static str,
-        /// What is wrong.
-        fault: String,
-    },
-    /// A kind of glTF file that is not read.
-    #[error("{0} is not supported: export the mesh without it")]
-    Unsupported(String),
     /// Nothing to be hit.
     #[error("no triangle with an area: give a mesh with a surface")]
     NoTriangles,

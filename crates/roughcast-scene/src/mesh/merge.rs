@@ -25,7 +25,7 @@ pub(super) fn merge(parts: Vec<TriangleMesh>) -> Result<TriangleMesh, MeshFault>
         merged.positions.extend(part.positions);
         append(&mut merged.normals, part.normals, vertices);
         append(&mut merged.tangents, part.tangents, vertices);
-        append(&mut merged.uvs, part.uvs, vertices);
+        append_sets(&mut merged.uv_sets, part.uv_sets, first as usize, vertices);
     }
     drop_unseen_triangles(&mut merged);
     if merged.indices.is_empty() { Err(MeshFault::NoTriangles) } else { Ok(merged) }
@@ -36,6 +36,21 @@ fn append<const N: usize>(to: &mut Vec<[f32; N]>, from: Vec<[f32; N]>, vertices:
     let length = to.len() + vertices;
     to.extend(from);
     to.resize(length, [0.0; N]);
+}
+
+/// The number of sets of texture coordinates of a part: those before the first empty one.
+pub(super) fn uv_set_count(part: &TriangleMesh) -> usize {
+    part.uv_sets.iter().take_while(|set| !set.is_empty()).count()
+}
+
+/// Appends the texture coordinates of a part with so many vertices behind the `before` that are there. Vertices without a
+/// set that another part has get zeros.
+fn append_sets(to: &mut Vec<Vec<[f32; 2]>>, mut from: Vec<Vec<[f32; 2]>>, before: usize, vertices: usize) {
+    to.resize(to.len().max(from.len()), vec![[0.0; 2]; before]);
+    from.resize(to.len(), Vec::new());
+    for (to, from) in to.iter_mut().zip(from) {
+        append(to, from, vertices);
+    }
 }
 
 /// Whether arrays and indices of a part fit together and all numbers are finite.
@@ -54,7 +69,7 @@ fn check(part: &TriangleMesh) -> Result<(), MeshFault> {
     check_attribute("positions", &part.positions, vertices)?;
     check_attribute("normals", &part.normals, vertices)?;
     check_attribute("tangents", &part.tangents, vertices)?;
-    check_attribute("texture coordinates", &part.uvs, vertices)
+    part.uv_sets.iter().try_for_each(|set| check_attribute("texture coordinates", set, vertices))
 }
 
 fn check_attribute<const N: usize>(

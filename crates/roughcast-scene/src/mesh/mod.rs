@@ -1,29 +1,25 @@
-//! Triangle meshes, from files or from memory.
+//! Triangle meshes.
 
-mod accessor;
+#[cfg(feature = "render")]
 mod bvh;
 mod error;
-mod gltf;
+mod intersect;
 mod merge;
 mod normals;
-mod obj;
 mod tangents;
-mod uri;
-
-use std::io::Read;
-use std::path::Path;
 
 use glam::{DVec2, DVec3, DVec4, Vec2, Vec3, Vec4};
 
-pub use error::{MeshError, MeshFault};
+pub use error::MeshFault;
 
 use crate::shape::facing;
-use crate::{Bounds, Frame, Hit, Ray, TriangleMesh};
-use bvh::TriangleBvh;
+use crate::{Bounds, Frame, Hit, Ray, Side, TriangleMesh, UvPoint};
+#[cfg(feature = "render")]
+use bvh::TriangleBvh as Triangles;
+#[cfg(not(feature = "render"))]
+use intersect::AllTriangles as Triangles;
 
-/// The largest file that is read, and the most bytes of buffers of a glTF file.
-pub const MAX_FILE_BYTES: usize = 1 << 29;
-/// The most triangles of a mesh. Reading one this large takes about two gigabytes.
+/// The most triangles of a mesh. Reading one this large from a file takes about two gigabytes.
 pub const MAX_TRIANGLES: usize = 1 << 22;
 /// The most vertices of a mesh.
 pub const MAX_VERTICES: usize = 3 * MAX_TRIANGLES;
@@ -32,13 +28,15 @@ pub const MAX_VERTICES: usize = 3 * MAX_TRIANGLES;
 /// u and v grow: single floats do not resolve it.
 const MIN_UV_SINE: f64 = 1e-7;
 
-/// A triangle mesh with a frame and, where its file has them, texture coordinates at each vertex.
+/// A triangle mesh with a frame and, where it has them, texture coordinates at each vertex.
 #[derive(Clone)]
 pub struct Mesh {
     triangles: TriangleMesh,
-    has_texture_coordinates: bool,
+    /// Those that every part has.
+    uv_set_count: usize,
     bounds: Bounds,
-    bvh: TriangleBvh,
+    /// Finds the one that a ray meets.
+    finder: Triangles,
 }
 
 impl std::fmt::Debug for Mesh {
@@ -46,43 +44,10 @@ impl std::fmt::Debug for Mesh {
         f.debug_struct("Mesh")
             .field("vertices", &self.triangles.positions.len())
             .field("triangles", &self.triangle_count())
-            .field("has_texture_coordinates", &self.has_texture_coordinates)
+            .field("uv_set_count", &self.uv_set_count)
             .field("bounds", &self.bounds)
             .finish_non_exhaustive()
     }
-}
-
-/// Reads a mesh: Wavefront OBJ (`.obj`) or glTF 2.0 (`.gltf`, `.glb`).
-///
-/// Of glTF all triangles of the default scene are taken, in the places that its nodes give them, with the first set of
-/// texture coordinates; materials, skins, morph targets and animations are not. Textures are not read. Tangents of a file
-/// are taken as they are. Some exporters write them with the bitangent along growing v, against the convention of this
-/// crate; maps for such a mesh have green down.
-pub fn load_mesh(path: impl AsRef<Path>) -> Result<Mesh, MeshError> {
-    let path = path.as_ref();
-    parts_of_file(path).and_then(Mesh::new).map_err(|fault| MeshError { path: path.to_owned(), fault })
-}
-
-fn parts_of_file(path: &Path) -> Result<Vec<TriangleMesh>, MeshFault> {
-    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-    match extension.as_str() {
-        "obj" => obj::read(&read_file(path)?),
-        "gltf" | "glb" => gltf::read(&read_file(path)?, path.parent().unwrap_or(Path::new(""))),
-        _ => Err(MeshFault::UnknownExtension),
-    }
-}
-
-/// The bytes of a file, or an error before more than the limit are held.
-fn read_file(path: &Path) -> Result<Vec<u8>, MeshFault> {
-    let too_large = MeshFault::TooLarge { what: "bytes", limit: MAX_FILE_BYTES };
-    let file = std::fs::File::open(path)?;
-    if file.metadata()?.len() > MAX_FILE_BYTES as u64 {
-        return Err(too_large);
-    }
-    // Pipes and devices do not state their length.
-    let mut bytes = Vec::new();
-    file.take(MAX_FILE_BYTES as u64 + 1).read_to_end(&mut bytes)?;
-    if bytes.len() > MAX_FILE_BYTES { Err(too_large) } else { Ok(bytes) }
 }
 
 impl Mesh {
@@ -91,22 +56,28 @@ impl Mesh {
     /// Each part needs positions and indices; its other arrays may be empty. Missing normals are computed, smooth across
     /// all triangles that meet at a position and weighed by their areas; missing tangents by MikkTSpace. A triangle that
     /// turns clockwise seen from the side to which its normals point is turned over. Triangles without an area,
-    /// and those that repeat another, are dropped. Where not all parts have texture coordinates, the mesh counts as having none.
+    /// and those that repeat another, are dropped. The mesh counts as having the sets of texture coordinates that all parts
+    /// have: none, where one part has none.
     pub fn new(parts: Vec<TriangleMesh>) -> Result<Self, MeshFault> {
-        let has_texture_coordinates = parts.iter().all(|part| !part.uvs.is_empty());
+        let uv_set_count = parts.iter().map(merge::uv_set_count).min().unwrap_or(0);
         let mut triangles = merge::merge(parts)?;
         let bounds = merge::bounds(&triangles)?;
         normals::turn_towards_normals(&mut triangles);
         normals::complete(&mut triangles);
         tangents::complete(&mut triangles);
-        let bvh = TriangleBvh::new(&triangles, bounds);
-        Ok(Self { triangles, has_texture_coordinates, bounds, bvh })
+        let finder = Triangles::new(&triangles, bounds);
+        Ok(Self { triangles, uv_set_count, bounds, finder })
     }
 
-    /// Whether every part has texture coordinates. Without them hits have `uv`, `dpdu` and `dpdv` zero and a frame whose
-    /// tangent is any one.
+    /// Whether every part has texture coordinates. Without them hits have no set of them, and a frame whose tangent is
+    /// any one.
     pub fn has_texture_coordinates(&self) -> bool {
-        self.has_texture_coordinates
+        self.uv_set_count > 0
+    }
+
+    /// The number of sets of texture coordinates that every part has. Hits carry the first [`crate::MAX_UV_SETS`] of them.
+    pub fn uv_set_count(&self) -> usize {
+        self.uv_set_count
     }
 
     /// The number of triangles.
@@ -124,10 +95,11 @@ impl Mesh {
         self.bounds
     }
 
-    /// See [`crate::Shape::hit`]. The point, the texture coordinates and the geometric normal are those of the flat triangle;
+    /// See [`crate::Shape::hit`]. It takes time that grows with the logarithm of the number of triangles; without the feature `render`,
+    /// which has the hierarchy for it, with their number. The point, the texture coordinates and the geometric normal are those of the flat triangle;
     /// the frame is interpolated between its vertices.
     pub fn hit(&self, ray: &Ray) -> Option<Hit> {
-        let found = self.bvh.nearest(&self.triangles, ray)?;
+        let found = self.finder.nearest(&self.triangles, ray)?;
         Some(facing(self.hit_on_triangle(found.triangle, found.weights, found.distance), ray))
     }
 
@@ -147,21 +119,20 @@ impl Mesh {
         let tangent =
             tangent.reject_from_normalized(normal).try_normalize().unwrap_or(normal.any_orthonormal_vector());
         let handedness = blend(tangents.map(|t| DVec3::splat(t.w))).x.signum();
-        let (uv, dpdu, dpdv) = if self.has_texture_coordinates {
-            let [t0, t1, t2] = k.map(|i| Vec2::from(mesh.uvs[i]).as_dvec2());
-            let (dpdu, dpdv) = derivatives([e1, e2], [t1 - t0, t2 - t0]);
-            (t0 * weights.x + t1 * weights.y + t2 * weights.z, dpdu, dpdv)
-        } else {
-            (DVec2::ZERO, DVec3::ZERO, DVec3::ZERO)
-        };
+        let uv_sets = mesh.uv_sets[..self.uv_set_count].iter().map(|uvs| {
+            let [t0, t1, t2] = k.map(|i| Vec2::from(uvs[i]).as_dvec2());
+            let (ds, dt) = resolved([t1 - t0, t2 - t0]);
+            UvPoint { uv: t0 * weights.x + t1 * weights.y + t2 * weights.z, ds, dt }
+        });
         Hit {
             distance,
             position: p0 * weights.x + p1 * weights.y + p2 * weights.z,
             geometric_normal,
-            frame: Frame { tangent, bitangent: normal.cross(tangent) * handedness, normal },
-            uv,
-            dpdu,
-            dpdv,
+            frame: Frame::orthonormal(tangent, normal.cross(tangent) * handedness, normal),
+            side: Side::Front,
+            dpds: e1,
+            dpdt: e2,
+            uv_sets: uv_sets.collect(),
         }
     }
 }
@@ -175,12 +146,8 @@ fn position(mesh: &TriangleMesh, vertex: usize) -> DVec3 {
     Vec3::from(mesh.positions[vertex]).as_dvec3()
 }
 
-/// dp/du and dp/dv of a triangle with the given edges in space and in texture coordinates; zero where the latter have no
-/// area.
-fn derivatives([e1, e2]: [DVec3; 2], [t1, t2]: [DVec2; 2]) -> (DVec3, DVec3) {
-    let det = t1.perp_dot(t2);
-    if det.abs() <= MIN_UV_SINE * t1.length() * t2.length() {
-        return (DVec3::ZERO, DVec3::ZERO);
-    }
-    ((e1 * t2.y - e2 * t1.y) / det, (e2 * t1.x - e1 * t2.x) / det)
+/// The edges of a triangle in texture coordinates; zero where they have no area.
+fn resolved([t1, t2]: [DVec2; 2]) -> (DVec2, DVec2) {
+    let has_area = t1.perp_dot(t2).abs() > MIN_UV_SINE * t1.length() * t2.length();
+    if has_area { (t1, t2) } else { (DVec2::ZERO, DVec2::ZERO) }
 }

@@ -59,7 +59,7 @@ impl Geometry for Generated<'_> {
     }
 
     fn tex_coord(&self, face: usize, corner: usize) -> [f32; 2] {
-        let [u, v] = self.mesh.uvs[self.vertex(face, corner)];
+        let [u, v] = self.mesh.uv_sets.first().map_or([0.0; 2], |set| set[self.vertex(face, corner)]);
         [u, 1.0 - v]
     }
 
@@ -86,7 +86,7 @@ fn split_vertices(mesh: &mut TriangleMesh, faces: &[usize], tangents: &[[f32; 4]
                 }
                 mesh.positions.push(mesh.positions[old]);
                 mesh.normals.push(mesh.normals[old]);
-                mesh.uvs.push(mesh.uvs[old]);
+                mesh.uv_sets.iter_mut().for_each(|set| set.push(set[old]));
                 mesh.tangents.push(tangent);
                 mesh.positions.len() as u32 - 1
             });

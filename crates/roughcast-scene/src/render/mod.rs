@@ -1,120 +1,45 @@
 //! The CPU renderer: shading methods as a GPU runs them, and the supersampled truth that they are compared with.
+//!
+//! Without the feature `render` only what renderers share is left: limits and errors.
 
+mod error;
+#[cfg(feature = "render")]
 mod method;
+#[cfg(feature = "render")]
 mod normal_quantile;
+#[cfg(feature = "render")]
+mod rows;
+#[cfg(feature = "render")]
 mod shade;
+#[cfg(feature = "render")]
 mod truth;
 
+#[cfg(feature = "render")]
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use rayon::prelude::*;
-
+pub use error::{MipmapError, RenderError};
+#[cfg(feature = "render")]
 pub use method::Method;
+#[cfg(feature = "render")]
 pub(crate) use truth::pixel_filter_quantile;
-pub use truth::{MAX_SAMPLES, PIXEL_FILTER_DEVIATION, PIXEL_FILTER_RADIUS, Truth};
+#[cfg(feature = "render")]
+pub use truth::{PIXEL_FILTER_DEVIATION, PIXEL_FILTER_RADIUS, Truth};
 
-use crate::{CameraError, Picture, Scene};
-use shade::Shaded;
+#[cfg(feature = "render")]
+use rows::{render_rows, render_rows_of_each};
 
 /// Most pixels of a picture; 2 GB.
 pub const MAX_PIXELS: u64 = 1 << 26;
+/// Most samples of a pixel.
+pub const MAX_SAMPLES: u32 = 4096;
 
 /// Told how many rows are done, and of how many; called from any thread, once a row. Where it breaks, rendering ends soon
 /// with [`RenderError::Cancelled`].
+#[cfg(feature = "render")]
 pub type Progress<'a> = &'a (dyn Fn(usize, usize) -> ControlFlow<()> + Sync);
 
 /// A [`Progress`] that lets everything go on.
+#[cfg(feature = "render")]
 pub fn unwatched(_done: usize, _rows: usize) -> ControlFlow<()> {
     ControlFlow::Continue(())
-}
-
-/// Why nothing was rendered.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum RenderError {
-    /// No pixels, or too many.
-    #[error(
-        "a picture of {0}x{1} pixels cannot be rendered; choose at least 1x1 and at most {MAX_PIXELS} pixels"
-    )]
-    Size(u32, u32),
-    /// The camera shows nothing.
-    #[error(transparent)]
-    Camera(#[from] CameraError),
-    /// A number of samples that is no square, or too large.
-    #[error("{0} samples a pixel cannot be stratified; choose a square number from 1 to {MAX_SAMPLES}")]
-    Samples(u32),
-    /// The caller asked to stop.
-    #[error("rendering was stopped")]
-    Cancelled,
-}
-
-/// Fills a picture row by row, on all threads. The same bits come out for any number of them, since no pixel looks at
-/// another.
-fn render_rows(
-    scene: &Scene,
-    size: (u32, u32),
-    progress: Progress<'_>,
-    pixel: impl Fn(u32, u32) -> Shaded + Sync,
-) -> Result<Picture, RenderError> {
-    let mut pictures = render_rows_of_each(1, scene, size, progress, |x, y, each| each[0] = pixel(x, y))?;
-    Ok(pictures.remove(0))
-}
-
-/// Fills `count` pictures at once, as [`render_rows`] does one; `pixel` is given a place for each.
-fn render_rows_of_each(
-    count: usize,
-    scene: &Scene,
-    (width, height): (u32, u32),
-    progress: Progress<'_>,
-    pixel: impl Fn(u32, u32, &mut [Shaded]) + Sync,
-) -> Result<Vec<Picture>, RenderError> {
-    if width == 0 || height == 0 || u64::from(width) * u64::from(height) > MAX_PIXELS {
-        return Err(RenderError::Size(width, height));
-    }
-    scene.camera.validate()?;
-    let mut pictures = vec![Picture::empty(width as usize, height as usize); count];
-    let (done, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
-    rows_of_each(&mut pictures, height as usize).into_par_iter().enumerate().for_each(|(y, mut rows)| {
-        if stopped.load(Ordering::Relaxed) {
-            return;
-        }
-        let mut shaded = vec![Shaded::default(); count];
-        for x in 0..width as usize {
-            pixel(x as u32, y as u32, &mut shaded);
-            rows.iter_mut().zip(&shaded).for_each(|(row, shaded)| row.set(x, shaded));
-        }
-        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-        if progress(done, height as usize).is_break() {
-            stopped.store(true, Ordering::Relaxed);
-        }
-    });
-    if stopped.into_inner() { Err(RenderError::Cancelled) } else { Ok(pictures) }
-}
-
-/// A row of a picture that is being rendered.
-struct Row<'a> {
-    radiance: &'a mut [[f32; 3]],
-    specular: &'a mut [[f32; 3]],
-    coverage: &'a mut [f32],
-}
-
-impl Row<'_> {
-    fn set(&mut self, x: usize, shaded: &Shaded) {
-        (self.radiance[x], self.specular[x], self.coverage[x]) =
-            (shaded.radiance, shaded.specular, shaded.coverage);
-    }
-}
-
-/// For every row, that row of each picture.
-fn rows_of_each(pictures: &mut [Picture], height: usize) -> Vec<Vec<Row<'_>>> {
-    let mut rows: Vec<Vec<Row<'_>>> = (0..height).map(|_| Vec::with_capacity(pictures.len())).collect();
-    for picture in pictures {
-        let width = picture.width;
-        let parts = picture.radiance.chunks_mut(width).zip(picture.specular.chunks_mut(width));
-        let parts = parts.zip(picture.coverage.chunks_mut(width));
-        for (row, ((radiance, specular), coverage)) in rows.iter_mut().zip(parts) {
-            row.push(Row { radiance, specular, coverage });
-        }
-    }
-    rows
 }

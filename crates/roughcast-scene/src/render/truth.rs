@@ -7,12 +7,10 @@ use roughcast::shading::{LobeOptions, PIXEL_DEVIATION, Shading};
 
 use super::normal_quantile::normal_quantile;
 use super::shade::Shaded;
-use super::{Progress, RenderError, render_rows_of_each};
+use super::{MAX_SAMPLES, Progress, RenderError, render_rows_of_each};
 use crate::split_mix::{GOLDEN_RATIO, scrambled};
 use crate::{Detail, DetailPoint, Picture, Ray, Scene};
 
-/// Most samples of a pixel.
-pub const MAX_SAMPLES: u32 = 4096;
 /// Deviation of the pixel filter, in pixels.
 pub const PIXEL_FILTER_DEVIATION: f64 = PIXEL_DEVIATION as f64;
 /// Where the pixel filter ends, in pixels.

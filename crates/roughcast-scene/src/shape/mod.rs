@@ -14,7 +14,7 @@ pub use plane::Plane;
 pub use sphere::Sphere;
 pub use torus::Torus;
 
-use crate::{Frame, Hit, Mesh, Ray};
+use crate::{Frame, Hit, Mesh, Ray, Side, UvPoint, UvSets};
 
 /// A shape, in world space, with its texture coordinates in 0 .. 1 (meshes: as their file has them).
 #[derive(Clone, Debug)]
@@ -59,8 +59,9 @@ pub struct TriangleMesh {
     /// Unit tangents (growing u) and the handedness w, as glTF has them: the bitangent (falling v) is w cross(normal,
     /// tangent).
     pub tangents: Vec<[f32; 4]>,
-    /// Texture coordinates.
-    pub uvs: Vec<[f32; 2]>,
+    /// Sets of texture coordinates, each with one entry a vertex; tangents go by the first. No set, where the surface is not
+    /// textured.
+    pub uv_sets: Vec<Vec<[f32; 2]>>,
     /// Three vertices a triangle.
     pub indices: Vec<u32>,
 }
@@ -121,16 +122,18 @@ struct SurfacePoint {
 }
 
 impl SurfacePoint {
+    #[inline]
     fn hit(self, ray: &Ray, distance: f64) -> Hit {
         let bitangent = self.normal.cross(self.tangent);
         let hit = Hit {
             distance,
             position: self.position,
             geometric_normal: self.normal,
-            frame: Frame { tangent: self.tangent, bitangent, normal: self.normal },
-            uv: self.uv,
-            dpdu: self.dpdu,
-            dpdv: self.dpdv,
+            frame: Frame::orthonormal(self.tangent, bitangent, self.normal),
+            side: Side::Front,
+            dpds: self.dpdu,
+            dpdt: self.dpdv,
+            uv_sets: UvSets::one(UvPoint { uv: self.uv, ds: DVec2::X, dt: DVec2::Y }),
         };
         facing(hit, ray)
     }
@@ -143,32 +146,33 @@ fn sin_cos_turns(turns: f64) -> (f64, f64) {
     ((from_axis * TAU).sin(), (turns * TAU).cos())
 }
 
-/// Reverses the frame of a hit that is seen from behind.
-pub(crate) fn facing(hit: Hit, ray: &Ray) -> Hit {
-    if hit.geometric_normal.dot(ray.direction) <= 0.0 {
-        return hit;
+/// Reverses the frame of a hit that is seen from behind. Derivatives stay.
+#[inline]
+pub(crate) fn facing(mut hit: Hit, ray: &Ray) -> Hit {
+    // In place: a hit is large, and copying it costs as much as finding a plane.
+    if hit.geometric_normal.dot(ray.direction) > 0.0 {
+        hit.geometric_normal = -hit.geometric_normal;
+        hit.frame = hit.frame.reversed();
+        hit.side = Side::Back;
     }
-    let Frame { tangent, bitangent, normal } = hit.frame;
-    Hit {
-        geometric_normal: -hit.geometric_normal,
-        frame: Frame { tangent: -tangent, bitangent: -bitangent, normal: -normal },
-        ..hit
-    }
+    hit
 }
 
 /// A grid of `across` x `down` squares over the unit square of texture coordinates, each cut into two triangles that turn
 /// counter-clockwise where the surface is seen from its front. Triangles without area (at poles) are left out.
 fn tessellate(across: u32, down: u32, point: impl Fn(f64, f64) -> SurfacePoint) -> TriangleMesh {
     let mut mesh = TriangleMesh::default();
+    let mut uvs = Vec::new();
     for j in 0..=down {
         for i in 0..=across {
             let p = point(f64::from(i) / f64::from(across), f64::from(j) / f64::from(down));
             mesh.positions.push(p.position.as_vec3().into());
             mesh.normals.push(p.normal.as_vec3().into());
             mesh.tangents.push(p.tangent.as_vec3().extend(1.0).into());
-            mesh.uvs.push(p.uv.as_vec2().into());
+            uvs.push(p.uv.as_vec2().into());
         }
     }
+    mesh.uv_sets.push(uvs);
     let at = |k: u32| Vec3::from(mesh.positions[k as usize]);
     for j in 0..down {
         for i in 0..across {

@@ -57,7 +57,7 @@ pub fn wrapped(difference: DVec2) -> DVec2 {
 /// Largest distance from orthonormality, as the largest entry of `F F^T - 1`.
 pub fn unorthonormality(hit: &Hit) -> f64 {
     let f = hit.frame;
-    let axes = [f.tangent, f.bitangent, f.normal];
+    let axes = [f.tangent(), f.bitangent(), f.normal()];
     let mut worst = 0.0_f64;
     for i in 0..3 {
         for j in 0..3 {

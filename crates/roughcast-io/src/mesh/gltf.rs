@@ -5,30 +5,35 @@ use std::path::Path;
 
 use glam::{DMat3, DMat4, Mat4, Vec3, Vec4};
 use gltf::mesh::Mode;
-use gltf::{Document, Node, Primitive, Semantic};
+use gltf::{Accessor, Document, Node, Primitive, Semantic};
+use roughcast_scene::{MAX_TRIANGLES, MAX_VERTICES, MeshFault, TriangleMesh};
 
 use super::accessor::{Buffers, malformed};
-use super::{MAX_TRIANGLES, MAX_VERTICES, MeshFault};
-use crate::TriangleMesh;
+use super::gltf_material::materials;
+use super::{MAX_FILE_UV_SETS, MeshFile, MeshFileFault, Primitive as Part, SkippedUvSet};
 
 /// The most objects and values in the JSON.
 const MAX_JSON_VALUES: usize = 1 << 22;
 
 /// The triangles of the default scene, in world space, one part a primitive.
-pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Vec<TriangleMesh>, MeshFault> {
+pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<MeshFile, MeshFileFault> {
     let (json, chunk) = if bytes.starts_with(b"glTF") { chunks(bytes)? } else { (bytes, None) };
     let document = document(json)?;
-    let mut scene =
-        Scene { buffers: Buffers::new(folder, chunk), parts: Vec::new(), vertices: 0, triangles: 0 };
+    let mut scene = Scene {
+        buffers: Buffers::new(folder, chunk),
+        file: MeshFile { materials: materials(document.as_json()), ..MeshFile::default() },
+        vertices: 0,
+        triangles: 0,
+    };
     scene.read(&document)?;
-    Ok(scene.parts)
+    Ok(scene.file)
 }
 
 /// The JSON, whose indices are valid.
-fn document(json: &[u8]) -> Result<Document, MeshFault> {
+fn document(json: &[u8]) -> Result<Document, MeshFileFault> {
     // Each value may take a few hundred bytes once it is read.
     if json.iter().filter(|&&b| b == b'{' || b == b',').count() > MAX_JSON_VALUES {
-        return Err(MeshFault::TooLarge { what: "values in its JSON", limit: MAX_JSON_VALUES });
+        return Err(MeshFileFault::TooLarge { what: "values in its JSON", limit: MAX_JSON_VALUES });
     }
     let fault = |error: gltf::Error| malformed(one_line(&error));
     let root = gltf::Gltf::from_slice_without_validation(json).map_err(fault)?.document.into_json();
@@ -53,7 +58,7 @@ fn one_line(error: &gltf::Error) -> String {
 }
 
 /// The JSON and the binary chunk of a .glb file (glTF 2.0, section 4.4).
-fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), MeshFault> {
+fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), MeshFileFault> {
     let word = |at: usize| bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
     if word(4) != Some(2) {
         return Err(malformed("it is not version 2 of binary glTF"));
@@ -73,13 +78,13 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), MeshFault> {
 
 struct Scene<'a> {
     buffers: Buffers<'a>,
-    parts: Vec<TriangleMesh>,
+    file: MeshFile,
     vertices: usize,
     triangles: usize,
 }
 
 impl Scene<'_> {
-    fn read(&mut self, document: &Document) -> Result<(), MeshFault> {
+    fn read(&mut self, document: &Document) -> Result<(), MeshFileFault> {
         let scene = document.default_scene().or_else(|| document.scenes().next());
         let scene = scene.ok_or_else(|| malformed("it has no scene"))?;
         let mut open: Vec<(Node, DMat4)> = scene.nodes().map(|node| (node, DMat4::IDENTITY)).collect();
@@ -91,7 +96,7 @@ impl Scene<'_> {
             let parent_from_node = Mat4::from_cols_array_2d(&node.transform().matrix()).as_dmat4();
             let world_from_node = world_from_parent * parent_from_node;
             for primitive in node.mesh().iter().flat_map(|mesh| mesh.primitives()) {
-                self.add(&primitive, world_from_node)?;
+                self.add(&primitive, node.name(), world_from_node)?;
             }
             open.extend(node.children().map(|child| (child, world_from_node)));
         }
@@ -99,12 +104,17 @@ impl Scene<'_> {
     }
 
     /// Adds a primitive, unless it is points or lines or has no positions.
-    fn add(&mut self, primitive: &Primitive, world_from_node: DMat4) -> Result<(), MeshFault> {
+    fn add(
+        &mut self,
+        primitive: &Primitive,
+        name: Option<&str>,
+        world_from_node: DMat4,
+    ) -> Result<(), MeshFileFault> {
         let Some(positions) = primitive.get(&Semantic::Positions) else { return Ok(()) };
         // Held against the limits before memory is taken: nodes may show one mesh any number of times.
         self.vertices = self.vertices.saturating_add(positions.count());
         if self.vertices > MAX_VERTICES {
-            return Err(MeshFault::TooLarge { what: "vertices", limit: MAX_VERTICES });
+            return Err(MeshFileFault::TooLarge { what: "vertices", limit: MAX_VERTICES });
         }
         let count = primitive.indices().map_or(positions.count(), |indices| indices.count());
         let (count, triangle): (usize, fn(usize) -> [usize; 3]) = match primitive.mode() {
@@ -116,7 +126,7 @@ impl Scene<'_> {
         };
         self.triangles = self.triangles.saturating_add(count);
         if self.triangles > MAX_TRIANGLES {
-            return Err(MeshFault::TooLarge { what: "triangles", limit: MAX_TRIANGLES });
+            return Err(MeshFileFault::TooLarge { what: "triangles", limit: MAX_TRIANGLES });
         }
         let mut part = self.attributes(primitive)?;
         let order = match primitive.indices() {
@@ -125,23 +135,63 @@ impl Scene<'_> {
         };
         part.indices = (0..count).flat_map(triangle).map(|i| order[i]).collect();
         place(&mut part, world_from_node);
-        self.parts.push(part);
+        let (name, material) = (name.map(str::to_owned), primitive.material().index());
+        self.file.primitives.push(Part { name, material, triangles: part });
         Ok(())
     }
 
     /// The attributes of the vertices; empty where there are none.
-    fn attributes(&mut self, primitive: &Primitive) -> Result<TriangleMesh, MeshFault> {
+    fn attributes(&mut self, primitive: &Primitive) -> Result<TriangleMesh, MeshFileFault> {
         let mut part = TriangleMesh::default();
+        let mut more_sets = Vec::new();
         for (semantic, accessor) in primitive.attributes() {
             match semantic {
                 Semantic::Positions => part.positions = self.buffers.floats(&accessor)?,
                 Semantic::Normals => part.normals = self.buffers.floats(&accessor)?,
                 Semantic::Tangents => part.tangents = self.buffers.floats(&accessor)?,
-                Semantic::TexCoords(0) => part.uvs = self.buffers.floats(&accessor)?,
+                Semantic::TexCoords(0) => part.uv_sets = vec![self.buffers.floats(&accessor)?],
+                Semantic::TexCoords(set) => more_sets.push((set as usize, accessor)),
                 _ => {}
             }
         }
+        more_sets.sort_by_key(|(set, _)| *set);
+        for (set, accessor) in more_sets {
+            match self.uv_set(set, &accessor, &part) {
+                Ok(uvs) => part.uv_sets.push(uvs),
+                Err(fault) => {
+                    let primitive = self.file.primitives.len();
+                    self.file.skipped_uv_sets.push(SkippedUvSet { primitive, set, fault });
+                }
+            }
+        }
         Ok(part)
+    }
+
+    /// A set of texture coordinates after the first. Its faults do not spoil the mesh, which can be shown by the first, so
+    /// what [`roughcast_scene::Mesh::new`] checks is checked here.
+    fn uv_set(
+        &mut self,
+        set: usize,
+        accessor: &Accessor,
+        part: &TriangleMesh,
+    ) -> Result<Vec<[f32; 2]>, MeshFileFault> {
+        if set != part.uv_sets.len() {
+            return Err(malformed("the sets of texture coordinates before it are missing"));
+        }
+        if set >= MAX_FILE_UV_SETS {
+            let what = "sets of texture coordinates";
+            return Err(MeshFileFault::TooLarge { what, limit: MAX_FILE_UV_SETS });
+        }
+        let (what, vertices) = ("texture coordinates", part.positions.len());
+        if accessor.count() != vertices {
+            let expected = format!("{vertices} vertices");
+            return Err(MeshFault::Count { what, count: accessor.count(), expected }.into());
+        }
+        let uvs: Vec<[f32; 2]> = self.buffers.floats(accessor)?;
+        match uvs.iter().position(|uv| uv.iter().any(|x| !x.is_finite())) {
+            Some(vertex) => Err(MeshFault::NotFinite { what, vertex }.into()),
+            None => Ok(uvs),
+        }
     }
 }
 

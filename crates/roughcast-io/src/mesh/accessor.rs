@@ -7,9 +7,10 @@ use std::path::Path;
 use gltf::Accessor;
 use gltf::accessor::{DataType, Dimensions};
 use gltf::buffer::{Buffer, Source};
+use roughcast_scene::MAX_VERTICES;
 
 use super::uri::{data_uri, relative_path};
-use super::{MAX_FILE_BYTES, MAX_VERTICES, MeshFault, read_file};
+use super::{MAX_FILE_BYTES, MeshFileFault, read_file};
 
 /// The buffers of a file, each read when it is first asked for.
 pub(super) struct Buffers<'a> {
@@ -26,7 +27,7 @@ impl<'a> Buffers<'a> {
         Self { folder, chunk, read: HashMap::new(), total: 0 }
     }
 
-    fn bytes(&mut self, buffer: &Buffer) -> Result<&[u8], MeshFault> {
+    fn bytes(&mut self, buffer: &Buffer) -> Result<&[u8], MeshFileFault> {
         match buffer.source() {
             Source::Bin => self.chunk.ok_or_else(|| malformed("it has no binary chunk")),
             Source::Uri(uri) => {
@@ -34,7 +35,10 @@ impl<'a> Buffers<'a> {
                     let bytes = self.fetch(uri)?;
                     self.total += bytes.len();
                     if self.total > MAX_FILE_BYTES {
-                        return Err(MeshFault::TooLarge { what: "bytes of buffers", limit: MAX_FILE_BYTES });
+                        return Err(MeshFileFault::TooLarge {
+                            what: "bytes of buffers",
+                            limit: MAX_FILE_BYTES,
+                        });
                     }
                     self.read.insert(buffer.index(), bytes);
                 }
@@ -43,25 +47,25 @@ impl<'a> Buffers<'a> {
         }
     }
 
-    fn fetch(&self, uri: &str) -> Result<Vec<u8>, MeshFault> {
+    fn fetch(&self, uri: &str) -> Result<Vec<u8>, MeshFileFault> {
         if let Some(decoded) = data_uri(uri) {
             return decoded.map_err(malformed);
         }
         let path = relative_path(uri).ok_or_else(|| {
             let shown: String = uri.chars().take(80).collect();
-            MeshFault::Unsupported(format!(
+            MeshFileFault::Unsupported(format!(
                 "a buffer outside of the file's folder ('{}')",
                 shown.escape_debug()
             ))
         })?;
         read_file(&self.folder.join(path)).map_err(|fault| match fault {
-            MeshFault::Io(error) => MeshFault::Buffer { uri: uri.to_owned(), error },
+            MeshFileFault::Io(error) => MeshFileFault::Buffer { uri: uri.to_owned(), error },
             other => other,
         })
     }
 
     /// An accessor of N floats each, or of normalised integers where `texture coordinates` may be such.
-    pub fn floats<const N: usize>(&mut self, accessor: &Accessor) -> Result<Vec<[f32; N]>, MeshFault> {
+    pub fn floats<const N: usize>(&mut self, accessor: &Accessor) -> Result<Vec<[f32; N]>, MeshFileFault> {
         let fits = matches!(
             (accessor.dimensions(), N),
             (Dimensions::Vec2, 2) | (Dimensions::Vec3, 3) | (Dimensions::Vec4, 4)
@@ -77,7 +81,7 @@ impl<'a> Buffers<'a> {
             (DataType::U8, true) => |b| f32::from(b[0]) / 255.0,
             (DataType::U16, true) => |b| f32::from(u16::from_le_bytes([b[0], b[1]])) / 65535.0,
             (other, _) => {
-                return Err(MeshFault::Unsupported(format!("a vertex attribute stored as {other:?}")));
+                return Err(MeshFileFault::Unsupported(format!("a vertex attribute stored as {other:?}")));
             }
         };
         let size = accessor.data_type().size();
@@ -86,7 +90,7 @@ impl<'a> Buffers<'a> {
     }
 
     /// An accessor of indices.
-    pub fn indices(&mut self, accessor: &Accessor) -> Result<Vec<u32>, MeshFault> {
+    pub fn indices(&mut self, accessor: &Accessor) -> Result<Vec<u32>, MeshFileFault> {
         let index: fn(&[u8]) -> u32 = match (accessor.data_type(), accessor.dimensions()) {
             (DataType::U8, Dimensions::Scalar) => |b| u32::from(b[0]),
             (DataType::U16, Dimensions::Scalar) => |b| u32::from(u16::from_le_bytes([b[0], b[1]])),
@@ -97,13 +101,13 @@ impl<'a> Buffers<'a> {
     }
 
     /// The bytes of each element.
-    fn elements(&mut self, accessor: &Accessor) -> Result<impl Iterator<Item = &[u8]>, MeshFault> {
+    fn elements(&mut self, accessor: &Accessor) -> Result<impl Iterator<Item = &[u8]>, MeshFileFault> {
         let (number, count, size) = (accessor.index(), accessor.count(), accessor.size());
         if accessor.sparse().is_some() {
-            return Err(MeshFault::Unsupported("a sparse accessor".to_owned()));
+            return Err(MeshFileFault::Unsupported("a sparse accessor".to_owned()));
         }
         if count > MAX_VERTICES {
-            return Err(MeshFault::TooLarge { what: "vertices", limit: MAX_VERTICES });
+            return Err(MeshFileFault::TooLarge { what: "vertices", limit: MAX_VERTICES });
         }
         let view = accessor.view().ok_or_else(|| malformed(format!("accessor {number} has no data")))?;
         let stride = view.stride().unwrap_or(size);
@@ -125,6 +129,6 @@ impl<'a> Buffers<'a> {
 }
 
 /// The file breaks the rules of glTF.
-pub(super) fn malformed(fault: impl Into<String>) -> MeshFault {
-    MeshFault::Malformed { format: "glTF", fault: fault.into() }
+pub(super) fn malformed(fault: impl Into<String>) -> MeshFileFault {
+    MeshFileFault::Malformed { format: "glTF", fault: fault.into() }
 }

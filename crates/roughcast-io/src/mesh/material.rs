@@ -1,0 +1,100 @@
+//! What a mesh file says of its materials.
+
+use std::path::PathBuf;
+
+use roughcast::Wrap;
+
+/// A material, with glTF's meanings and defaults (glTF 2.0, section 3.9). Of an OBJ file only its name is known.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct MeshMaterial {
+    /// Its name in the file.
+    pub name: Option<String>,
+    /// Linear RGB and alpha, by which the texture is multiplied.
+    pub base_color: [f32; 4],
+    /// sRGB colour and linear alpha.
+    pub base_color_texture: Option<MeshTexture>,
+    /// 0 ..= 1, by which the texture's blue channel is multiplied.
+    pub metallic: f32,
+    /// Perceptual roughness, the root of alpha, 0 ..= 1, by which the texture's green channel is multiplied.
+    pub roughness: f32,
+    /// Roughness in green, metalness in blue.
+    pub metallic_roughness_texture: Option<MeshTexture>,
+    /// A tangent-space normal map with green up.
+    pub normal_texture: Option<MeshTexture>,
+    /// The factor of the normal map's x and y.
+    pub normal_scale: f32,
+    /// Occlusion in red.
+    pub occlusion_texture: Option<MeshTexture>,
+    /// 0 without occlusion, 1 with all of the texture's.
+    pub occlusion_strength: f32,
+    /// Linear RGB, by which the texture is multiplied.
+    pub emissive: [f32; 3],
+    /// sRGB colour.
+    pub emissive_texture: Option<MeshTexture>,
+    /// What alpha means.
+    pub alpha_mode: AlphaMode,
+    /// From which alpha on [`AlphaMode::Mask`] shows the surface.
+    pub alpha_cutoff: f32,
+    /// Whether the back is shown too.
+    pub double_sided: bool,
+}
+
+/// What a material's alpha means.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum AlphaMode {
+    /// Nothing.
+    #[default]
+    Opaque,
+    /// The surface is there or not.
+    Mask,
+    /// How much of the surface is seen before what is behind it.
+    Blend,
+}
+
+/// A texture of a material.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct MeshTexture {
+    /// Where its pixels are.
+    pub image: MeshImage,
+    /// The set of texture coordinates by which it lies on the mesh (glTF's `texCoord`).
+    pub uv_set: usize,
+    /// What lies beyond its edges along u and v.
+    pub wrap: [Wrap; 2],
+}
+
+/// Where the pixels of a texture are. Images are not read with the mesh.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum MeshImage {
+    /// In a file, by its path relative to the folder of the mesh file, within that folder.
+    File(PathBuf),
+    /// In the mesh file itself or in one of its buffers: the index among the file's images.
+    Embedded(usize),
+    /// At a place outside of the folder of the mesh file, as the file has it.
+    Elsewhere(String),
+}
+
+impl Default for MeshMaterial {
+    /// glTF's default material.
+    fn default() -> Self {
+        Self {
+            name: None,
+            base_color: [1.0; 4],
+            base_color_texture: None,
+            metallic: 1.0,
+            roughness: 1.0,
+            metallic_roughness_texture: None,
+            normal_texture: None,
+            normal_scale: 1.0,
+            occlusion_texture: None,
+            occlusion_strength: 1.0,
+            emissive: [0.0; 3],
+            emissive_texture: None,
+            alpha_mode: AlphaMode::Opaque,
+            alpha_cutoff: 0.5,
+            double_sided: false,
+        }
+    }
+}

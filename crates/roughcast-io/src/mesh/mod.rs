@@ -1,0 +1,130 @@
+//! Triangle meshes from files: Wavefront OBJ and glTF 2.0, with their materials and all sets of texture coordinates.
+//!
+//! [`read_mesh`] keeps apart what the file keeps apart; [`load_mesh`] makes one [`Mesh`] of all of it, to be rendered.
+//!
+//! ```no_run
+//! use roughcast_io::mesh::read_mesh;
+//!
+//! let file = read_mesh("chair.gltf")?;
+//! for primitive in &file.primitives {
+//!     let material = primitive.material.map(|index| &file.materials[index]);
+//!     println!("{:?}: {:?}", primitive.name, material.and_then(|m| m.normal_texture.as_ref()));
+//! }
+//! let mesh = file.into_mesh()?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod accessor;
+mod error;
+mod gltf;
+mod gltf_material;
+mod material;
+mod obj;
+mod uri;
+
+use std::io::Read;
+use std::path::Path;
+
+use roughcast_scene::{Mesh, MeshFault, TriangleMesh};
+
+pub use error::{MeshFileError, MeshFileFault};
+pub use material::{AlphaMode, MeshImage, MeshMaterial, MeshTexture};
+
+/// The largest file that is read, and the most bytes of buffers of a glTF file.
+pub const MAX_FILE_BYTES: usize = 1 << 29;
+/// The most sets of texture coordinates of a primitive that are read: they may share one buffer, so the size of the file
+/// does not bound them.
+pub const MAX_FILE_UV_SETS: usize = 8;
+
+/// What a mesh file contains.
+#[derive(Debug, Default)]
+#[non_exhaustive]
+pub struct MeshFile {
+    /// The parts, each with one material.
+    pub primitives: Vec<Primitive>,
+    /// The materials, in the order of the file.
+    pub materials: Vec<MeshMaterial>,
+    /// Sets of texture coordinates after the first that the file declares and that cannot be used.
+    pub skipped_uv_sets: Vec<SkippedUvSet>,
+}
+
+/// A part of a mesh file: triangles that share a material.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Primitive {
+    /// The name of the glTF node that shows it, or of the OBJ object or group.
+    pub name: Option<String>,
+    /// Its material: an index of [`MeshFile::materials`]. `None` for the default material.
+    pub material: Option<usize>,
+    /// Its vertices and triangles in world space: the transforms of glTF's nodes are applied. Attributes that the file lacks
+    /// are empty.
+    pub triangles: TriangleMesh,
+}
+
+/// A set of texture coordinates that was left out.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct SkippedUvSet {
+    /// An index of [`MeshFile::primitives`].
+    pub primitive: usize,
+    /// The number of the set in the file.
+    pub set: usize,
+    /// What is wrong with it.
+    pub fault: MeshFileFault,
+}
+
+impl MeshFile {
+    /// One mesh of all primitives, with missing normals and tangents computed; see [`Mesh::new`].
+    ///
+    /// # Errors
+    /// What the numbers of the file do not allow; the reader has not looked at them.
+    pub fn into_mesh(self) -> Result<Mesh, MeshFault> {
+        Mesh::new(self.primitives.into_iter().map(|primitive| primitive.triangles).collect())
+    }
+}
+
+/// Reads a mesh file: Wavefront OBJ (`.obj`) or glTF 2.0 (`.gltf`, `.glb`).
+///
+/// Of glTF all triangles of the default scene are taken, in the places that its nodes give them; skins, morph targets,
+/// animations and extensions are not. Of OBJ polygons are cut into triangles, lines and points are left out, and `.mtl` files are not
+/// read: a material is a name. Images are not read. Tangents of a file are taken as they are. Some exporters write them
+/// with the bitangent along growing v, against the convention of [`TriangleMesh`]; maps for such a mesh have green down.
+///
+/// # Errors
+/// [`MeshFileError`], one line with the path.
+pub fn read_mesh(path: impl AsRef<Path>) -> Result<MeshFile, MeshFileError> {
+    let path = path.as_ref();
+    contents(path).map_err(|fault| MeshFileError { path: path.to_owned(), fault })
+}
+
+/// Reads a mesh file as one mesh: [`read_mesh`] and [`MeshFile::into_mesh`].
+///
+/// # Errors
+/// [`MeshFileError`], one line with the path.
+pub fn load_mesh(path: impl AsRef<Path>) -> Result<Mesh, MeshFileError> {
+    let path = path.as_ref();
+    let mesh = contents(path).and_then(|file| Ok(file.into_mesh()?));
+    mesh.map_err(|fault| MeshFileError { path: path.to_owned(), fault })
+}
+
+fn contents(path: &Path) -> Result<MeshFile, MeshFileFault> {
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+    match extension.as_str() {
+        "obj" => obj::read(&read_file(path)?),
+        "gltf" | "glb" => gltf::read(&read_file(path)?, path.parent().unwrap_or(Path::new(""))),
+        _ => Err(MeshFileFault::UnknownExtension),
+    }
+}
+
+/// The bytes of a file, or an error before more than the limit are held.
+fn read_file(path: &Path) -> Result<Vec<u8>, MeshFileFault> {
+    let too_large = MeshFileFault::TooLarge { what: "bytes", limit: MAX_FILE_BYTES };
+    let file = std::fs::File::open(path)?;
+    if file.metadata()?.len() > MAX_FILE_BYTES as u64 {
+        return Err(too_large);
+    }
+    // Pipes and devices do not state their length.
+    let mut bytes = Vec::new();
+    file.take(MAX_FILE_BYTES as u64 + 1).read_to_end(&mut bytes)?;
+    if bytes.len() > MAX_FILE_BYTES { Err(too_large) } else { Ok(bytes) }
+}

@@ -1,0 +1,52 @@
+//! Why nothing is rendered.
+
+use super::{MAX_PIXELS, MAX_SAMPLES};
+use crate::CameraError;
+
+/// Why nothing was rendered.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RenderError {
+    /// No pixels, or too many.
+    #[error(
+        "a picture of {0}x{1} pixels cannot be rendered; choose at least 1x1 and at most {MAX_PIXELS} pixels"
+    )]
+    Size(u32, u32),
+    /// The camera shows nothing.
+    #[error(transparent)]
+    Camera(#[from] CameraError),
+    /// A number of samples that is no square, or too large.
+    #[error("{0} samples a pixel cannot be stratified; choose a square number from 1 to {MAX_SAMPLES}")]
+    Samples(u32),
+    /// The caller asked to stop.
+    #[error("rendering was stopped")]
+    Cancelled,
+}
+
+/// Why a texture cannot be sampled.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MipmapError {
+    /// More channels than a sampler returns.
+    #[error("the texture '{name}' has {channels} channels and a sampler returns four; bake another layout")]
+    Channels {
+        /// The texture.
+        name: String,
+        /// Its channels.
+        channels: usize,
+    },
+    /// No level, or a level whose texels are not as many as its size says.
+    #[error(
+        "level {level} of {width}x{height} has {got} texels; a texture needs at least one level, and every texel of it"
+    )]
+    Size {
+        /// The level.
+        level: usize,
+        /// Its width.
+        width: usize,
+        /// Its height.
+        height: usize,
+        /// Its texels.
+        got: usize,
+    },
+}
