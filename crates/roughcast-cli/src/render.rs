@@ -12,18 +12,18 @@ use roughcast::shading::Shading;
 use roughcast::texture::TextureArray;
 use roughcast_gpu::render::DrawOptions;
 use roughcast_io::picture::{Plane, write_exr, write_png};
+use roughcast_io::texture_files::is_same_file;
 use roughcast_io::{AtomicFile, AtomicSet};
+use roughcast_pipeline::{Map, bake_for};
 use roughcast_scene::render::{MAX_SAMPLES, ShadingTextures};
 use roughcast_scene::{Filter, Picture, Sampler, Scene, SlopeMap};
 
 use crate::args::{SourceArgs, one_of, positive};
 use crate::display::{exposure_of, shown};
-use crate::input::{Map, read_map};
-use crate::method::bake_for;
-use crate::output::is_same_file;
+use crate::input::read_map;
 use crate::painter::{GpuPainter, MethodPainter, Painter, TruthPainter};
 use crate::scene_args::{CameraArgs, SHADING, SceneArgs, ShadingArgs, Size, size};
-use crate::{UsageError, progress, say, scene_args, textures, usage, warn};
+use crate::{UsageError, findings, progress, say, scene_args, textures, usage};
 
 /// Render a map on a shape: what it looks like with LEAN, with the old ways, or in truth.
 ///
@@ -238,7 +238,7 @@ impl Args {
             return Ok(Subject::Baked(textures::read_with_parts(&self.map, &limits)?));
         }
         let map = read_map(&self.map, &self.source)?;
-        map.warnings.iter().for_each(|warning| warn(&self.map, warning));
+        findings::warn_of(&self.map, &map);
         Ok(Subject::Map(Box::new(map)))
     }
 

@@ -8,13 +8,13 @@ use clap::Args;
 use glam::DVec3;
 use roughcast::shading::{BaseLobe, FootprintModel, Form, LobeOptions, Masking, Material, Repair};
 use roughcast::{Bits, Lobe};
+use roughcast_pipeline::TextureOptions;
 use roughcast_scene::render::{MAX_PIXELS, MAX_SAMPLES};
 use roughcast_scene::{
     Camera, CameraError, Light, Plane, Scene, Shape, Sphere, Torus, View, default_light, load_mesh,
 };
 
 use crate::args::{one_of, positive, specular_power};
-use crate::method::TextureOptions;
 use crate::{UsageError, usage};
 
 /// Headings under which the help lists these options.

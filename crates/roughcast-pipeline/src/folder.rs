@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use rayon::ThreadPool;
 use roughcast::Kind;
 use roughcast_io::Container;
-use roughcast_io::material_names::{MaterialRole, roles_of};
+use roughcast_io::material_names::{MaterialRole, NamedRole, roles_of};
 use roughcast_io::texture_files::is_same_file;
 use wildmatch::WildMatch;
 
@@ -190,24 +190,36 @@ impl<'a> FolderJob<'a> {
         inputs.iter().map(output_of).collect()
     }
 
+    /// What is known of each file from the names of all.
+    fn files<'f>(&self, inputs: &'f [PathBuf]) -> Vec<File<'f>> {
+        let stem_of = |input: &'f PathBuf| input.file_stem().and_then(|stem| stem.to_str());
+        let roles = roles_of(inputs.iter().map(|input| stem_of(input).unwrap_or_default()));
+        let named = inputs.iter().zip(self.outputs(inputs)).zip(roles);
+        let file = |((input, output), named): ((&'f PathBuf, PathBuf), Option<NamedRole>)| File {
+            input,
+            output,
+            role: named.map(|named| named.role),
+        };
+        named.map(file).collect()
+    }
+
     /// Runs the jobs on threads of their own; outcomes come back in the order of the inputs.
     fn bake_all(&self, inputs: &[PathBuf], watch: &dyn Watch) -> Vec<Result<FileOutcome, JobError>> {
-        let outputs = self.outputs(inputs);
-        let stems =
-            inputs.iter().map(|input| input.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default());
-        let roles = roles_of(stems);
+        let files = self.files(inputs);
         let watch = &Shared { watch, stopped: AtomicBool::new(false) };
         let threads = self.pool.map_or_else(rayon::current_num_threads, ThreadPool::current_num_threads);
         let jobs = self.jobs.map_or(threads.min(DEFAULT_JOBS), NonZeroUsize::get);
         let next = AtomicUsize::new(0);
         let slots: Vec<Mutex<Option<Result<FileOutcome, JobError>>>> =
-            inputs.iter().map(|_| Mutex::new(None)).collect();
+            files.iter().map(|_| Mutex::new(None)).collect();
         let work = || {
             loop {
                 let index = next.fetch_add(1, Ordering::Relaxed);
-                let Some(input) = inputs.get(index) else { break };
-                let role = roles[index].as_ref().map(|named| named.role);
-                let job = || self.bake_one(input, role, &outputs[index], watch, index);
+                let Some(file) = files.get(index) else { break };
+                let job = || {
+                    let watched = Watched::new(watch, file.input, index, files.len());
+                    bake_guarded(file, &self.settings, watched)
+                };
                 let outcome = match self.pool {
                     _ if watch.stopped.load(Ordering::Relaxed) => Err(JobError::Cancelled),
                     Some(pool) => pool.install(job),
@@ -217,7 +229,7 @@ impl<'a> FolderJob<'a> {
             }
         };
         std::thread::scope(|scope| {
-            for _ in 0..jobs.min(inputs.len()) {
+            for _ in 0..jobs.min(files.len()) {
                 scope.spawn(work);
             }
         });
@@ -226,30 +238,33 @@ impl<'a> FolderJob<'a> {
             .map(|slot| slot.into_inner().expect("no job panicked").expect("every job was run"))
             .collect()
     }
+}
 
-    /// Bakes one file; a panic becomes its error.
-    fn bake_one(
-        &self,
-        input: &Path,
-        role: Option<MaterialRole>,
-        output: &Path,
-        watch: &dyn Watch,
-        index: usize,
-    ) -> Result<FileOutcome, JobError> {
-        let mut watched = Watched::new(watch, input, index);
-        let work = || bake_by_role(input, role, output, &self.settings, &mut watched);
-        let mut outcome = catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|payload| {
-            let text = payload.downcast_ref::<String>().map(String::as_str);
-            let message = text.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("a panic");
-            Err(JobError::Panicked { path: input.to_owned(), message: message.to_owned() })
-        });
-        // A `Break` stops the others: `Shared` remembers it.
-        let _ = watched.end();
-        if let Ok(FileOutcome::Baked(report)) = &mut outcome {
-            report.times = watched.times().to_vec();
-        }
-        outcome
+/// A file of a folder, and what its name says.
+struct File<'a> {
+    input: &'a Path,
+    output: PathBuf,
+    role: Option<MaterialRole>,
+}
+
+/// Bakes one file; a panic becomes its error.
+fn bake_guarded(
+    file: &File<'_>,
+    settings: &BakeSettings,
+    mut watched: Watched<'_>,
+) -> Result<FileOutcome, JobError> {
+    let work = || bake_by_role(file, settings, &mut watched);
+    let mut outcome = catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|payload| {
+        let text = payload.downcast_ref::<String>().map(String::as_str);
+        let message = text.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("a panic");
+        Err(JobError::Panicked { path: file.input.to_owned(), message: message.to_owned() })
+    });
+    // A `Break` stops the others: `Shared` remembers it.
+    let _ = watched.end();
+    if let Ok(FileOutcome::Baked(report)) = &mut outcome {
+        report.times = watched.times().to_vec();
     }
+    outcome
 }
 
 /// The watch of all jobs of a folder: what it says to one counts for all.
@@ -269,12 +284,12 @@ impl Watch for Shared<'_> {
 
 /// Bakes one file of a folder, or says why it is no map: by what its name says, if its pixels agree, or by its pixels alone.
 fn bake_by_role(
-    input: &Path,
-    role: Option<MaterialRole>,
-    output: &Path,
+    file: &File<'_>,
     settings: &BakeSettings,
     watched: &mut Watched<'_>,
 ) -> Result<FileOutcome, JobError> {
+    let File { input, output, role } = file;
+    let role = *role;
     let baked = |report| Ok(FileOutcome::Baked(Box::new(report)));
     // Whoever names the kind knows better than names of files.
     let decided = settings.map.kind.is_some();

@@ -91,7 +91,7 @@ impl BakeJob {
     /// # Errors
     /// [`JobError`], also [`JobError::Cancelled`].
     pub fn run(&self, watch: &dyn Watch) -> Result<JobReport, JobError> {
-        let mut watched = Watched::new(watch, &self.input, 0);
+        let mut watched = Watched::new(watch, &self.input, 0, 1);
         let result = run(&self.input, &self.output, &self.settings, &mut watched);
         // It is done, and nothing is left to stop.
         let _ = watched.end();

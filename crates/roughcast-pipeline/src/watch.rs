@@ -32,8 +32,10 @@ named_enum! {
 pub struct Progress<'a> {
     /// The map.
     pub input: &'a Path,
-    /// Its place among the maps of a folder; 0 for a job alone.
+    /// Its place among the files of a folder that are tried; 0 for a job alone.
     pub index: usize,
+    /// How many these are; 1 for a job alone.
+    pub count: usize,
     /// What is being done.
     pub stage: Stage,
     /// Which fraction of the stage is done, 0 ..= 1, where that is known. Threads that share the work may report out of order.
@@ -72,13 +74,14 @@ pub(crate) struct Watched<'a> {
     watch: &'a dyn Watch,
     input: &'a Path,
     index: usize,
+    count: usize,
     stage: Option<(Stage, Instant)>,
     times: Vec<(Stage, Duration)>,
 }
 
 impl<'a> Watched<'a> {
-    pub fn new(watch: &'a dyn Watch, input: &'a Path, index: usize) -> Self {
-        Self { watch, input, index, stage: None, times: Vec::new() }
+    pub fn new(watch: &'a dyn Watch, input: &'a Path, index: usize, count: usize) -> Self {
+        Self { watch, input, index, count, stage: None, times: Vec::new() }
     }
 
     /// Ends the stage before and begins this one, unless the job is in it already.
@@ -101,8 +104,8 @@ impl<'a> Watched<'a> {
     /// As [`Watched::tell`], for work that stops at a `Break`.
     pub fn report(&self, fraction: Option<f32>) -> ControlFlow<()> {
         let Some((stage, _)) = self.stage else { return ControlFlow::Continue(()) };
-        let (input, index) = (self.input, self.index);
-        self.watch.progress(&Progress { input, index, stage, fraction })
+        let Self { input, index, count, .. } = *self;
+        self.watch.progress(&Progress { input, index, count, stage, fraction })
     }
 
     /// Ends the job. What the watch says has no effect on it any more.
