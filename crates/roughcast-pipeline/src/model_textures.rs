@@ -2,7 +2,7 @@
 
 use roughcast::shading::Shading;
 use roughcast::texture::TextureArray;
-use roughcast::{BakeError, BakeOptions, BaseRoughness, Bits, Image, Lobe, SourceOptions, bake};
+use roughcast::{BakeError, BakeOptions, BaseRoughness, Bits, ImageView, Lobe, SourceOptions, bake};
 
 /// How a model's textures are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,9 +19,9 @@ pub struct TextureOptions {
 ///
 /// # Errors
 /// [`BakeError`] where the map cannot be read.
-pub fn bake_for(
+pub fn bake_for<'a>(
     shading: Shading,
-    map: &Image,
+    map: impl Into<ImageView<'a>>,
     source: &SourceOptions,
     options: TextureOptions,
 ) -> Result<Vec<TextureArray>, BakeError> {

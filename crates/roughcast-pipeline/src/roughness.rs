@@ -104,7 +104,7 @@ impl Roughness {
         match self {
             Roughness::Variance(variance) => BaseRoughness::Variance(*variance),
             Roughness::Map { image, channel, stored } => {
-                BaseRoughness::Map(RoughnessMap { image, channel: *channel, stored: *stored })
+                BaseRoughness::Map(RoughnessMap { image: image.view(), channel: *channel, stored: *stored })
             }
         }
     }

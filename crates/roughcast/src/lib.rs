@@ -84,7 +84,7 @@ pub use bake::{
     refuse_filter,
 };
 pub use distribution::{Distribution, MAX_GAUSSIANS, WeightedGaussian};
-pub use image::{Image, ImageError, SampleType, Samples};
+pub use image::{Image, ImageError, ImageView, SampleType, Samples, SamplesView};
 pub use moments::{Covariance, Moments, SlopeMatrix};
 pub use named::{Named, UnknownName};
 pub use options::{

@@ -17,7 +17,7 @@ use crate::survey::survey_of_some_rows;
 use crate::texture::codec::Units;
 use crate::texture::orient::orient;
 use crate::texture::{self, Base, Bounds, EncoderShape, Layout, Part, Peaks, RoughnessStored, TextureArray};
-use crate::{Image, SourceCounts};
+use crate::{ImageView, SourceCounts};
 use allocate::{allocate, level_outs};
 use limit::{Ranges, find_ranges};
 use scales::{advice, peaks_of_most, set_scales};
@@ -109,8 +109,8 @@ pub struct Baked {
 ///
 /// # Errors
 /// [`BakeError`] where the map has too few channels, or options do not go together.
-pub fn bake(
-    image: &Image,
+pub fn bake<'a>(
+    image: impl Into<ImageView<'a>>,
     source_options: &SourceOptions,
     roughness: Option<BaseRoughness<'_>>,
     options: &BakeOptions,
@@ -123,9 +123,20 @@ pub fn bake(
 ///
 /// # Errors
 /// As [`bake`].
-pub fn bake_reusing(
+pub fn bake_reusing<'a>(
     textures: Vec<TextureArray>,
-    image: &Image,
+    image: impl Into<ImageView<'a>>,
+    source_options: &SourceOptions,
+    roughness: Option<BaseRoughness<'_>>,
+    options: &BakeOptions,
+) -> Result<Baked, BakeError> {
+    bake_view(textures, image.into(), source_options, roughness, options)
+}
+
+// Not generic, so that it is compiled once.
+fn bake_view(
+    textures: Vec<TextureArray>,
+    image: ImageView<'_>,
     source_options: &SourceOptions,
     roughness: Option<BaseRoughness<'_>>,
     options: &BakeOptions,
@@ -135,7 +146,7 @@ pub fn bake_reusing(
     let roughness_resampled_from = fitted.as_ref().and(roughness).and_then(|roughness| roughness.map_size());
     let roughness = match &fitted {
         Some((image, channel)) => Some(BaseRoughness::Map(RoughnessMap {
-            image,
+            image: image.view(),
             channel: *channel,
             stored: RoughnessStored::AlphaSquared,
         })),
@@ -207,7 +218,7 @@ fn rms_slopes(whole: &Moments, finest: &LevelStats) -> [f64; 2] {
 }
 
 fn source_of<'a>(
-    image: &'a Image,
+    image: ImageView<'a>,
     source_options: SourceOptions,
     roughness: Option<BaseRoughness<'a>>,
     options: &BakeOptions,
