@@ -149,7 +149,7 @@ impl BakeChoices {
             roughness_stored: stored,
             lobe: if self.anisotropy.is_some() { Lobe::Anisotropic } else { Lobe::Isotropic },
             anisotropy_output: self.anisotropy.unwrap_or(AnisotropyOutput::Khr),
-            roughness_texture: self.roughness_texture(container, roughness),
+            roughness_texture: self.roughness_channels(container, roughness),
             normal_range: self.normal_range.unwrap_or(NormalRange::Unorm),
             blocks: self.blocks,
             filter: self.filter,
@@ -158,7 +158,7 @@ impl BakeChoices {
 
     /// The channels of `pbr`'s roughness: glTF's, with the occlusion and metalness of the picture where it has them. Renderers
     /// that read EXR take a roughness of one channel.
-    fn roughness_texture(&self, container: Container, roughness: Option<&Roughness>) -> RoughnessTexture {
+    fn roughness_channels(&self, container: Container, roughness: Option<&Roughness>) -> RoughnessTexture {
         self.roughness_texture.unwrap_or_else(|| match container {
             _ if roughness.is_some_and(Roughness::is_packed) => RoughnessTexture::Packed,
             Container::Exr => RoughnessTexture::Alone,
