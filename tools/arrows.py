@@ -12,10 +12,11 @@ from workspace import cargo_metadata, members, report
 ALLOWED = {
     "roughcast": set(),
     "roughcast-io": {"roughcast", "roughcast-scene"},
+    "roughcast-pipeline": {"roughcast", "roughcast-io"},
     "roughcast-scene": {"roughcast"},
     "roughcast-gpu": {"roughcast", "roughcast-scene"},
-    "roughcast-cli": {"roughcast", "roughcast-io", "roughcast-scene", "roughcast-gpu"},
-    "roughcast-py": {"roughcast"},
+    "roughcast-cli": {"roughcast", "roughcast-io", "roughcast-pipeline", "roughcast-scene", "roughcast-gpu"},
+    "roughcast-py": {"roughcast", "roughcast-io", "roughcast-pipeline"},
     "roughcast-fuzz": {"roughcast", "roughcast-io", "roughcast-testdata"},
     "roughcast-testdata": set(),
 }

@@ -3,10 +3,10 @@
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueHint};
 use roughcast::{
-    Gradient, Green, HeightSense, Kind, MaxSlope, Named, NormalChannels, NormalRange, Red, SourceOptions,
-    Wrap,
+    Gradient, Green, HeightSense, Kind, MaxSlope, Named, NormalChannels, NormalRange, Red, Wrap,
 };
 use roughcast_io::{Limits, ReadOptions};
+use roughcast_pipeline::{MapOptions, SPECULAR_POWERS};
 
 /// Words that users of other tools type, and what they are called here.
 const OTHER_WORDS: &[(&str, &str)] = &[
@@ -101,9 +101,6 @@ impl WordParser {
     }
 }
 
-/// The Blinn-Phong exponents that materials may have: below 1 nothing is shiny, and above this single floats carry no bump.
-pub const SPECULAR_POWERS: std::ops::RangeInclusive<f32> = 1.0..=1_000_000.0;
-
 /// A Blinn-Phong exponent.
 pub fn specular_power(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
@@ -165,10 +162,6 @@ pub struct SourceArgs {
     #[arg(long, value_parser = one_of::<Green>())]
     pub green: Option<Green>,
 
-    /// What the name of a file in a folder says of green.
-    #[arg(skip)]
-    pub green_by_name: Option<Green>,
-
     /// Which way red points in a normal map
     #[arg(long, default_value = "right", value_parser = one_of::<Red>())]
     pub red: Red,
@@ -225,20 +218,22 @@ impl SourceArgs {
         ReadOptions { limits: self.limits(), layer: self.layer.clone(), channels: self.channels.clone() }
     }
 
-    /// The library's options, once the pixels have decided what was left open.
-    pub fn options(&self, kind: Kind, range: NormalRange, channels: NormalChannels) -> SourceOptions {
-        SourceOptions {
-            kind,
-            green: self.green.or(self.green_by_name).unwrap_or(Green::Up),
-            red: self.red,
-            normal_scale: self.normal_scale.unwrap_or(1.0),
-            range,
-            normal_channels: channels,
-            height_scale: self.height_scale.unwrap_or(SourceOptions::DEFAULT_HEIGHT_SCALE),
-            height_sense: if self.invert_height { HeightSense::WhiteDeep } else { HeightSense::WhiteHigh },
-            gradient: self.gradient,
-            wrap: self.wrap,
-            max_slope: self.max_slope,
-        }
+    /// How the map is read, as the library takes it.
+    pub fn map_options(&self) -> MapOptions {
+        let mut options = MapOptions::default();
+        options.read = self.read_options();
+        options.kind = self.kind;
+        options.green = self.green;
+        options.red = self.red;
+        options.normal_scale = self.normal_scale;
+        options.range = self.range;
+        options.normal_channels = self.normal_channels;
+        options.height_scale = self.height_scale;
+        options.height_sense =
+            if self.invert_height { HeightSense::WhiteDeep } else { HeightSense::WhiteHigh };
+        options.gradient = self.gradient;
+        options.wrap = self.wrap;
+        options.max_slope = self.max_slope;
+        options
     }
 }

@@ -2,31 +2,27 @@
 
 mod choices;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::Result;
 use clap::ValueHint;
-use roughcast::texture::{Base, BaseRole, Layout, TextureArray, mark_set};
+use roughcast::texture::{BaseRole, Layout};
 use roughcast::{
-    AnisotropyOutput, BakeError, BakeOptions, BakeReport, Baked, Blocks, NormalRange, PyramidFilter,
-    RoughnessTexture, SampleType, ScaleChoice, bake,
+    AnisotropyOutput, BakeError, Blocks, NormalRange, PyramidFilter, RoughnessTexture, SampleType,
+    ScaleChoice,
 };
-use roughcast_io::material_names::{MaterialRole, role_of};
-use roughcast_io::{BlockFormat, FileInfo, Supercompression, compress, decompress};
+use roughcast_io::Container;
+use roughcast_pipeline::{BakeJob, Target};
 
 use crate::advice::{filter_refusal, with_options};
 use crate::args::{READING, REPORT, SourceArgs, one_of, positive};
 use crate::batch;
 use crate::fault::guarded;
-use crate::input::{Map, read_map};
-use crate::output::{self, Container, OutputOptions, Stored};
-use crate::progress::Stages;
-use crate::report::{CompressionError, FileReport};
-use crate::roughness::{Roughness, RoughnessArgs};
-use crate::sidecar::sidecar;
-use crate::target::{Target, reader_note};
-use crate::textures::leftover_parts;
+use crate::progress::StageBar;
+use crate::refusals;
+use crate::report::FileReport;
+use crate::roughness::RoughnessArgs;
 use crate::{UsageError, usage};
 
 /// Turn a normal or height map into textures whose mip levels keep the bumps as roughness.
@@ -213,9 +209,6 @@ fn filter(name: &str) -> Result<PyramidFilter, String> {
     })
 }
 
-/// The exponent that Toksvig's gloss factor is made for where nobody named one: the lowest that the LEAN text shows.
-const TOKSVIG_POWER: f32 = 128.0;
-
 pub fn run(args: &Args) -> Result<ExitCode> {
     if args.input.is_dir() {
         return batch::run(args);
@@ -232,151 +225,11 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             "--format, --jobs and --match are for folders, and this is a file: leave them out",
         ));
     }
-    let mut stages = Stages::new(4);
-    let report = guarded(&args.input, || bake_file(&args.input, &args.output, args, &mut stages));
-    let times = stages.finish().to_vec();
-    let mut report = report?;
-    report.warnings.extend(name_warning(&args.input, args));
-    if args.verbose {
-        report.times = times;
-    }
-    report.print(args.json)?;
+    let (input, output) = (args.input.clone(), args.output.clone());
+    let job = BakeJob { input, output, settings: args.settings() };
+    let report = guarded(&args.input, || job.run(&StageBar::new()).map_err(refusals::of_job))?;
+    FileReport::new(Box::new(report), args.times()).print(args.json)?;
     Ok(ExitCode::SUCCESS)
-}
-
-/// A warning where the name of a file says that it is no map of bumps, and nobody has said otherwise.
-fn name_warning(input: &Path, args: &Args) -> Option<String> {
-    let named = role_of(input.file_stem()?.to_str()?)
-        .filter(|named| !named.by_letter && args.source.kind.is_none())?;
-    match named.role {
-        MaterialRole::Other(what) => Some(format!(
-            "its name says that it is {what}, and it is read as a map of bumps: say --kind if that is what it is"
-        )),
-        _ => None,
-    }
-}
-
-/// Bakes one map. Nothing is written unless everything went well.
-pub fn bake_file(input: &Path, output: &Path, args: &Args, stages: &mut Stages) -> Result<FileReport> {
-    let named = || input.display().to_string();
-    let container = Container::of(output)?;
-    args.check(container)?;
-    output::check_destination(output, container, &args.first_file(container))?;
-    stages.begin("reading");
-    let mut map = read_map(input, &args.source)?;
-    let roughness = roughness_of(args, &mut map.warnings)?;
-    let options = args.options(container, roughness.as_ref());
-    stages.begin("baking");
-    let baked = bake(&map.image, &map.options, roughness.as_ref().map(Roughness::base), &options)
-        .map_err(usage_where_options)
-        .with_context(named)?;
-    if args.strict && baked.report.counts.broken() > 0 {
-        return Err(broken_texels(&baked.report)).with_context(named);
-    }
-    // The pixels are not needed any more, and what follows needs room.
-    let Map { image, info, options: source, green_correlation, mut warnings, .. } = map;
-    drop(image);
-    stages.begin("compressing");
-    let Baked { mut arrays, report } = baked;
-    let splits = args.splits(container);
-    if splits && arrays.iter().any(|array| array.layers.len() > 1) {
-        mark_set(&mut arrays);
-    }
-    let (mut stored, compression) = stored_of(arrays, args.compress).with_context(named)?;
-    if splits {
-        stored = stored.into_iter().flat_map(Stored::split).collect();
-    }
-    let reader_note = reader_note(container, stored[0].layer_count(), stored[0].sample_type());
-    stages.begin("writing");
-    let supercompression = match args.supercompress {
-        Supercompress::None => Supercompression::None,
-        Supercompress::Zstd => Supercompression::Zstd,
-    };
-    let inputs: Vec<&Path> = [Some(input), args.roughness.file()].into_iter().flatten().collect();
-    let sidecar = |files: &[PathBuf]| sidecar(&stored, files);
-    let output_options = OutputOptions {
-        supercompression,
-        wrap: source.wrap,
-        inputs: &inputs,
-        sidecar: args.sidecar.then_some(&sidecar),
-    };
-    let files = output::write(output, &stored, output_options)?;
-    for leftover in leftover_parts(output, options.layout, &files) {
-        warnings.push(format!(
-            "{} is left from an earlier bake and does not belong to these files: remove it",
-            leftover.display()
-        ));
-    }
-    warnings.extend(block_size_warning(container, &options, &info));
-    warnings.extend(unused_roughness_warning(args));
-    warnings.extend(args.target.warnings(container, &options));
-    Ok(FileReport {
-        input: input.to_owned(),
-        files,
-        info,
-        source,
-        options,
-        report,
-        compression,
-        green_correlation,
-        reader_note,
-        warnings,
-        times: Vec::new(),
-    })
-}
-
-/// What is wrong with a map that is not to be repaired.
-fn broken_texels(report: &BakeReport) -> anyhow::Error {
-    let counts = report.counts;
-    let kinds = [
-        (counts.behind, "point into the surface"),
-        (counts.invalid, "have no direction"),
-        (counts.non_finite, "are NaN or infinite"),
-    ];
-    let found = kinds.iter().filter(|(count, _)| *count > 0);
-    let found = found.map(|(count, what)| format!("{count} {what}")).collect::<Vec<_>>().join(", ");
-    anyhow!("of its {} texels {found}: repair the map, or omit --strict", report.texels)
-}
-
-/// The material's roughness, with a warning where the layout needs one and nobody named it.
-fn roughness_of(args: &Args, warnings: &mut Vec<String>) -> Result<Option<Roughness>> {
-    let named = args.roughness.load(&args.source.limits())?;
-    if named.is_some() {
-        return Ok(named);
-    }
-    match args.layout.base_role() {
-        BaseRole::Apart => {
-            warnings.push(format!(
-                "the gloss factor is for a specular power of {TOKSVIG_POWER}: say --specular-power for another"
-            ));
-            Ok(Some(Roughness::Variance(1.0 / TOKSVIG_POWER)))
-        }
-        BaseRole::Contained => {
-            warnings.push(
-                "the material's own roughness is taken as 0, a mirror: say --roughness or --specular-power"
-                    .to_owned(),
-            );
-            Ok(None)
-        }
-        BaseRole::OnRequest => Ok(None),
-    }
-}
-
-/// A warning where a roughness was given that nothing of what is stored depends on.
-fn unused_roughness_warning(args: &Args) -> Option<String> {
-    let option = match (&args.roughness.roughness, args.roughness.specular_power) {
-        (Some(_), _) => "--roughness",
-        (None, Some(_)) => "--specular-power",
-        (None, None) => return None,
-    };
-    let uses = args.layout.base_role() != BaseRole::OnRequest || args.roughness.base == Base::Baked;
-    (!uses).then(|| {
-        format!(
-            "{option} is only noted in the file, since the layout '{}' leaves the material's roughness to the shader: say \
-             --base baked to fold it in, or leave {option} out",
-            args.layout
-        )
-    })
 }
 
 /// Options that contradict each other are a fault of the command line, not of the map.
@@ -384,40 +237,5 @@ pub fn usage_where_options(error: BakeError) -> anyhow::Error {
     match error {
         BakeError::Source(_) => error.into(),
         error => UsageError(with_options(&error)).into(),
-    }
-}
-
-/// Compresses into blocks where that is wanted, and measures what it costs.
-fn stored_of(arrays: Vec<TextureArray>, blocks: Blocks) -> Result<(Vec<Stored>, Option<CompressionError>)> {
-    if blocks == Blocks::None {
-        return Ok((arrays.into_iter().map(Stored::Texels).collect(), None));
-    }
-    let compressed =
-        arrays.iter().map(|array| compress(array, block_format(array))).collect::<Result<Vec<_>, _>>()?;
-    let seen: Vec<TextureArray> = compressed.iter().map(decompress).collect();
-    let error = CompressionError::between(&arrays, &seen)?;
-    Ok((compressed.into_iter().map(Stored::Blocks).collect(), Some(error)))
-}
-
-/// Direct3D refuses to create block-compressed textures whose sides are not multiples of the blocks' side; Vulkan, Metal and
-/// OpenGL do not (Microsoft, "Texture Block Compression in Direct3D 11", virtual size versus physical size).
-fn block_size_warning(container: Container, options: &BakeOptions, info: &FileInfo) -> Option<String> {
-    const BLOCK_SIDE: usize = 4;
-    let (width, height) = (info.width, info.height);
-    let fits = width.is_multiple_of(BLOCK_SIDE) && height.is_multiple_of(BLOCK_SIDE);
-    (container == Container::Dds && options.blocks == Blocks::Bc && !fits).then(|| {
-        format!(
-            "Direct3D cannot create a block-compressed texture of {width}x{height}, whose sides must be multiples of \
-             {BLOCK_SIDE}: resize the map, or write .ktx2 for Vulkan, Metal and OpenGL, which have no such rule"
-        )
-    })
-}
-
-/// One channel in BC4, two in BC5, four in BC7.
-fn block_format(array: &TextureArray) -> BlockFormat {
-    match array.layers[0].levels[0].channels() {
-        1 => BlockFormat::Bc4,
-        2 => BlockFormat::Bc5,
-        _ => BlockFormat::Bc7,
     }
 }

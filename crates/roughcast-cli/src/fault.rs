@@ -11,7 +11,7 @@ use crate::complain;
 /// How many jobs are guarded at the moment: while there are any, a panic is told as their error.
 static GUARDED: Mutex<usize> = Mutex::new(0);
 
-/// Lets a panic print one line instead of a backtrace, or nothing where [`guarded`] reports it.
+/// Lets a panic print one line instead of a backtrace, or nothing where [`guarded`] or a caller of [`silenced`] reports it.
 pub fn install_hook() {
     std::panic::set_hook(Box::new(|info| {
         if GUARDED.lock().is_ok_and(|jobs| *jobs == 0) {
@@ -21,16 +21,22 @@ pub fn install_hook() {
     }));
 }
 
-/// Runs the work on one file. A panic becomes an error that names the file.
-pub fn guarded<T>(path: &Path, job: impl FnOnce() -> Result<T>) -> Result<T> {
+/// Runs work whose panics are told as errors by whoever catches them, so that the hook stays silent.
+pub fn silenced<T>(work: impl FnOnce() -> T) -> T {
     let count = |change: isize| {
         if let Ok(mut jobs) = GUARDED.lock() {
             *jobs = jobs.saturating_add_signed(change);
         }
     };
     count(1);
-    let result = catch_unwind(AssertUnwindSafe(job));
+    let result = work();
     count(-1);
+    result
+}
+
+/// Runs the work on one file. A panic becomes an error that names the file.
+pub fn guarded<T>(path: &Path, job: impl FnOnce() -> Result<T>) -> Result<T> {
+    let result = silenced(|| catch_unwind(AssertUnwindSafe(job)));
     result.unwrap_or_else(|payload| {
         let text = payload.downcast_ref::<String>().map(String::as_str);
         let what = text.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("a panic");

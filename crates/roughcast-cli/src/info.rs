@@ -7,13 +7,14 @@ use anyhow::{Context, Result};
 use clap::ValueHint;
 use roughcast::texture::{Layout, MomentLevel, Texture, TextureArray, TextureInfo, decode};
 use roughcast::{BakeOptions, Image, SampleType, bake};
-use roughcast_io::{Decoded, FileInfo};
+use roughcast_io::texture_files::{layout_named_in, name_of_layer};
+use roughcast_io::{Decoded, FileInfo, read_image_of};
+use roughcast_pipeline::map_of;
 use serde_json::{Map as JsonMap, Value, json};
 
 use crate::args::{REPORT, SourceArgs};
-use crate::input::{image_of, layout_named_in, map_of, with_options};
-use crate::output::name_of_layer;
-use crate::{say, say_json, textures, warn};
+use crate::findings::warn_of;
+use crate::{refusals, say, say_json, textures, warn};
 
 /// Show what a file holds: size, format, levels, layout, scale, value ranges, and the slopes of each level.
 ///
@@ -52,7 +53,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 fn look_at(args: &Args) -> Result<Findings> {
     let limits = args.source.limits();
     let bytes = std::fs::read(&args.file)?;
-    let picture = image_of(&args.file, &bytes, &args.source.read_options());
+    let picture = read_image_of(&args.file, &bytes, &args.source.read_options());
     let mut findings = Findings { lines: Vec::new(), json: JsonMap::new() };
     findings.put("file", json!(args.file.display().to_string()), args.file.display().to_string());
     // A PNG is decoded level by level, which is worth while only for our own.
@@ -67,13 +68,13 @@ fn look_at(args: &Args) -> Result<Findings> {
         Ok(array) => {
             drop(bytes);
             // A PNG is one level of a texture, whose other levels were found beside it.
-            let info = FileInfo { levels: array.level_count(), ..picture.map_err(with_options)?.info };
+            let info = FileInfo { levels: array.level_count(), ..picture.map_err(refusals::of_read)?.info };
             findings.describe(&info);
             findings.textures(args, array);
         }
         Err(fault) => {
             drop(bytes);
-            let picture = picture.map_err(with_options)?;
+            let picture = picture.map_err(refusals::of_read)?;
             if layout_named_in(&picture.info).is_some() {
                 warn(
                     &args.file,
@@ -141,9 +142,10 @@ impl Findings {
 
     /// A picture: whether it is a map, and the slopes that `bake` would see.
     fn map(&mut self, args: &Args, picture: Decoded) -> Result<()> {
-        let map = match map_of(picture, &args.source) {
+        let map = match map_of(picture, &args.source.map_options()) {
             Ok(map) => map,
-            Err(reason) => {
+            Err(error) => {
+                let reason = refusals::of_map(error);
                 self.json.insert("kind".to_owned(), Value::Null);
                 self.put("no_map", json!(reason.to_string()), reason.to_string());
                 return Ok(());
@@ -153,7 +155,7 @@ impl Findings {
         if let Some(correlation) = map.green_correlation {
             self.put("green_correlation", json!(correlation), format!("{correlation:.3}"));
         }
-        map.warnings.iter().for_each(|warning| warn(&args.file, warning));
+        warn_of(&args.file, &map);
         let options = BakeOptions { layout: Layout::Moments, bits: SampleType::F32, ..Default::default() };
         let baked = bake(&map.image, &map.options, None, &options)?;
         let mended = baked.report.counts.total();

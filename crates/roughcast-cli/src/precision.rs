@@ -11,8 +11,9 @@ use serde_json::{Value, json};
 
 use crate::args::{REPORT, SourceArgs, specular_power};
 use crate::bake::usage_where_options;
+use crate::findings::warn_of;
 use crate::input::read_map;
-use crate::{say, say_json, warn};
+use crate::{say, say_json};
 
 /// Show how precise a map's variance is in 8 bits, 16 bits, half and float, and which of them will do.
 ///
@@ -39,9 +40,7 @@ pub struct Args {
 
 pub fn run(args: &Args) -> Result<ExitCode> {
     let map = read_map(&args.input, &args.source)?;
-    for warning in &map.warnings {
-        warn(&args.input, warning);
-    }
+    warn_of(&args.input, &map);
     let rows = measure(&map.image, &map.options)
         .map_err(usage_where_options)
         .with_context(|| args.input.display().to_string())?;

@@ -1,8 +1,11 @@
-//! Progress bars on terminals, and the time that each stage took.
+//! Progress bars on terminals.
 
+use std::ops::ControlFlow;
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use roughcast_pipeline::{Progress, Stage, Watch};
 
 /// Work on shorter jobs would only flicker.
 const QUIET_FOR: Duration = Duration::from_millis(400);
@@ -25,49 +28,69 @@ pub fn timed_bar(steps: u64) -> ProgressBar {
     bar
 }
 
-/// The stages of one job: shown on a bar while it lasts, and listed with their times afterwards.
-pub struct Stages {
+/// The stages of one job, shown on a bar while it lasts.
+pub struct StageBar {
     bar: ProgressBar,
     started: Instant,
-    stage: Option<(&'static str, Instant)>,
-    done: Vec<(&'static str, Duration)>,
+    stage: Mutex<Option<Stage>>,
 }
 
-impl Stages {
-    /// A job of so many stages, with a bar of its own.
-    pub fn new(count: u64) -> Self {
-        Self::on(bar(count))
+impl StageBar {
+    /// A job that has just begun.
+    pub fn new() -> Self {
+        /// All but the end.
+        const STAGES: u64 = Stage::ALL.len() as u64 - 1;
+        Self { bar: bar(STAGES), started: Instant::now(), stage: Mutex::new(None) }
     }
+}
 
-    /// A job without a bar, for jobs that run side by side.
-    pub fn silent() -> Self {
-        Self::on(ProgressBar::hidden())
-    }
-
-    fn on(bar: ProgressBar) -> Self {
-        Self { bar, started: Instant::now(), stage: None, done: Vec::new() }
-    }
-
-    /// Ends the stage before and begins this one.
-    pub fn begin(&mut self, name: &'static str) {
-        self.end_stage();
-        self.stage = Some((name, Instant::now()));
-        if self.started.elapsed() > QUIET_FOR || self.done.is_empty() {
-            self.bar.set_message(name);
+impl Watch for StageBar {
+    fn progress(&self, progress: &Progress<'_>) -> ControlFlow<()> {
+        let mut stage = self.stage.lock().expect("no panic while it is held");
+        let before = stage.replace(progress.stage);
+        if before == Some(progress.stage) {
+            return ControlFlow::Continue(());
         }
-    }
-
-    fn end_stage(&mut self) {
-        if let Some((name, since)) = self.stage.take() {
-            self.done.push((name, since.elapsed()));
+        if before.is_some() {
             self.bar.inc(1);
         }
+        match progress.stage {
+            Stage::Ended => self.bar.finish_and_clear(),
+            begun if before.is_none() || self.started.elapsed() > QUIET_FOR => {
+                self.bar.set_message(begun.name());
+            }
+            _ => {}
+        }
+        ControlFlow::Continue(())
     }
+}
 
-    /// Ends the job: the bar goes, the times stay.
-    pub fn finish(&mut self) -> &[(&'static str, Duration)] {
-        self.end_stage();
+/// A bar over the maps of a folder.
+pub struct FolderBar {
+    bar: ProgressBar,
+}
+
+impl FolderBar {
+    /// A folder that has just begun; the number of maps is not known yet.
+    pub fn new() -> Self {
+        Self { bar: bar(0) }
+    }
+}
+
+impl Watch for FolderBar {
+    fn progress(&self, progress: &Progress<'_>) -> ControlFlow<()> {
+        self.bar.set_length(progress.count as u64);
+        match (progress.stage, progress.fraction) {
+            (Stage::Reading, _) => self.bar.set_message(progress.input.display().to_string()),
+            (Stage::Ended, _) => self.bar.inc(1),
+            _ => {}
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+impl Drop for FolderBar {
+    fn drop(&mut self) {
         self.bar.finish_and_clear();
-        &self.done
     }
 }

@@ -12,7 +12,9 @@ use roughcast::shading::Shading;
 use roughcast::texture::TextureArray;
 use roughcast_gpu::render::DrawOptions;
 use roughcast_io::picture::{Plane, write_exr, write_png};
+use roughcast_io::texture_files::is_same_file;
 use roughcast_io::{AtomicFile, AtomicSet};
+use roughcast_pipeline::{Map, bake_for};
 use roughcast_scene::render::MAX_SAMPLES;
 use roughcast_scene::{
     BakedTextures, Filter, Picture, Reconstruction, Sampler, Scene, SlopeDetail, SlopeMap,
@@ -20,12 +22,10 @@ use roughcast_scene::{
 
 use crate::args::{SourceArgs, one_of, positive};
 use crate::display::{exposure_of, shown};
-use crate::input::{Map, read_map};
-use crate::method::bake_for;
-use crate::output::is_same_file;
+use crate::input::read_map;
 use crate::painter::{GpuPainter, MethodPainter, Painter, TruthPainter};
 use crate::scene_args::{CameraArgs, SHADING, SceneArgs, ShadingArgs, Size, size};
-use crate::{UsageError, progress, say, scene_args, textures, usage, warn};
+use crate::{UsageError, findings, progress, say, scene_args, textures, usage};
 
 /// Render a map on a shape: what it looks like with LEAN, with the old ways, or in truth.
 ///
@@ -240,7 +240,7 @@ impl Args {
             return Ok(Subject::Baked(textures::read_with_parts(&self.map, &limits)?));
         }
         let map = read_map(&self.map, &self.source)?;
-        map.warnings.iter().for_each(|warning| warn(&self.map, warning));
+        findings::warn_of(&self.map, &map);
         Ok(Subject::Map(Box::new(map)))
     }
 

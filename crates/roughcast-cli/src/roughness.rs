@@ -1,16 +1,12 @@
 //! The base roughness of the material, as the command line gives it.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use anyhow::{Context, Result, anyhow};
 use clap::Args;
 use roughcast::texture::{Base, Brdf, RoughnessStored};
-use roughcast::{BaseRoughness, Image, RoughnessMap, variance_from_stored};
-use roughcast_io::{Decoded, FileInfo, Limits, ReadError, ReadOptions};
+use roughcast_pipeline::RoughnessInput;
 
-use crate::UsageError;
-use crate::args::{SPECULAR_POWERS, one_of, specular_power};
-use crate::input::{read_image, refuse_baked};
+use crate::args::{one_of, specular_power};
 
 /// Base roughness.
 #[derive(Args, Clone, Debug)]
@@ -49,111 +45,20 @@ pub struct RoughnessArgs {
     pub base: Base,
 }
 
-/// A base roughness with the picture that it may come from.
-pub enum Roughness {
-    Variance(f32),
-    Map { image: Image, channel: usize, stored: RoughnessStored },
-}
-
-impl Roughness {
-    /// As the library takes it.
-    pub fn base(&self) -> BaseRoughness<'_> {
-        match self {
-            Roughness::Variance(variance) => BaseRoughness::Variance(*variance),
-            Roughness::Map { image, channel, stored } => {
-                BaseRoughness::Map(RoughnessMap { image, channel: *channel, stored: *stored })
-            }
-        }
-    }
-
-    /// Whether it is a colour picture with roughness in green: glTF's packed texture, of which the rest is worth keeping.
-    pub fn is_packed(&self) -> bool {
-        matches!(self, Roughness::Map { image, channel: 1, .. } if image.channels() >= 3 && !is_grey(image))
-    }
-}
-
-/// Whether red, green and blue are equal throughout, but for what lossy compression does.
-fn is_grey(image: &Image) -> bool {
-    /// JPEG's rounding of chroma.
-    const LOSSY: f32 = 4.5 / 255.0;
-    (0..image.height()).all(|y| {
-        (0..image.width()).all(|x| {
-            let [r, g, b] = [0, 1, 2].map(|channel| image.get(x, y, channel));
-            (r - g).abs() <= LOSSY && (b - g).abs() <= LOSSY
-        })
-    })
-}
-
-/// The place of a channel of this name. The only channel of a grey picture is its red as well.
-fn channel_of(info: &FileInfo, name: &str) -> Option<usize> {
-    let is_grey = info.channels.len() == 1 && info.channels[0] == "Y";
-    let place = info.channels.iter().position(|channel| channel.eq_ignore_ascii_case(name));
-    place.or_else(|| (is_grey && name.eq_ignore_ascii_case("r")).then_some(0))
-}
-
 impl RoughnessArgs {
-    /// The picture that the arguments name.
-    pub fn file(&self) -> Option<&Path> {
-        self.roughness.as_deref().filter(|text| text.parse::<f32>().is_err()).map(Path::new)
-    }
-
-    /// Loads what the arguments name; `None` where they name nothing.
-    pub fn load(&self, limits: &Limits) -> Result<Option<Roughness>> {
+    /// What the arguments name; `None` where they name nothing.
+    pub fn input(&self) -> Option<RoughnessInput> {
         if let Some(power) = self.specular_power {
-            return Ok(Some(Roughness::Variance(1.0 / power)));
+            return Some(RoughnessInput::SpecularPower(power));
         }
-        let Some(text) = &self.roughness else { return Ok(None) };
-        match text.parse::<f32>() {
-            Ok(value) => self.value(value).map(Some),
-            Err(_) => self.map(&PathBuf::from(text), limits).map(Some),
-        }
-    }
-
-    fn value(&self, value: f32) -> Result<Roughness> {
+        let text = self.roughness.as_ref()?;
         let stored = self.roughness_stored;
-        let in_range = match stored {
-            RoughnessStored::SpecularPower => SPECULAR_POWERS.contains(&value),
-            _ => (0.0..=1.0).contains(&value),
-        };
-        if !in_range {
-            let range = match stored {
-                RoughnessStored::SpecularPower => {
-                    format!("from {} to {}", SPECULAR_POWERS.start(), SPECULAR_POWERS.end())
-                }
-                _ => "from 0 to 1".to_owned(),
-            };
-            return Err(UsageError(format!(
-                "--roughness {value}: a roughness stored as '{stored}' is a number {range}"
-            ))
-            .into());
-        }
-        Ok(Roughness::Variance(variance_from_stored(value, stored)))
-    }
-
-    /// The picture, or of it the channel that was named where the picture as such does not have it: a layer of an EXR may.
-    fn read(&self, path: &Path, limits: &Limits) -> Result<Decoded> {
-        let whole = ReadOptions::from(*limits);
-        let Some(name) = &self.roughness_channel else { return read_image(path, &whole) };
-        match roughcast_io::read_image_file(path, &whole) {
-            Ok(decoded) if channel_of(&decoded.info, name).is_some() => Ok(decoded),
-            Ok(_) | Err(ReadError::OpenChannels { .. }) => {
-                let named = ReadOptions { channels: vec![name.clone()], ..whole };
-                roughcast_io::read_image_file(path, &named)
-                    .map_err(|error| anyhow!("{error}: name one of these with --roughness-channel"))
-                    .with_context(|| path.display().to_string())
+        Some(match text.parse::<f32>() {
+            Ok(value) => RoughnessInput::Value { value, stored },
+            Err(_) => {
+                let channel = self.roughness_channel.clone();
+                RoughnessInput::File { path: PathBuf::from(text), channel, stored }
             }
-            Err(error) => Err(error).with_context(|| path.display().to_string()),
-        }
-    }
-
-    fn map(&self, path: &Path, limits: &Limits) -> Result<Roughness> {
-        let Decoded { image, info } = self.read(path, limits)?;
-        refuse_baked(&info).with_context(|| path.display().to_string())?;
-        let channel = match &self.roughness_channel {
-            Some(name) => channel_of(&info, name).unwrap_or(0),
-            None if image.channels() >= 3 => 1,
-            None => 0,
-        };
-        Ok(Roughness::Map { image, channel, stored: self.roughness_stored })
+        })
     }
 }

@@ -9,11 +9,11 @@ use glam::DVec3;
 use roughcast::shading::{BaseLobe, FootprintModel, Form, LobeOptions, Masking, Material, Repair};
 use roughcast::{Lobe, SampleType};
 use roughcast_io::mesh::load_mesh;
+use roughcast_pipeline::TextureOptions;
 use roughcast_scene::render::{MAX_PIXELS, MAX_SAMPLES};
 use roughcast_scene::{Camera, CameraError, Light, Plane, Scene, Shape, Sphere, Torus, View, default_light};
 
 use crate::args::{one_of, positive, specular_power};
-use crate::method::TextureOptions;
 use crate::{UsageError, usage};
 
 /// Headings under which the help lists these options.

@@ -9,10 +9,10 @@ use roughcast::texture::{
     Base, BaseRole, Layout, Part, Texture, TextureArray, TextureInfo, decode, layers_of,
 };
 use roughcast::{Image, Samples};
-use roughcast_io::{Limits, Supercompression};
+use roughcast_io::texture_files::{TextureFiles, WriteFilesError, check_destination};
+use roughcast_io::{Container, Limits, Stored, Supercompression};
 
-use crate::output::{self, Container, OutputOptions, Stored};
-use crate::{textures, usage};
+use crate::{refusals, textures, usage};
 
 /// Decode a file that `bake` wrote back to float moments, every level.
 ///
@@ -34,21 +34,24 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> Result<ExitCode> {
-    if Container::of(&args.output)? != Container::Exr {
-        return Err(usage(&args.output, "moments are floats, five to a texel: name an .exr file"));
+    match Container::of(&args.output) {
+        Some(Container::Exr) => {}
+        Some(_) => return Err(usage(&args.output, "moments are floats, five to a texel: name an .exr file")),
+        None => return Err(refusals::unknown_extension(&args.output)),
     }
     let info = TextureInfo::new(Layout::Moments, Part::Whole);
-    output::check_destination(&args.output, Container::Exr, &info)?;
+    check_destination(&args.output, Container::Exr, &info).map_err(refusals::of_write_files)?;
     let arrays = textures::read_with_parts(&args.file, &Limits { max_pixels: args.max_pixels })?;
     let array = moments_of(&arrays).with_context(|| args.file.display().to_string())?;
-    let options = OutputOptions {
-        supercompression: Supercompression::None,
-        wrap: array.info.wrap,
-        inputs: &[&args.file],
-        sidecar: None,
-    };
-    output::write(&args.output, &[Stored::Texels(array)], options)?;
+    write(args, &Stored::Texels(array)).map_err(refusals::of_write_files)?;
     Ok(ExitCode::SUCCESS)
+}
+
+fn write(args: &Args, moments: &Stored) -> Result<(), WriteFilesError> {
+    let files = TextureFiles::new(&args.output, Supercompression::None)?;
+    let mut files = files.protecting([args.file.clone()]);
+    files.add(moments)?;
+    files.commit().map(drop)
 }
 
 /// The same moments in the layout of that name, with what is known of the base.

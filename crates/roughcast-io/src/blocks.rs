@@ -3,6 +3,9 @@
 //! Blocks of 4 x 4 texels take 8 (BC4) or 16 bytes (BC5, BC7). They are lossy: [`decompress`] gives what a graphics
 //! processor will see, so that the error added can be measured and reported.
 
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use block_compression::encode::compress_rgba8;
 use block_compression::{BC7Settings, CompressionVariant};
 use rayon::prelude::*;
@@ -101,6 +104,10 @@ pub struct BlockLayer {
     pub levels: Vec<Vec<u8>>,
 }
 
+/// Hears which fraction of some work is done, 0 ..= 1, from any thread, and may stop it. Fractions of work that threads share may come
+/// out of order.
+pub type FractionDone<'a> = dyn Fn(f32) -> ControlFlow<()> + Sync + 'a;
+
 /// Compresses 8-bit textures. Sizes that are no multiple of 4 are filled up by repeating the edge.
 ///
 /// Blocks do not depend on each other, so the result is the same for any number of threads. BC4 and BC5 take well under a
@@ -109,17 +116,54 @@ pub struct BlockLayer {
 /// # Errors
 /// [`WriteError::Unsupported`] where the samples are not 8-bit or the number of channels is not that of the format.
 pub fn compress(array: &TextureArray, format: BlockFormat) -> Result<BlockArray, WriteError> {
-    let (width, height) = array.size();
-    let layers = array.layers.iter().map(|layer| {
-        let levels = layer.levels.iter().map(|level| compress_level(level, format));
-        let levels = levels.collect::<Result<_, _>>()?;
-        Ok(BlockLayer { name: layer.name, channels: layer.channels.clone(), levels })
-    });
-    let layers = layers.collect::<Result<_, WriteError>>()?;
-    Ok(BlockArray { info: array.info, format, width, height, layers })
+    match compress_watched(array, format, &|_| ControlFlow::Continue(()))? {
+        ControlFlow::Continue(blocks) => Ok(blocks),
+        ControlFlow::Break(()) => unreachable!("nobody stops it"),
+    }
 }
 
-fn compress_level(level: &Image, format: BlockFormat) -> Result<Vec<u8>, WriteError> {
+/// As [`compress`], but `watch` hears of each row of blocks and may stop the work: then the result is `Break`.
+///
+/// # Errors
+/// As [`compress`].
+pub fn compress_watched(
+    array: &TextureArray,
+    format: BlockFormat,
+    watch: &FractionDone<'_>,
+) -> Result<ControlFlow<(), BlockArray>, WriteError> {
+    let (width, height) = array.size();
+    let levels = || array.layers.iter().flat_map(|layer| &layer.levels);
+    let all: usize = levels().map(|level| block_side(level.width()) * block_side(level.height())).sum();
+    let done = AtomicUsize::new(0);
+    let blocks_done = |blocks: usize| {
+        let so_far = done.fetch_add(blocks, Ordering::Relaxed) + blocks;
+        watch(so_far as f32 / all as f32)
+    };
+    let mut layers = Vec::with_capacity(array.layers.len());
+    for layer in &array.layers {
+        let mut levels = Vec::with_capacity(layer.levels.len());
+        for level in &layer.levels {
+            match compress_level(level, format, &blocks_done)? {
+                ControlFlow::Continue(blocks) => levels.push(blocks),
+                ControlFlow::Break(()) => return Ok(ControlFlow::Break(())),
+            }
+        }
+        layers.push(BlockLayer { name: layer.name, channels: layer.channels.clone(), levels });
+    }
+    Ok(ControlFlow::Continue(BlockArray { info: array.info, format, width, height, layers }))
+}
+
+/// Blocks along a side of so many texels.
+fn block_side(texels: usize) -> usize {
+    texels.div_ceil(4)
+}
+
+/// `blocks_done` hears how many more blocks are done.
+fn compress_level(
+    level: &Image,
+    format: BlockFormat,
+    blocks_done: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
+) -> Result<ControlFlow<(), Vec<u8>>, WriteError> {
     let unsupported = |what| {
         let mend = "quantise to 8 bits, with 1 channel for BC4, 2 for BC5, 4 for BC7";
         WriteError::Unsupported { container: format.name(), what, mend }
@@ -131,14 +175,19 @@ fn compress_level(level: &Image, format: BlockFormat) -> Result<Vec<u8>, WriteEr
         return Err(unsupported(format!("{} channels", level.channels())));
     }
     let block_bytes = format.code().block_bytes();
-    let mut blocks = vec![0; level.width().div_ceil(4) * level.height().div_ceil(4) * block_bytes];
-    blocks.par_chunks_mut(level.width().div_ceil(4) * block_bytes).enumerate().for_each(|(row, blocks)| {
+    let columns = block_side(level.width());
+    let mut blocks = vec![0; columns * block_side(level.height()) * block_bytes];
+    let stopped = blocks.par_chunks_mut(columns * block_bytes).enumerate().try_for_each(|(row, blocks)| {
         for (column, block) in blocks.chunks_exact_mut(block_bytes).enumerate() {
             let rgba = rgba_of_block(level, texels, column, row);
             compress_rgba8(format.variant(&rgba), &rgba, block, 4, 4, 16);
         }
+        blocks_done(columns)
     });
-    Ok(blocks)
+    Ok(match stopped {
+        ControlFlow::Continue(()) => ControlFlow::Continue(blocks),
+        ControlFlow::Break(()) => ControlFlow::Break(()),
+    })
 }
 
 /// The 4 x 4 texels of a block as RGBA; beyond the edge the last texel is repeated.

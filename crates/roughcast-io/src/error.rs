@@ -2,6 +2,7 @@
 
 /// Why bytes do not make an image or a texture, with the mend where there is one.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReadError {
     /// The file could not be opened or read.
     #[error(transparent)]
@@ -31,7 +32,7 @@ pub enum ReadError {
         fault: String,
     },
     /// More pixels than the caller allows.
-    #[error("{width}x{height} pixels are more than the limit of {max_pixels}: raise it with --max-pixels")]
+    #[error("{width}x{height} pixels are more than the limit of {max_pixels}")]
     TooLarge {
         /// Pixels in a row, as the file states.
         width: u64,
@@ -65,6 +66,7 @@ pub enum ReadError {
 
 /// Why a texture could not be written.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum WriteError {
     /// The disk says no.
     #[error(transparent)]

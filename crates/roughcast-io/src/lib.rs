@@ -5,7 +5,10 @@
 //! - [`ktx2`], [`dds`] and [`exr`] write a [`roughcast::texture::TextureArray`] with its levels, and read back what they
 //!   wrote; [`png_levels`] writes one level as a PNG;
 //! - [`picture`] writes rendered pictures as PNG, animated PNG and EXR;
-//! - [`compress`] makes BC4, BC5 and BC7 blocks, and [`decompress`] shows what a graphics processor will see of them;
+//! - [`compress`] makes BC4, BC5 and BC7 blocks, [`decompress`] shows what a graphics processor will see of them, and
+//!   [`stored_of`] also measures what they cost;
+//! - [`texture_files`] writes all files of a layout or none, and finds those that belong together; [`Container`] says what
+//!   each format can hold;
 //! - `mesh`, with the feature of that name (on by default), reads Wavefront OBJ and glTF;
 //! - [`AtomicFile`] and [`AtomicSet`] let files appear whole or not at all.
 //!
@@ -42,6 +45,7 @@
 
 mod atomic;
 mod blocks;
+mod container;
 pub mod dds;
 mod error;
 pub mod exr;
@@ -55,14 +59,18 @@ mod payload;
 pub mod picture;
 pub mod png_levels;
 mod read;
+mod stored;
 mod texels;
+pub mod texture_files;
 
 pub use atomic::{AtomicFile, AtomicSet};
-pub use blocks::{BlockArray, BlockFormat, BlockLayer, compress, decompress};
+pub use blocks::{BlockArray, BlockFormat, BlockLayer, FractionDone, compress, compress_watched, decompress};
+pub use container::{Container, ContainerError};
 pub use error::{ReadError, WriteError};
 pub use file_info::{FileInfo, LengthUnit, Limits, NormalEncoding, PixelSize, ReadOptions, ValueRange};
 pub use payload::{Payload, Supercompression};
-pub use read::{read_image, read_image_file};
+pub use read::{read_image, read_image_file, read_image_of};
+pub use stored::{CompressError, CompressionError, Stored, stored_of};
 
 use roughcast::Image;
 

@@ -2,7 +2,8 @@
 //!
 //! The words are those of ambientCG (`_NormalGL`), Poly Haven (`_nor_gl_1k`), Quixel (`_Albedo`), Unreal (`T_Rock_N`), Unity
 //! (`_MetallicGlossMap`), glTF and Blender (`baseColor`) and Substance (`Normal_OpenGL`). Case, separators and the resolution do not
-//! count; the last word decides, so `gloss_paint_normal.png` is a normal map.
+//! count; the last word decides, so `gloss_paint_normal.png` is a normal map. A name that ends in several words of which one says
+//! normals, such as `ground_nrm_rgh.png`, is a normal map that contains the others in its further channels.
 
 use roughcast::Green;
 
@@ -115,17 +116,40 @@ pub struct NamedRole {
 /// What the name of a file, without its extension, says; `None` where it says nothing.
 pub fn role_of(stem: &str) -> Option<NamedRole> {
     let words = words_of(stem);
-    for count in (1..=MAX_WORDS.min(words.len())).rev() {
-        let (before, last) = words.split_at(words.len() - count);
-        let joined = last.concat();
-        let found = WORDS.iter().find(|(names, _)| names.contains(&joined.as_str()));
-        if let Some((_, role)) = found {
-            return Some(NamedRole { role: *role, material: before.concat(), by_letter: false });
-        }
+    if let Some((role, before)) = ending_role(&words) {
+        let (role, before) = normals_among(role, before).unwrap_or((role, before));
+        return Some(NamedRole { role, material: before.concat(), by_letter: false });
     }
     let (last, before) = words.split_last()?;
     let (_, role) = LETTERS.iter().find(|(letter, _)| letter == last)?;
     (!before.is_empty()).then(|| NamedRole { role: *role, material: before.concat(), by_letter: true })
+}
+
+/// The role that the last words say, the longest name first, and the words before it.
+fn ending_role(words: &[String]) -> Option<(MaterialRole, &[String])> {
+    (1..=MAX_WORDS.min(words.len())).rev().find_map(|count| {
+        let (before, last) = words.split_at(words.len() - count);
+        let joined = last.concat();
+        let (_, role) = WORDS.iter().find(|(names, _)| names.contains(&joined.as_str()))?;
+        Some((*role, before))
+    })
+}
+
+/// The normals that a picture of several roles contains: `nrm_rgh` is normals in RGB and roughness in alpha. A mask or preview of
+/// normals is none.
+fn normals_among(last: MaterialRole, mut before: &[String]) -> Option<(MaterialRole, &[String])> {
+    if last == HELPER {
+        return None;
+    }
+    let mut normals = None;
+    while let Some((role, words)) = ending_role(before) {
+        before = words;
+        if matches!(role, MaterialRole::Normal(_)) {
+            normals = Some(role);
+        }
+    }
+    // All words of roles go, so that the material is the same as that of its other files.
+    normals.map(|role| (role, before))
 }
 
 /// What the names of files that lie side by side say: a single letter counts where another file of the same material says what it
@@ -206,6 +230,23 @@ mod tests {
         ] {
             assert_eq!(role(stem), Some(expected), "{stem}");
         }
+    }
+
+    #[test]
+    fn a_picture_of_several_roles_is_a_normal_map_where_it_contains_normals() {
+        for (stem, expected) in [
+            ("ground037_nrm_rgh", NORMAL),
+            ("ground037_rgh_nrm", NORMAL),
+            ("wall_nor_gl_rough_ao_2k", UP),
+            ("wall_normal_height", NORMAL),
+            ("wall_ao_rough", ROUGHNESS),
+            ("wall_normal_preview", HELPER),
+            ("normal_wall_rough", ROUGHNESS),
+        ] {
+            assert_eq!(role(stem), Some(expected), "{stem}");
+        }
+        let material = role_of("ground037_nrm_rgh").map(|named| named.material);
+        assert_eq!(material, role_of("ground037_disp").map(|named| named.material));
     }
 
     #[test]

@@ -28,7 +28,7 @@ pub fn write_level(
         Samples::U8(_) => png::BitDepth::Eight,
         Samples::U16(_) => png::BitDepth::Sixteen,
         Samples::F16(_) | Samples::F32(_) => {
-            return Err(refusal("float samples".to_owned(), "bake with --bits 8 or --bits 16, or write EXR"));
+            return Err(refusal("float samples".to_owned(), "store 8 or 16 bits, or write EXR"));
         }
     };
     let color = match image.channels() {
@@ -187,7 +187,7 @@ mod tests {
     fn what_png_cannot_hold_is_refused_with_the_mend() {
         let floats = Image::new(1, 1, 1, Samples::F16(vec![f16::ONE])).expect("it fits");
         let message = written(&floats, &BTreeMap::new()).expect_err("floats").to_string();
-        assert!(message.contains("--bits 16"), "{message}");
+        assert!(message.contains("16 bits"), "{message}");
         let five = Image::zeros(1, 1, 5, roughcast::SampleType::U8);
         let message = written(&five, &BTreeMap::new()).expect_err("five channels").to_string();
         assert!(message.contains("5 channels"), "{message}");

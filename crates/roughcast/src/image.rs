@@ -1,4 +1,4 @@
-//! Images in memory: interleaved samples in the type in which they are stored.
+//! Images in memory: interleaved samples in the type in which they are stored, owned or borrowed.
 
 use half::f16;
 
@@ -55,6 +55,16 @@ impl Samples {
             SampleType::U16 => Samples::U16(vec![0; len]),
             SampleType::F16 => Samples::F16(vec![f16::ZERO; len]),
             SampleType::F32 => Samples::F32(vec![0.0; len]),
+        }
+    }
+
+    /// The same samples, borrowed.
+    pub fn view(&self) -> SamplesView<'_> {
+        match self {
+            Samples::U8(v) => SamplesView::U8(v),
+            Samples::U16(v) => SamplesView::U16(v),
+            Samples::F16(v) => SamplesView::F16(v),
+            Samples::F32(v) => SamplesView::F32(v),
         }
     }
 
@@ -140,15 +150,7 @@ impl Image {
     /// # Errors
     /// [`ImageError`] where a side is zero or the number of samples is not `width * height * channels`.
     pub fn new(width: usize, height: usize, channels: usize, samples: Samples) -> Result<Self, ImageError> {
-        let expected =
-            width.checked_mul(height).and_then(|pixels| pixels.checked_mul(channels)).unwrap_or(usize::MAX);
-        if expected == 0 {
-            return Err(ImageError::Empty { width, height, channels });
-        }
-        if samples.len() != expected {
-            let got = samples.len();
-            return Err(ImageError::Length { width, height, channels, expected, got });
-        }
+        check_length(width, height, channels, samples.len())?;
         Ok(Self { width, height, channels, samples })
     }
 
@@ -181,6 +183,16 @@ impl Image {
         &self.samples
     }
 
+    /// The same image, borrowed.
+    pub fn view(&self) -> ImageView<'_> {
+        ImageView {
+            width: self.width,
+            height: self.height,
+            channels: self.channels,
+            samples: self.samples.view(),
+        }
+    }
+
     /// The samples, to write to. Their number cannot change through a slice pattern; replacing the vector by one of
     /// another length is a mistake that the next use of the image shows as a panic.
     pub fn samples_mut(&mut self) -> &mut Samples {
@@ -195,5 +207,199 @@ impl Image {
     /// One sample as a float: unsigned types as 0 ..= 1, floats as they are.
     pub fn get(&self, x: usize, y: usize, channel: usize) -> f32 {
         self.samples.get((y * self.width + x) * self.channels + channel)
+    }
+}
+
+/// Whether so many samples are rows of an image of this size.
+fn check_length(width: usize, height: usize, channels: usize, got: usize) -> Result<(), ImageError> {
+    let expected =
+        width.checked_mul(height).and_then(|pixels| pixels.checked_mul(channels)).unwrap_or(usize::MAX);
+    if expected == 0 {
+        return Err(ImageError::Empty { width, height, channels });
+    }
+    if got != expected {
+        return Err(ImageError::Length { width, height, channels, expected, got });
+    }
+    Ok(())
+}
+
+/// The samples of an [`ImageView`], interleaved, row by row from the top.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SamplesView<'a> {
+    /// 8-bit unsigned normalised: 0 ..= 255 stands for 0 ..= 1.
+    U8(&'a [u8]),
+    /// 16-bit unsigned normalised: 0 ..= 65535 stands for 0 ..= 1.
+    U16(&'a [u16]),
+    /// Half float, the value itself.
+    F16(&'a [f16]),
+    /// Single float, the value itself.
+    F32(&'a [f32]),
+}
+
+impl SamplesView<'_> {
+    /// How they are stored.
+    pub fn sample_type(self) -> SampleType {
+        match self {
+            SamplesView::U8(_) => SampleType::U8,
+            SamplesView::U16(_) => SampleType::U16,
+            SamplesView::F16(_) => SampleType::F16,
+            SamplesView::F32(_) => SampleType::F32,
+        }
+    }
+
+    /// Number of samples (not pixels).
+    pub fn len(self) -> usize {
+        match self {
+            SamplesView::U8(v) => v.len(),
+            SamplesView::U16(v) => v.len(),
+            SamplesView::F16(v) => v.len(),
+            SamplesView::F32(v) => v.len(),
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(self) -> bool {
+        self.len() == 0
+    }
+
+    /// Sample `index` as a float: unsigned types as 0 ..= 1, floats as they are.
+    ///
+    /// # Panics
+    /// Where there is no such sample.
+    pub fn get(self, index: usize) -> f32 {
+        match self {
+            SamplesView::U8(v) => f32::from(v[index]) / 255.0,
+            SamplesView::U16(v) => f32::from(v[index]) / 65535.0,
+            SamplesView::F16(v) => v[index].to_f32(),
+            SamplesView::F32(v) => v[index],
+        }
+    }
+
+    /// A copy that owns its samples.
+    pub fn to_samples(self) -> Samples {
+        match self {
+            SamplesView::U8(v) => Samples::U8(v.to_vec()),
+            SamplesView::U16(v) => Samples::U16(v.to_vec()),
+            SamplesView::F16(v) => Samples::F16(v.to_vec()),
+            SamplesView::F32(v) => Samples::F32(v.to_vec()),
+        }
+    }
+}
+
+/// An [`Image`] whose samples belong to someone else: an array of NumPy, the memory of a browser, another library's picture. Whatever
+/// reads images takes views, and `&Image` is one by [`Into`].
+///
+/// Rows lie one after the other, without gaps.
+///
+/// ```
+/// use roughcast::{BakeOptions, ImageView, SamplesView, SourceOptions, bake};
+///
+/// // Normals that point straight up, in someone else's memory.
+/// let pixels: [u8; 12] = [128, 128, 255].repeat(4).try_into().unwrap();
+/// let map = ImageView::new(2, 2, 3, SamplesView::U8(&pixels))?;
+/// let baked = bake(map, &SourceOptions::default(), None, &BakeOptions::default())?;
+/// assert_eq!(baked.report.levels.len(), 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImageView<'a> {
+    width: usize,
+    height: usize,
+    channels: usize,
+    samples: SamplesView<'a>,
+}
+
+impl<'a> ImageView<'a> {
+    /// Sees an image in samples, in rows from the top.
+    ///
+    /// # Errors
+    /// [`ImageError`] where a side is zero or the number of samples is not `width * height * channels`.
+    pub fn new(
+        width: usize,
+        height: usize,
+        channels: usize,
+        samples: SamplesView<'a>,
+    ) -> Result<Self, ImageError> {
+        check_length(width, height, channels, samples.len())?;
+        Ok(Self { width, height, channels, samples })
+    }
+
+    /// Pixels in a row.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// Samples in a pixel.
+    pub fn channels(&self) -> usize {
+        self.channels
+    }
+
+    /// The samples.
+    pub fn samples(&self) -> SamplesView<'a> {
+        self.samples
+    }
+
+    /// One sample as a float: unsigned types as 0 ..= 1, floats as they are.
+    ///
+    /// # Panics
+    /// Where there is no such sample.
+    pub fn get(&self, x: usize, y: usize, channel: usize) -> f32 {
+        self.samples.get((y * self.width + x) * self.channels + channel)
+    }
+
+    /// A copy that owns its samples.
+    pub fn to_image(&self) -> Image {
+        let Self { width, height, channels, samples } = *self;
+        Image { width, height, channels, samples: samples.to_samples() }
+    }
+}
+
+impl<'a> From<&'a Image> for ImageView<'a> {
+    fn from(image: &'a Image) -> Self {
+        image.view()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_view_has_the_values_of_its_image_and_copies_nothing() {
+        let types = [SampleType::U8, SampleType::U16, SampleType::F16, SampleType::F32];
+        for sample_type in types {
+            let mut image = Image::zeros(3, 2, 2, sample_type);
+            match image.samples_mut() {
+                Samples::U8(v) => v[9] = 51,
+                Samples::U16(v) => v[9] = 13107,
+                Samples::F16(v) => v[9] = f16::from_f32(0.2),
+                Samples::F32(v) => v[9] = 0.2,
+            }
+            let view = image.view();
+            assert_eq!((view.width(), view.height(), view.channels()), (3, 2, 2));
+            assert_eq!((view.samples().len(), view.samples().sample_type()), (12, sample_type));
+            assert_eq!(view.get(1, 1, 1), image.get(1, 1, 1));
+            assert!(view.get(1, 1, 1) > 0.19);
+            assert_eq!(view.to_image(), image);
+        }
+        let image = Image::zeros(3, 2, 2, SampleType::U8);
+        let (Samples::U8(owned), SamplesView::U8(seen)) = (image.samples(), image.view().samples()) else {
+            panic!("8 bits")
+        };
+        assert!(std::ptr::eq(owned.as_slice(), seen));
+    }
+
+    #[test]
+    fn samples_of_another_number_make_no_view() {
+        let samples = SamplesView::U8(&[0; 11]);
+        let error = ImageView::new(3, 2, 2, samples).expect_err("one is missing");
+        assert_eq!(error, ImageError::Length { width: 3, height: 2, channels: 2, expected: 12, got: 11 });
+        assert!(matches!(ImageView::new(0, 2, 2, samples), Err(ImageError::Empty { .. })));
+        assert!(ImageView::new(usize::MAX, 2, 2, samples).is_err());
     }
 }

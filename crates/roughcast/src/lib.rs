@@ -87,7 +87,7 @@ pub use bake::{
 };
 pub use convention::{Green, HeightSense, Kind, NormalChannels, NormalRange, Red, Wrap};
 pub use distribution::{Distribution, MAX_GAUSSIANS, WeightedGaussian};
-pub use image::{Image, ImageError, SampleType, Samples};
+pub use image::{Image, ImageError, ImageView, SampleType, Samples, SamplesView};
 pub use levels::level_sizes;
 pub use moments::{Covariance, Moments, SlopeMatrix};
 pub use named::{Named, UnknownName};

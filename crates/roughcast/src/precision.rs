@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::bake::{BakeError, Baked, bake};
 use crate::options::{BakeOptions, MaxSlope, SourceOptions};
 use crate::texture::{self, Bounds, Layout, Part, Peaks, TextureArray, TextureInfo};
-use crate::{Image, Moments, SampleType};
+use crate::{ImageView, Moments, SampleType};
 
 /// What one storage type does to a map stored as LEAN.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,7 +43,11 @@ impl Precision {
 ///
 /// # Errors
 /// As [`bake`], for any of the types.
-pub fn measure(image: &Image, source: &SourceOptions) -> Result<Vec<Precision>, BakeError> {
+pub fn measure<'a>(
+    image: impl Into<ImageView<'a>>,
+    source: &SourceOptions,
+) -> Result<Vec<Precision>, BakeError> {
+    let image = image.into();
     let mut references: Vec<(f32, Vec<TextureArray>)> = Vec::new();
     let mut measured = Vec::new();
     for bits in SampleType::ALL {
@@ -60,7 +64,11 @@ pub fn measure(image: &Image, source: &SourceOptions) -> Result<Vec<Precision>, 
 }
 
 /// The pyramid's own covariance, of which nothing has been subtracted: a standard deviation's square is exact to f32.
-fn reference(image: &Image, source: &SourceOptions, max_slope: f32) -> Result<Vec<TextureArray>, BakeError> {
+fn reference(
+    image: ImageView<'_>,
+    source: &SourceOptions,
+    max_slope: f32,
+) -> Result<Vec<TextureArray>, BakeError> {
     let source = SourceOptions { max_slope: MaxSlope::Limit(max_slope), ..*source };
     let options = BakeOptions { layout: Layout::Schilling, bits: SampleType::F32, ..BakeOptions::default() };
     Ok(bake(image, &source, None, &options)?.arrays)

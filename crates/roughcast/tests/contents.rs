@@ -62,7 +62,7 @@ fn a_mapped_base_adds_the_mean_of_its_variance() {
             (&powers, 0, RoughnessStored::SpecularPower),
         ] {
             let wanted = oracle_of(&image, &source, &variances(map, channel, stored));
-            let base = Some(BaseRoughness::Map(RoughnessMap { image: map, channel, stored }));
+            let base = Some(BaseRoughness::Map(RoughnessMap { image: map.view(), channel, stored }));
             let folded = BakeOptions { base: Base::Baked, ..float_moments(PyramidFilter::Box) };
             let got = baked_with(&image, &source, base, &folded);
             // Gloss is one minus a roughness: that difference's rounding, four times over.
@@ -107,7 +107,7 @@ fn toksvigs_factor_follows_from_the_averaged_normal() {
     for (width, height) in SIZES {
         let (image, source) = maps::plain_normal_map(width, height, 36);
         let material = material_map(width, height);
-        let map = RoughnessMap { image: &material, channel: 1, stored: RoughnessStored::Perceptual };
+        let map = RoughnessMap { image: material.view(), channel: 1, stored: RoughnessStored::Perceptual };
         let mapped = variances(&material, 1, map.stored);
         for (base, variance) in [
             (BaseRoughness::Variance(0.01), vec![f64::from(0.01_f32); width * height]),

@@ -1,10 +1,13 @@
-//! The same input gives the same textures and the same report for any number of threads.
+//! The same input gives the same textures and the same report for any number of threads, and whoever owns its memory.
 
 mod common;
 
 use common::{baked_with, maps, options};
-use roughcast::texture::{Base, Layout};
-use roughcast::{BakeOptions, Baked, BaseRoughness, Image, PyramidFilter, SampleType, SourceOptions};
+use roughcast::texture::{Base, Layout, RoughnessStored};
+use roughcast::{
+    BakeOptions, Baked, BaseRoughness, Image, ImageView, PyramidFilter, RoughnessMap, SampleType, Samples,
+    SamplesView, SourceOptions, bake,
+};
 
 fn with_threads(threads: usize, work: impl FnOnce() -> Baked + Send) -> Baked {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
@@ -60,4 +63,33 @@ fn threads_make_no_difference_to_any_layout() {
         };
         check(&normals, &source, &BakeOptions { base: Base::Baked, ..options(*layout, bits) });
     }
+}
+
+/// A map and a roughness map that are parts of one larger array, as another program may have them.
+#[test]
+fn borrowed_memory_gives_the_same_as_images() {
+    let (width, height) = (48, 33);
+    let (normals, source) = maps::plain_normal_map(width, height, 65);
+    let roughness: Vec<f32> = (0..width * height).map(|i| (i % 97) as f32 / 97.0).collect();
+    let options = BakeOptions { base: Base::Baked, ..options(Layout::Moments, SampleType::F32) };
+    let (channel, stored) = (0, RoughnessStored::Alpha);
+    let bake_with = |map: ImageView<'_>, image: ImageView<'_>| {
+        let base = BaseRoughness::Map(RoughnessMap { image, channel, stored });
+        let Baked { arrays, report } = bake(map, &source, Some(base), &options).expect("a map");
+        // Not the metadata, where a base that varies is not a number.
+        (arrays.into_iter().map(|array| array.layers).collect::<Vec<_>>(), report)
+    };
+    let owned = Image::new(width, height, 1, Samples::F32(roughness.clone())).expect("whole rows");
+    let expected = bake_with(normals.view(), owned.view());
+
+    let texels: Vec<f32> = (0..normals.samples().len()).map(|i| normals.samples().get(i)).collect();
+    let theirs = [&[7.0][..], &texels, &roughness, &[7.0]].concat();
+    let (map, rest) = theirs[1..].split_at(texels.len());
+    let map = ImageView::new(width, height, 3, SamplesView::F32(map)).expect("whole rows");
+    let view =
+        ImageView::new(width, height, 1, SamplesView::F32(&rest[..roughness.len()])).expect("whole rows");
+    let borrowed = bake_with(map, view);
+    let of_floats = bake_with(map.to_image().view(), owned.view());
+    assert!(borrowed == of_floats);
+    assert!(bake_with(normals.view(), view) == expected);
 }

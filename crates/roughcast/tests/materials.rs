@@ -53,7 +53,7 @@ fn a_materials_roughness_is_that_of_base_and_bumps() {
     for (width, height) in SIZES {
         let (image, source) = gentle_map(width, height);
         let material = material_map(width, height);
-        let map = RoughnessMap { image: &material, channel: 1, stored: RoughnessStored::Perceptual };
+        let map = RoughnessMap { image: material.view(), channel: 1, stored: RoughnessStored::Perceptual };
         let mapped = variances(&material, 1, map.stored);
         for (base, variance) in [
             (None, vec![0.0; width * height]),
@@ -172,8 +172,8 @@ fn a_packed_texture_keeps_occlusion_and_metalness() {
         let file = part(&arrays, Part::OcclusionRoughnessMetallic).clone();
         ["R", "G", "B", "A"].map(|name| stored(layer(&file, "orm"), name))
     };
-    let alone = baked_with(&image, &source, Some(map(&material, 1)), &floats()).arrays;
-    let [occlusion, roughness, metalness, one] = channels(Some(map(&material, 1)));
+    let alone = baked_with(&image, &source, Some(map(material.view(), 1)), &floats()).arrays;
+    let [occlusion, roughness, metalness, one] = channels(Some(map(material.view(), 1)));
     assert_eq!(roughness, stored(&part(&alone, Part::Roughness).layers[0], "Y"));
     for (got, channel) in [(occlusion, 0), (metalness, 2)] {
         let wanted = pyramid_oracle::pyramid(channel_of(&material, channel), PyramidFilter::Box, source.wrap);
@@ -182,7 +182,9 @@ fn a_packed_texture_keeps_occlusion_and_metalness() {
     assert!(one.iter().all(|plane| plane.values.iter().all(|v| *v == 1.0)));
     // Where nothing says otherwise nothing is occluded and nothing is metal.
     let grey = maps::image(53, 37, 1, maps::samples(&maps::heights(53, 37, 35), SampleType::U8));
-    for base in [None, Some(BaseRoughness::Variance(0.1)), Some(map(&grey, 0)), Some(map(&material, 0))] {
+    for base in
+        [None, Some(BaseRoughness::Variance(0.1)), Some(map(grey.view(), 0)), Some(map(material.view(), 0))]
+    {
         let [occlusion, _, metalness, _] = channels(base);
         assert!(occlusion.iter().all(|plane| plane.values.iter().all(|v| *v == 1.0)), "{base:?}");
         assert!(metalness.iter().all(|plane| plane.values.iter().all(|v| *v == 0.0)), "{base:?}");
@@ -359,7 +361,7 @@ fn toksvigs_variance_comes_back_from_its_parts_whatever_the_base() {
     let (image, source) = gentle_map(32, 32);
     let material = material_map(32, 32);
     let varies = BaseRoughness::Map(RoughnessMap {
-        image: &material,
+        image: material.view(),
         channel: 1,
         stored: RoughnessStored::Perceptual,
     });

@@ -139,7 +139,7 @@ fn a_fixed_scale_clamps_slopes_and_counts_them() {
     let (image, source) = maps::slope_map(53, 37, &maps::slopes(53, 37, 54));
     let powers: Vec<f32> = (0..53 * 37).map(|i| if i == 700 { 10.0 } else { 400.0 }).collect();
     let powers = maps::image(53, 37, 1, Samples::F32(powers));
-    let map = RoughnessMap { image: &powers, channel: 0, stored: RoughnessStored::SpecularPower };
+    let map = RoughnessMap { image: powers.view(), channel: 0, stored: RoughnessStored::SpecularPower };
     let map_variances: Vec<f64> =
         (0..53 * 37).map(|i| if i == 700 { f64::from(0.1_f32) } else { f64::from(0.0025_f32) }).collect();
     let scale = 0.5_f32;
@@ -386,12 +386,12 @@ fn combinations_that_make_no_sense_are_refused() {
             "larger scale",
             &image,
             source,
-            map(&three_channels, 1),
+            map(three_channels.view(), 1),
             BakeOptions { base: Base::Baked, ..fixed(0.02) },
         ),
         ("finite and not negative", &image, source, Some(BaseRoughness::Variance(-1.0)), plain),
         ("finite and not negative", &image, source, Some(BaseRoughness::Variance(f32::NAN)), plain),
-        ("4 channels or more", &image, source, map(&three_channels, 3), plain),
+        ("4 channels or more", &image, source, map(three_channels.view(), 3), plain),
         ("3 channels or more", &two_channels, source, None, plain),
         (
             "4 channels or more",

@@ -7,6 +7,7 @@ use anyhow::Result;
 use indicatif::ProgressBar;
 use roughcast::shading::Shading;
 use roughcast_io::picture::Srgb8Picture;
+use roughcast_pipeline::bake_for;
 use roughcast_scene::metrics::{DEFAULT_PIXELS_PER_DEGREE, energy_error, flicker, hdr_flip, rmse};
 use roughcast_scene::render::{Method, Truth};
 use roughcast_scene::{
@@ -19,7 +20,6 @@ use super::results::Row;
 use super::subject::Subject;
 use super::without_repeats;
 use crate::display::{exposure_of, shown};
-use crate::method::bake_for;
 use crate::scene_args::{SceneArgs, ShadingArgs, Size};
 
 /// How all maps and views are compared.

@@ -24,7 +24,7 @@ use serde_json::Value;
 use crate::args::{REPORT, SourceArgs, one_of};
 use crate::input::read_map;
 use crate::scene_args::{SHADING, SceneArgs, ShadingArgs, Size, samples, size};
-use crate::{UsageError, progress, say, say_json, usage, warn};
+use crate::{UsageError, findings, progress, say, say_json, usage};
 use distribution::Distribution;
 use measure::{Comparison, Settings};
 use subject::Subject;
@@ -105,7 +105,7 @@ fn frames(text: &str) -> Result<u32, String> {
 pub fn run(args: &Args) -> Result<ExitCode> {
     args.check()?;
     let map = read_map(&args.map, &args.source)?;
-    map.warnings.iter().for_each(|warning| warn(&args.map, warning));
+    findings::warn_of(&args.map, &map);
     let name = args.map.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let [grooves, wool] = Subject::limits()?;
     let subjects = [Subject::given(name, map, without_repeats(&args.views)), grooves, wool];

@@ -3,10 +3,9 @@
 use anyhow::{Context, Result};
 use roughcast::{Gradient, HeightSense, Image, Kind, SourceOptions};
 use roughcast_io::{ReadOptions, read_image};
+use roughcast_pipeline::Map;
 use roughcast_scene::View;
 use roughcast_scene::pattern::v_grooves;
-
-use crate::input::Map;
 
 /// A map and the views in which it is looked at.
 pub struct Subject {

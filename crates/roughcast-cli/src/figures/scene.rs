@@ -6,14 +6,13 @@ use anyhow::Result;
 use glam::DVec3;
 use roughcast::shading::{LobeOptions, Material, Shading};
 use roughcast::{Lobe, SampleType, Wrap};
+use roughcast_pipeline::{TextureOptions, bake_for};
 use roughcast_scene::pattern::Pattern;
 use roughcast_scene::render::{Method, Truth, unwatched};
 use roughcast_scene::{
     BakedTextures, Camera, Filter, Light, Picture, Reconstruction, Sampler, Scene, Shape, SlopeDetail,
     SlopeMap,
 };
-
-use crate::method::{TextureOptions, bake_for};
 
 /// A dielectric whose highlights stand out: dark, with the reflectance of plastic.
 pub const MATERIAL: Material = Material { albedo: [0.05; 3], ambient: [0.2; 3], specular: [0.04; 3] };

@@ -58,10 +58,7 @@ impl<'a> Plan<'a> {
         let sample_type = first.sample_type();
         if !sample_type.is_float() {
             let bits = 8 * sample_type.bytes();
-            return Err(refusal(
-                format!("{bits}-bit unsigned samples"),
-                "bake with --bits half or --bits float",
-            ));
+            return Err(refusal(format!("{bits}-bit unsigned samples"), "store half or single floats"));
         }
         check_levels(array, sample_type)?;
         let mut channels = Vec::new();

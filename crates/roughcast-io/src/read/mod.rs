@@ -74,9 +74,17 @@ pub fn read_image(
 /// # Errors
 /// [`ReadError::Io`] where the file cannot be read, and all of [`read_image`].
 pub fn read_image_file(path: &Path, options: &ReadOptions) -> Result<Decoded, ReadError> {
-    let bytes = std::fs::read(path)?;
+    read_image_of(path, &std::fs::read(path)?, options)
+}
+
+/// Reads level 0 of layer 0 of an image file of which these are the bytes, by [`read_image`]. Of the path only the extension
+/// counts, where the bytes leave the format open.
+///
+/// # Errors
+/// As [`read_image`].
+pub fn read_image_of(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<Decoded, ReadError> {
     let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
-    read_image(&bytes, extension.as_deref(), options)
+    read_image(bytes, extension.as_deref(), options)
 }
 
 /// What the first bytes, or for TGA the last ones or the extension, say of the format.

@@ -19,7 +19,7 @@ use crate::source::{BaseRoughness, BaseSource, MapSource, RoughnessMap, UseOfBas
 use crate::survey::survey_of_some_rows;
 use crate::texture::rules::Storage;
 use crate::texture::{self, BaseRole, Bounds, Peaks, TextureArray};
-use crate::{Image, SourceCounts};
+use crate::{ImageView, SourceCounts};
 use allocate::{allocate, level_outs};
 use limit::{Ranges, find_ranges};
 use scales::{advice, peaks_of_most, set_scales};
@@ -100,8 +100,8 @@ pub struct Baked {
 ///
 /// # Errors
 /// [`BakeError`] where the map has too few channels, or options do not go together.
-pub fn bake(
-    image: &Image,
+pub fn bake<'a>(
+    image: impl Into<ImageView<'a>>,
     source_options: &SourceOptions,
     roughness: Option<BaseRoughness<'_>>,
     options: &BakeOptions,
@@ -114,9 +114,20 @@ pub fn bake(
 ///
 /// # Errors
 /// As [`bake`].
-pub fn bake_reusing(
+pub fn bake_reusing<'a>(
     textures: Vec<TextureArray>,
-    image: &Image,
+    image: impl Into<ImageView<'a>>,
+    source_options: &SourceOptions,
+    roughness: Option<BaseRoughness<'_>>,
+    options: &BakeOptions,
+) -> Result<Baked, BakeError> {
+    bake_view(textures, image.into(), source_options, roughness, options)
+}
+
+// Not generic, so that it is compiled once.
+fn bake_view(
+    textures: Vec<TextureArray>,
+    image: ImageView<'_>,
     source_options: &SourceOptions,
     roughness: Option<BaseRoughness<'_>>,
     options: &BakeOptions,
@@ -126,7 +137,7 @@ pub fn bake_reusing(
     let roughness_resampled_from = fitted.as_ref().and(roughness).and_then(|roughness| roughness.map_size());
     let roughness = match &fitted {
         Some((image, channel)) => Some(BaseRoughness::Map(RoughnessMap {
-            image,
+            image: image.view(),
             channel: *channel,
             stored: RoughnessStored::AlphaSquared,
         })),

@@ -4,7 +4,7 @@ use super::green::test_green_of_map;
 use super::order::{GreyAndAlpha, guess_grey_and_alpha};
 use super::sample::{SAME, quantile, share, spread, texels};
 use super::vectors::{MAX_MEAN_TILT, MAX_XY_LENGTH, UNIT, decoded, length, mean_xy};
-use crate::{Image, Kind, NormalChannels, NormalRange, Samples, SourceOptions};
+use crate::{ImageView, Kind, NormalChannels, NormalRange, SamplesView, SourceOptions};
 
 /// A blue whose z varies by less than this, but for 1 % at each end, is constant: 8 of 255 steps, since a
 /// JPEG mixes red and green into a constant blue.
@@ -51,7 +51,12 @@ const ALPHA: usize = 3;
 /// slopes of a surface.
 ///
 /// `channels` and `range` as for [`crate::detect::guess_kind`].
-pub fn guess_channels(image: &Image, channels: &[impl AsRef<str>], range: NormalRange) -> NormalChannels {
+pub fn guess_channels<'a>(
+    image: impl Into<ImageView<'a>>,
+    channels: &[impl AsRef<str>],
+    range: NormalRange,
+) -> NormalChannels {
+    let image = image.into();
     if let GreyAndAlpha::Normals(normal_channels) = guess_grey_and_alpha(image, channels, range) {
         return normal_channels;
     }
@@ -69,8 +74,9 @@ pub fn guess_channels(image: &Image, channels: &[impl AsRef<str>], range: Normal
 ///
 /// For images whose file does not say. Integers always have scale and bias; of floats, negative values tell
 /// and, of maps without any, the reading under which more vectors have unit length.
-pub fn guess_range(image: &Image) -> NormalRange {
-    if matches!(image.samples(), Samples::U8(_) | Samples::U16(_)) {
+pub fn guess_range<'a>(image: impl Into<ImageView<'a>>) -> NormalRange {
+    let image = image.into();
+    if matches!(image.samples(), SamplesView::U8(_) | SamplesView::U16(_)) {
         return NormalRange::Unorm;
     }
     if image.channels() < 3 {
@@ -93,12 +99,12 @@ pub fn guess_range(image: &Image) -> NormalRange {
 }
 
 /// Indices of the channels that are no alpha.
-pub(super) fn colour_channels(image: &Image, channels: &[impl AsRef<str>]) -> Vec<usize> {
+pub(super) fn colour_channels(image: ImageView<'_>, channels: &[impl AsRef<str>]) -> Vec<usize> {
     (0..image.channels()).filter(|&i| !is_alpha(channels, i)).collect()
 }
 
 /// Index of the alpha.
-pub(super) fn alpha_of(image: &Image, channels: &[impl AsRef<str>]) -> Option<usize> {
+pub(super) fn alpha_of(image: ImageView<'_>, channels: &[impl AsRef<str>]) -> Option<usize> {
     (0..image.channels()).find(|&i| is_alpha(channels, i))
 }
 
@@ -109,7 +115,7 @@ fn is_alpha(channels: &[impl AsRef<str>], index: usize) -> bool {
 
 /// Whether, of four channels, red and blue are constant while green and alpha vary: x is in alpha and y in
 /// green, which block compression (BC3) stores best.
-pub(super) fn x_is_in_alpha(image: &Image) -> bool {
+pub(super) fn x_is_in_alpha(image: ImageView<'_>) -> bool {
     if image.channels() != ALPHA + 1 {
         return false;
     }
@@ -156,7 +162,11 @@ fn z_from_xy(x: f32, y: f32) -> f32 {
 
 /// Whether two channels, as x and y of normals, are the slopes of a surface, green up or down: what two channels
 /// of an arbitrary picture are not.
-pub(super) fn looks_like_slopes(image: &Image, normal_channels: NormalChannels, range: NormalRange) -> bool {
+pub(super) fn looks_like_slopes(
+    image: ImageView<'_>,
+    normal_channels: NormalChannels,
+    range: NormalRange,
+) -> bool {
     let options = SourceOptions { kind: Kind::Normal, range, normal_channels, ..SourceOptions::default() };
     test_green_of_map(image, &options).is_some_and(|test| test.is_large())
 }

@@ -14,7 +14,7 @@
 //! wrong, 5 undecided. (One large correlation alone, as the test was before, leaves 7, 15 and 13 undecided.) Of 519 pairs of the
 //! slopes along x of one map with those along y of another, which have no direction, none is decided.
 
-use crate::Image;
+use crate::ImageView;
 use crate::options::SourceOptions;
 use crate::row::{Row, RowSource, SourceScratch};
 use crate::source::{MapSource, resized};
@@ -144,7 +144,8 @@ const WINDOW: usize = 1024;
 /// Tests a normal map, read with these options, by the curl of its slopes: the whole of it, or the middle where it is large.
 ///
 /// `None` as for [`test_green`], and where the options do not fit the map.
-pub fn test_green_of_map(image: &Image, options: &SourceOptions) -> Option<GreenTest> {
+pub fn test_green_of_map<'a>(image: impl Into<ImageView<'a>>, options: &SourceOptions) -> Option<GreenTest> {
+    let image = image.into();
     let (width, height) = (image.width().min(WINDOW), image.height().min(WINDOW));
     let origin = ((image.width() - width) / 2, (image.height() - height) / 2);
     curl_of_scales(slopes_of_map(image, options, origin, (width, height))?)
@@ -154,12 +155,13 @@ pub fn test_green_of_map(image: &Image, options: &SourceOptions) -> Option<Green
 ///
 /// Heights are channel 0; white may be high or deep, since the slopes along x tell. The height map may have another size, if
 /// its aspect ratio is the same. `None` where the two do not belong together, or there is too little to judge by.
-pub fn test_green_against_height(
-    image: &Image,
+pub fn test_green_against_height<'a, 'b>(
+    image: impl Into<ImageView<'a>>,
     options: &SourceOptions,
-    heights: &Image,
+    heights: impl Into<ImageView<'b>>,
 ) -> Option<GreenTest> {
-    let aspect = |image: &Image| image.width() as f64 / image.height() as f64;
+    let (image, heights) = (image.into(), heights.into());
+    let aspect = |image: ImageView<'_>| image.width() as f64 / image.height() as f64;
     if (aspect(image) / aspect(heights) - 1.0).abs() > ASPECT_TOLERANCE {
         return None;
     }
@@ -184,7 +186,7 @@ pub fn test_green_against_height(
 
 /// The slopes of a part of a map.
 fn slopes_of_map(
-    image: &Image,
+    image: ImageView<'_>,
     options: &SourceOptions,
     (left, top): (usize, usize),
     (width, height): (usize, usize),

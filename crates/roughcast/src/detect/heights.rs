@@ -1,6 +1,6 @@
 //! Whether the heights of a map are parts of a full scale or in some unit of length.
 
-use crate::Image;
+use crate::ImageView;
 
 /// How far a resampling filter may overshoot a range of 0 ..= 1: Lanczos by 0.07 to 0.09 at a step.
 const OVERSHOOT: f32 = 0.1;
@@ -28,7 +28,8 @@ impl HeightRange {
 }
 
 /// The range of the first channel of an image, which is a height map's height. `None` where no value is finite.
-pub fn height_range(image: &Image) -> Option<HeightRange> {
+pub fn height_range<'a>(image: impl Into<ImageView<'a>>) -> Option<HeightRange> {
+    let image = image.into();
     let samples = image.samples();
     let (mut min, mut max) = (f32::INFINITY, f32::NEG_INFINITY);
     let (mut outside, mut count) = (0u64, 0u64);
@@ -52,7 +53,7 @@ pub fn height_scale_for_units(pixel_width: f64, width: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Samples;
+    use crate::{Image, Samples};
 
     fn range_of(heights: Vec<f32>) -> HeightRange {
         let image = Image::new(heights.len(), 1, 1, Samples::F32(heights)).unwrap();

@@ -4,7 +4,7 @@ use super::channels::{Blue, colour_channels, guess_blue, looks_like_slopes, x_is
 use super::order::{GreyAndAlpha, guess_grey_and_alpha};
 use super::sample::{SAME, quantile, share, spread, texels};
 use super::vectors::{MAX_MEAN_TILT, MAX_XY_LENGTH, UNIT, decoded, length, mean_xy};
-use crate::{Image, Kind, NormalChannels, NormalRange};
+use crate::{ImageView, Kind, NormalChannels, NormalRange};
 
 /// In a grey picture fewer than 1 texel in 1000 has channels further apart than this, of a full scale of 1.
 /// Of the real grey maps 1 in 1000 reaches 5/255 at most; of the greyest coloured albedo 19 in 1000 exceed
@@ -61,7 +61,12 @@ impl KindGuess {
 /// height, vectors of about unit length that point out of the surface are normals, and so are x and y that
 /// come with constants instead of z. Maps of roughness or
 /// occlusion are grey, too, and are taken for heights: no pixel tells the difference.
-pub fn guess_kind(image: &Image, channels: &[impl AsRef<str>], range: NormalRange) -> KindGuess {
+pub fn guess_kind<'a>(
+    image: impl Into<ImageView<'a>>,
+    channels: &[impl AsRef<str>],
+    range: NormalRange,
+) -> KindGuess {
+    let image = image.into();
     match guess_grey_and_alpha(image, channels, range) {
         GreyAndAlpha::Normals(_) => return KindGuess::Certain(Kind::Normal),
         GreyAndAlpha::EitherOrder => {
@@ -94,7 +99,7 @@ fn guess_two(vectors: &[[f32; 2]]) -> KindGuess {
     ))
 }
 
-fn guess_three(image: &Image, channels: [usize; 3], range: NormalRange) -> KindGuess {
+fn guess_three(image: ImageView<'_>, channels: [usize; 3], range: NormalRange) -> KindGuess {
     let stored = texels(image, channels);
     if stored.is_empty() {
         return KindGuess::doubtful(NOTHING_FINITE);
@@ -113,7 +118,7 @@ fn guess_three(image: &Image, channels: [usize; 3], range: NormalRange) -> KindG
 }
 
 /// Channels that could be x and y, beside others that say nothing, are a normal's if they are slopes.
-fn if_slopes(image: &Image, channels: NormalChannels, range: NormalRange, seen: &str) -> KindGuess {
+fn if_slopes(image: ImageView<'_>, channels: NormalChannels, range: NormalRange, seen: &str) -> KindGuess {
     if looks_like_slopes(image, channels, range) {
         KindGuess::Certain(Kind::Normal)
     } else {
@@ -122,7 +127,7 @@ fn if_slopes(image: &Image, channels: NormalChannels, range: NormalRange, seen: 
 }
 
 /// The stored value that stands for white: 1 for integers, some large value found for floats.
-fn full_scale(image: &Image, stored: &[[f32; 3]]) -> f32 {
+fn full_scale(image: ImageView<'_>, stored: &[[f32; 3]]) -> f32 {
     if !image.samples().sample_type().is_float() {
         return 1.0;
     }

@@ -10,7 +10,7 @@ use super::channels::{alpha_of, colour_channels};
 use super::green::{GreenTest, test_green_of_map};
 use super::sample::{SAME, quantile, share, spread, texels};
 use super::vectors::{MAX_MEAN_TILT, MAX_XY_LENGTH, decoded, length, mean_xy};
-use crate::{Image, Kind, NormalChannels, NormalRange, SourceOptions};
+use crate::{ImageView, Kind, NormalChannels, NormalRange, SourceOptions};
 
 /// The correlations of the two orders must differ by this much. Of the real maps four have less: two that have no
 /// direction, one whose red is lost, and one of long straight seams, whose orders have 0.98 and 0.93.
@@ -26,11 +26,12 @@ const NEARLY_ALL: f64 = 0.99;
 /// Of two ways to read a map, the one whose order of x and y is right; `None` where the two are equally good or bad.
 ///
 /// `options` say how it is read otherwise.
-pub fn guess_order(
-    image: &Image,
+pub fn guess_order<'a>(
+    image: impl Into<ImageView<'a>>,
     options: &SourceOptions,
     ways: [NormalChannels; 2],
 ) -> Option<NormalChannels> {
+    let image = image.into();
     let [first, second] = ways.map(|normal_channels| correlation(image, options, normal_channels));
     match (first.is_large(), second.is_large()) {
         (true, _) if first.size() >= second.size() + CLEAR_DIFFERENCE => Some(ways[0]),
@@ -52,7 +53,11 @@ impl Correlation {
     }
 }
 
-fn correlation(image: &Image, options: &SourceOptions, normal_channels: NormalChannels) -> Correlation {
+fn correlation(
+    image: ImageView<'_>,
+    options: &SourceOptions,
+    normal_channels: NormalChannels,
+) -> Correlation {
     let options = SourceOptions { kind: Kind::Normal, normal_channels, ..*options };
     Correlation(test_green_of_map(image, &options))
 }
@@ -70,7 +75,7 @@ pub(super) enum GreyAndAlpha {
 
 /// Whether grey and alpha are x and y of normals: KTX's normal mode has x in grey, Unity's textures have it in alpha.
 pub(super) fn guess_grey_and_alpha(
-    image: &Image,
+    image: ImageView<'_>,
     channels: &[impl AsRef<str>],
     range: NormalRange,
 ) -> GreyAndAlpha {
@@ -98,7 +103,7 @@ pub(super) fn guess_grey_and_alpha(
     }
 }
 
-fn is_grey(image: &Image) -> bool {
+fn is_grey(image: ImageView<'_>) -> bool {
     let mut spreads: Vec<f32> = texels(image, [0, 1, 2]).into_iter().map(spread).collect();
     quantile(&mut spreads, NEARLY_ALL) <= GREY
 }

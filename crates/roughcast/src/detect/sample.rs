@@ -1,6 +1,6 @@
 //! A regular sample of the texels of an image.
 
-use crate::Image;
+use crate::ImageView;
 
 /// Most texels that are looked at: enough for any statistic here.
 const MAX_TEXELS: usize = 1 << 20;
@@ -20,7 +20,7 @@ pub(super) fn odd_stride(width: usize, height: usize, max_points: usize) -> usiz
 }
 
 /// `N` channels of the sampled texels, as stored. Texels with a value that is not finite are left out.
-pub(super) fn texels<const N: usize>(image: &Image, channels: [usize; N]) -> Vec<[f32; N]> {
+pub(super) fn texels<const N: usize>(image: ImageView<'_>, channels: [usize; N]) -> Vec<[f32; N]> {
     let stride = odd_stride(image.width(), image.height(), MAX_TEXELS);
     let rows = (0..image.height()).step_by(stride);
     rows.flat_map(|y| (0..image.width()).step_by(stride).map(move |x| (x, y)))
@@ -55,7 +55,7 @@ pub(super) fn spread(values: impl IntoIterator<Item = f32>) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Samples;
+    use crate::{Image, Samples};
 
     #[test]
     fn strides_are_odd_and_keep_the_budget() {
@@ -77,8 +77,8 @@ mod tests {
     fn texels_that_are_not_finite_are_left_out() {
         let samples = vec![1.0, 2.0, f32::NAN, 3.0, 4.0, f32::INFINITY];
         let image = Image::new(3, 1, 2, Samples::F32(samples)).unwrap();
-        assert_eq!(texels(&image, [0, 1]), [[1.0, 2.0]]);
-        assert_eq!(texels(&image, [1]), [[2.0], [3.0]]);
+        assert_eq!(texels(image.view(), [0, 1]), [[1.0, 2.0]]);
+        assert_eq!(texels(image.view(), [1]), [[2.0], [3.0]]);
     }
 
     #[test]

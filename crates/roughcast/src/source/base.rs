@@ -2,16 +2,16 @@
 
 use super::fit::fit;
 use super::{SourceError, load_channel};
-use crate::Image;
 use crate::convention::Wrap;
 use crate::roughness::{RoughnessStored, variance_from_stored};
 use crate::row::Extra;
+use crate::{Image, ImageView};
 
 /// A roughness stored in an image. [`crate::bake()`] resamples one whose size differs from that of the map.
 #[derive(Clone, Copy, Debug)]
 pub struct RoughnessMap<'a> {
     /// The pixels.
-    pub image: &'a Image,
+    pub image: ImageView<'a>,
     /// The channel that holds roughness; glTF's packed texture has it in 1 (green).
     pub channel: usize,
     /// How it is stored.

@@ -55,7 +55,7 @@ mod tests {
     const ROUNDING: f32 = 1e-6;
 
     fn map(image: &Image) -> RoughnessMap<'_> {
-        RoughnessMap { image, channel: 0, stored: RoughnessStored::Perceptual }
+        RoughnessMap { image: image.view(), channel: 0, stored: RoughnessStored::Perceptual }
     }
 
     fn values(image: &Image) -> Vec<f32> {

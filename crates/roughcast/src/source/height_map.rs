@@ -1,7 +1,7 @@
 //! Slopes from height maps.
 
 use super::{Reading, count_unusable, load_channel, neighbour, repair};
-use crate::Image;
+use crate::ImageView;
 use crate::convention::{HeightSense, Wrap};
 use crate::options::Gradient;
 use crate::row::SourceScratch;
@@ -21,7 +21,7 @@ pub(super) fn fill(
     let width = bx.len();
     for (plane, offset) in scratch.planes.iter_mut().zip([-1, 0, 1]) {
         plane.resize(width + 2, 0.0);
-        load_row(image, x, neighbour(y, offset, image.height(), options.wrap), options.wrap, plane);
+        load_row(*image, x, neighbour(y, offset, image.height(), options.wrap), options.wrap, plane);
     }
     let [above, here, below] = &scratch.planes;
     let sign = match options.height_sense {
@@ -49,7 +49,7 @@ pub(super) fn fill(
 }
 
 /// The mean of all heights that are finite: what stands for the others where heights are stored. 0 where none is.
-pub(super) fn mean_height(image: &Image) -> f32 {
+pub(super) fn mean_height(image: ImageView<'_>) -> f32 {
     let mut row = vec![0.0; image.width()];
     let (mut sum, mut count) = (0.0, 0u64);
     for y in 0..image.height() {
@@ -69,7 +69,7 @@ vectorised! {
 }
 
 /// Loads `plane.len()` heights of a row, from the one left of column `x` to the one right of the stretch.
-fn load_row(image: &Image, x: usize, y: usize, wrap: Wrap, plane: &mut [f32]) {
+fn load_row(image: ImageView<'_>, x: usize, y: usize, wrap: Wrap, plane: &mut [f32]) {
     let inner = plane.len() - 2;
     load_channel(image, 0, x, y, &mut plane[1..=inner]);
     let left = neighbour(x, -1, image.width(), wrap);

@@ -15,7 +15,7 @@ use crate::options::{MaxSlope, SourceOptions};
 use crate::row::{Extra, Row, RowSource, SourceScratch};
 use crate::slope::{Slope, SourceCounts, repaired_slope};
 use crate::vectorised::vectorised;
-use crate::{Image, Samples};
+use crate::{ImageView, SamplesView};
 
 /// Why a map, or its base roughness, cannot be read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -60,7 +60,7 @@ pub enum SourceError {
 /// How the slopes of a map are read.
 #[derive(Clone, Copy)]
 struct Reading<'a> {
-    image: &'a Image,
+    image: ImageView<'a>,
     options: SourceOptions,
     max_slope: f32,
 }
@@ -76,7 +76,7 @@ pub(crate) struct MapSource<'a> {
 
 impl<'a> MapSource<'a> {
     pub fn new(
-        image: &'a Image,
+        image: ImageView<'a>,
         options: SourceOptions,
         base: Option<BaseSource<'a>>,
         extras: Vec<Extra>,
@@ -261,15 +261,15 @@ vectorised! {
 }
 
 /// One channel of a stretch of a row as floats: unsigned types as 0 ..= 1, floats as they are.
-fn load_channel(image: &Image, channel: usize, x: usize, y: usize, out: &mut [f32]) {
+fn load_channel(image: ImageView<'_>, channel: usize, x: usize, y: usize, out: &mut [f32]) {
     let channels = image.channels();
     let start = (y * image.width() + x) * channels;
     let range = start..start + out.len() * channels;
     match image.samples() {
-        Samples::U8(v) => load_u8(&v[range], channels, channel, out),
-        Samples::U16(v) => load_u16(&v[range], channels, channel, out),
-        Samples::F16(v) => load(&v[range], channels, channel, out, half::f16::to_f32),
-        Samples::F32(v) => load(&v[range], channels, channel, out, |v| v),
+        SamplesView::U8(v) => load_u8(&v[range], channels, channel, out),
+        SamplesView::U16(v) => load_u16(&v[range], channels, channel, out),
+        SamplesView::F16(v) => load(&v[range], channels, channel, out, half::f16::to_f32),
+        SamplesView::F32(v) => load(&v[range], channels, channel, out, |v| v),
     }
 }
 

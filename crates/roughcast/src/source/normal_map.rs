@@ -8,7 +8,7 @@ use crate::options::SourceOptions;
 use crate::row::SourceScratch;
 use crate::slope::{Slope, SourceCounts};
 use crate::vectorised::vectorised;
-use crate::{Image, Samples};
+use crate::{ImageView, SamplesView};
 
 /// Two-channel normals may lie a little outside the unit disc, through quantisation and block compression; their z
 /// is then zero. Further out than this (squared) they are no normals at all but an empty background, such as (0, 0)
@@ -49,7 +49,7 @@ fn fill_unless_broken(
         plane.resize(width, 0.0);
     }
     let [nx, ny, nz] = &mut scratch.planes;
-    load_components(image, options, x, y, nx, ny, nz);
+    load_components(*image, options, x, y, nx, ny, nz);
     let z_from_xy = options.normal_channels != NormalChannels::Xyz;
     if z_from_xy {
         for ((z, x), y) in nz.iter_mut().zip(nx.iter()).zip(ny.iter()) {
@@ -137,7 +137,7 @@ vectorised! {
 
 /// Splits the pixels into planes of components, -1 ..= 1 for unorm data.
 fn load_components(
-    image: &Image,
+    image: ImageView<'_>,
     options: &SourceOptions,
     x: usize,
     y: usize,
@@ -151,10 +151,10 @@ fn load_components(
     let from_float = |v: f32| options.range.component_from_stored(v);
     let split = Split { channels, order: options.normal_channels };
     match image.samples() {
-        Samples::U8(v) => split_u8(split, &v[range], nx, ny, nz),
-        Samples::U16(v) => split_u16(split, &v[range], nx, ny, nz),
-        Samples::F16(v) => split.write_planes(&v[range], nx, ny, nz, |v: f16| from_float(v.to_f32())),
-        Samples::F32(v) => split.write_planes(&v[range], nx, ny, nz, from_float),
+        SamplesView::U8(v) => split_u8(split, &v[range], nx, ny, nz),
+        SamplesView::U16(v) => split_u16(split, &v[range], nx, ny, nz),
+        SamplesView::F16(v) => split.write_planes(&v[range], nx, ny, nz, |v: f16| from_float(v.to_f32())),
+        SamplesView::F32(v) => split.write_planes(&v[range], nx, ny, nz, from_float),
     }
 }
 

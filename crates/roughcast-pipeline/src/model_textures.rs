@@ -3,12 +3,12 @@
 use roughcast::shading::Shading;
 use roughcast::texture::{BaseRole, TextureArray};
 use roughcast::{
-    AnisotropyOutput, BakeError, BakeOptions, BaseRoughness, Image, Lobe, PbrOptions, SampleType,
+    AnisotropyOutput, BakeError, BakeOptions, BaseRoughness, ImageView, Lobe, PbrOptions, SampleType,
     SourceOptions, bake,
 };
 
 /// How a model's textures are made.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextureOptions {
     /// The type of their texels.
     pub bits: SampleType,
@@ -22,9 +22,9 @@ pub struct TextureOptions {
 ///
 /// # Errors
 /// [`BakeError`] where the map cannot be read.
-pub fn bake_for(
+pub fn bake_for<'a>(
     shading: Shading,
-    map: &Image,
+    map: impl Into<ImageView<'a>>,
     source: &SourceOptions,
     options: TextureOptions,
 ) -> Result<Vec<TextureArray>, BakeError> {

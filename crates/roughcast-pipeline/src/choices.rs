@@ -1,0 +1,247 @@
+//! What is stored and how; what is left open follows from the container and the target.
+
+use roughcast::texture::{Base, Brdf, Layout, RoughnessStored, TextureInfo, split_infos};
+use roughcast::{
+    AnisotropyOutput, BakeOptions, Blocks, NormalRange, PbrOptions, PyramidFilter, RoughnessTexture,
+    SampleType, ScaleChoice,
+};
+use roughcast_io::{Container, ContainerError, Supercompression};
+
+use crate::roughness::Roughness;
+use crate::target::{Target, TargetError};
+
+/// What is stored and how. [`BakeChoices::new`] leaves everything open.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct BakeChoices {
+    /// The layout.
+    pub layout: Layout,
+    /// Bits of each number. Open: 8 for blocks, `pbr` and `toksvig`, half floats for EXR, but single floats for `moments`, half
+    /// floats for the web, else 16.
+    pub bits: Option<SampleType>,
+    /// The largest slope that 8 and 16 bits hold.
+    pub scale: ScaleChoice,
+    /// The filter that makes each level of the one before.
+    pub filter: PyramidFilter,
+    /// Whether the roughness of the material is folded into the moments.
+    pub base: Base,
+    /// The reflectance function for which the roughness is meant.
+    pub brdf: Brdf,
+    /// How `pbr` stores roughness. Open: perceptual, or in floats for Blinn-Phong a specular power.
+    pub roughness_stored: Option<RoughnessStored>,
+    /// For `pbr`: in which form the direction of the roughness is stored; `None` stores none.
+    pub anisotropy: Option<AnisotropyOutput>,
+    /// For `pbr`: the channels of the roughness texture. Open: packed where the picture of the roughness is, else green, in EXR one
+    /// channel.
+    pub roughness_texture: Option<RoughnessTexture>,
+    /// For `pbr` in floats: how unit vectors are stored. Open: unorm.
+    pub normal_range: Option<NormalRange>,
+    /// Block compression.
+    pub blocks: Blocks,
+    /// Where the textures are used.
+    pub target: Target,
+    /// How layers are spread over files.
+    pub layers: LayerFiles,
+    /// How the levels of KTX2 are packed.
+    pub supercompression: Supercompression,
+}
+
+/// How the layers of a layout are spread over files.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum LayerFiles {
+    /// As array layers of one file, where container and target have such.
+    #[default]
+    Together,
+    /// Each in a file of its own.
+    Split,
+}
+
+/// A choice that only `pbr` has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum PbrChoice {
+    /// [`BakeChoices::anisotropy`]
+    Anisotropy,
+    /// [`BakeChoices::roughness_texture`]
+    RoughnessTexture,
+    /// [`BakeChoices::normal_range`]
+    NormalRange,
+    /// [`BakeChoices::roughness_stored`]
+    RoughnessStored,
+}
+
+/// Why choices do not go together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ChoiceError {
+    /// The container cannot hold it.
+    #[error(transparent)]
+    Container(#[from] ContainerError),
+    /// It cannot be sampled where it is going to be used.
+    #[error(transparent)]
+    Target(#[from] TargetError),
+    /// Only `pbr` has this choice.
+    #[error("{choice:?} is a choice of the layout 'pbr', and the layout is '{layout}'")]
+    OnlyForPbr {
+        /// The choice.
+        choice: PbrChoice,
+        /// The layout.
+        layout: Layout,
+    },
+    /// Integers have one range of normals.
+    #[error("{bits} bits always hold a normal as n/2 + 1/2")]
+    NormalRangeOfIntegers {
+        /// The bits.
+        bits: SampleType,
+    },
+    /// Only KTX2 has supercompression.
+    #[error("ktx2 can be supercompressed, {container} cannot")]
+    Supercompression {
+        /// The container.
+        container: Container,
+    },
+}
+
+impl BakeChoices {
+    /// A layout, with everything else open or at its default.
+    pub fn new(layout: Layout) -> Self {
+        let BakeOptions { scale, filter, base, brdf, blocks, .. } = BakeOptions::default();
+        Self {
+            layout,
+            bits: None,
+            scale,
+            filter,
+            base,
+            brdf,
+            roughness_stored: None,
+            anisotropy: None,
+            roughness_texture: None,
+            normal_range: None,
+            blocks,
+            target: Target::Desktop,
+            layers: LayerFiles::Together,
+            supercompression: Supercompression::None,
+        }
+    }
+
+    /// The options of the bake; what is open is chosen to suit the container, the target and the picture of the roughness.
+    pub fn options(&self, container: Container, roughness: Option<&Roughness>) -> BakeOptions {
+        let bits = self.bits.unwrap_or(match (container, self.layout.default_sample_type(), self.blocks) {
+            (_, _, Blocks::Bc) => SampleType::U8,
+            (Container::Exr, SampleType::U8 | SampleType::U16, _) => SampleType::F16,
+            (Container::Ktx2 | Container::Dds, SampleType::U16, _) if self.target != Target::Desktop => {
+                SampleType::F16
+            }
+            (_, suited, _) => suited,
+        });
+        // Blinn-Phong renderers want exponents, which only floats hold.
+        let stored = match (self.roughness_stored, self.brdf) {
+            (Some(stored), _) => stored,
+            (None, Brdf::BlinnPhong) if bits.is_float() => RoughnessStored::SpecularPower,
+            (None, _) => RoughnessStored::Perceptual,
+        };
+        BakeOptions {
+            layout: self.layout,
+            bits,
+            scale: self.scale,
+            base: self.base,
+            brdf: self.brdf,
+            pbr: PbrOptions {
+                roughness_stored: stored,
+                anisotropy: self.anisotropy,
+                roughness_texture: self.roughness_channels(container, roughness),
+                normal_range: self.normal_range.unwrap_or(NormalRange::Unorm),
+            },
+            blocks: self.blocks,
+            filter: self.filter,
+        }
+    }
+
+    /// The channels of `pbr`'s roughness: glTF's, with the occlusion and metalness of the picture where it has them. Renderers
+    /// that read EXR take a roughness of one channel.
+    fn roughness_channels(&self, container: Container, roughness: Option<&Roughness>) -> RoughnessTexture {
+        self.roughness_texture.unwrap_or_else(|| match container {
+            _ if roughness.is_some_and(Roughness::is_packed) => RoughnessTexture::Packed,
+            Container::Exr => RoughnessTexture::Alone,
+            _ => RoughnessTexture::Green,
+        })
+    }
+
+    /// Whether each layer gets a file of its own. PNG has no layers, and the targets of the web have loaders that know none.
+    pub fn splits(&self, container: Container) -> bool {
+        self.layers == LayerFiles::Split || container == Container::Png || self.target != Target::Desktop
+    }
+
+    /// Refuses choices that do not go together, before any work is done.
+    ///
+    /// # Errors
+    /// [`ChoiceError`].
+    pub fn check(&self, container: Container) -> Result<(), ChoiceError> {
+        let options = self.options(container, None);
+        container.check(&options)?;
+        self.target.check(container, &options)?;
+        for (given, choice) in [
+            (self.anisotropy.is_some(), PbrChoice::Anisotropy),
+            (self.roughness_texture.is_some(), PbrChoice::RoughnessTexture),
+            (self.normal_range.is_some(), PbrChoice::NormalRange),
+            (self.roughness_stored.is_some(), PbrChoice::RoughnessStored),
+        ] {
+            if given && !self.layout.reads_pbr_options() {
+                return Err(ChoiceError::OnlyForPbr { choice, layout: self.layout });
+            }
+        }
+        if self.normal_range.is_some() && !options.bits.is_float() {
+            return Err(ChoiceError::NormalRangeOfIntegers { bits: options.bits });
+        }
+        if self.supercompression == Supercompression::Zstd && container != Container::Ktx2 {
+            return Err(ChoiceError::Supercompression { container });
+        }
+        Ok(())
+    }
+
+    /// What the first file that is written contains.
+    pub fn first_file(&self, container: Container) -> TextureInfo {
+        let parts = self.layout.parts_written(self.blocks, &self.options(container, None).pbr);
+        let info = TextureInfo::new(self.layout, parts[0]);
+        if self.splits(container) { split_infos(&info)[0] } else { info }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_open_follows_from_the_container_and_the_target() {
+        let bits = |container, layout, target| {
+            let mut choices = BakeChoices::new(layout);
+            choices.target = target;
+            choices.options(container, None).bits
+        };
+        assert_eq!(bits(Container::Ktx2, Layout::Lean, Target::Desktop), SampleType::U16);
+        assert_eq!(bits(Container::Ktx2, Layout::Lean, Target::Web), SampleType::F16);
+        assert_eq!(bits(Container::Png, Layout::Lean, Target::Desktop), SampleType::U16);
+        assert_eq!(bits(Container::Exr, Layout::Lean, Target::Desktop), SampleType::F16);
+        assert_eq!(bits(Container::Exr, Layout::Moments, Target::Desktop), SampleType::F32);
+        assert_eq!(bits(Container::Dds, Layout::Pbr, Target::Any), SampleType::U8);
+    }
+
+    #[test]
+    fn choices_that_do_not_go_together_are_refused() {
+        let mut choices = BakeChoices::new(Layout::Lean);
+        assert_eq!(choices.check(Container::Ktx2), Ok(()));
+        choices.normal_range = Some(NormalRange::Signed);
+        let expected = ChoiceError::OnlyForPbr { choice: PbrChoice::NormalRange, layout: Layout::Lean };
+        assert_eq!(choices.check(Container::Ktx2), Err(expected));
+        choices.layout = Layout::Pbr;
+        let expected = ChoiceError::NormalRangeOfIntegers { bits: SampleType::U8 };
+        assert_eq!(choices.check(Container::Ktx2), Err(expected));
+        let mut choices = BakeChoices::new(Layout::Lean);
+        choices.supercompression = Supercompression::Zstd;
+        let expected = ChoiceError::Supercompression { container: Container::Dds };
+        assert_eq!(choices.check(Container::Dds), Err(expected));
+        choices.target = Target::Web;
+        choices.bits = Some(SampleType::U16);
+        assert_eq!(choices.check(Container::Ktx2), Err(TargetError::SixteenBits.into()));
+    }
+}

@@ -1,0 +1,251 @@
+//! One job: a map in, the files of a layout out, all of them or none.
+
+use std::path::{Path, PathBuf};
+
+use roughcast::texture::{Base, BaseRole, Layout, TextureArray, mark_set};
+use roughcast::{BakeOptions, Baked, Blocks, bake};
+use roughcast_io::material_names::{MaterialRole, role_of};
+use roughcast_io::texture_files::{TextureFiles, WriteFilesError, check_destination, leftover_parts};
+use roughcast_io::{CompressError, Container, FileInfo, Stored, stored_of};
+
+use crate::JobError;
+use crate::choices::BakeChoices;
+use crate::findings::Finding;
+use crate::map::{Map, MapOptions, read_map};
+use crate::report::JobReport;
+use crate::roughness::{Roughness, RoughnessInput};
+use crate::sidecar::Sidecar;
+use crate::target::reader_limits;
+use crate::watch::{Stage, Watch, Watched};
+
+/// The exponent that Toksvig's gloss factor is made for where nobody named one: the lowest that the LEAN paper shows.
+pub const TOKSVIG_POWER: f32 = 128.0;
+
+/// What becomes of broken texels: NaN, infinite, or normals that point into the surface or have no direction.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum BrokenTexels {
+    /// They are repaired and counted.
+    #[default]
+    Repair,
+    /// The map is refused.
+    Refuse,
+}
+
+/// Whether `NAME.json` is written beside the textures.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum SidecarFile {
+    /// It is not.
+    #[default]
+    None,
+    /// It is: see [`Sidecar`].
+    Json,
+}
+
+/// How maps are read and what is made of them: everything but where they are.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct BakeSettings {
+    /// How the map is read.
+    pub map: MapOptions,
+    /// The roughness of the material.
+    pub roughness: Option<RoughnessInput>,
+    /// What is stored and how.
+    pub choices: BakeChoices,
+    /// What becomes of broken texels.
+    pub broken_texels: BrokenTexels,
+    /// Whether `NAME.json` is written as well.
+    pub sidecar: SidecarFile,
+}
+
+impl BakeSettings {
+    /// A layout, with everything else open or at its default.
+    pub fn new(layout: Layout) -> Self {
+        Self {
+            map: MapOptions::default(),
+            roughness: None,
+            choices: BakeChoices::new(layout),
+            broken_texels: BrokenTexels::Repair,
+            sidecar: SidecarFile::None,
+        }
+    }
+}
+
+/// One map, and the file or files to make of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BakeJob {
+    /// The map.
+    pub input: PathBuf,
+    /// The file to write, whose extension names the container; a layout of several files writes `NAME.PART.ext`, PNG a file for
+    /// each level.
+    pub output: PathBuf,
+    /// How it is read and what is made of it.
+    pub settings: BakeSettings,
+}
+
+impl BakeJob {
+    /// Reads the map, bakes it and writes the files: all of them, or none where anything goes wrong or `watch` stops the job.
+    ///
+    /// The work is shared by the threads of the rayon pool in which this is called: inside of `pool.install(|| job.run(&watch))`
+    /// it is that pool, else rayon's global one. The files do not depend on it.
+    ///
+    /// # Errors
+    /// [`JobError`], also [`JobError::Cancelled`].
+    pub fn run(&self, watch: &dyn Watch) -> Result<JobReport, JobError> {
+        let mut watched = Watched::new(watch, &self.input, 0, 1);
+        let result = run(&self.input, &self.output, &self.settings, &mut watched);
+        // It is done, and nothing is left to stop.
+        let _ = watched.end();
+        let mut report = result?;
+        report.times = watched.times().to_vec();
+        report.findings.extend(named_otherwise(&self.input, &self.settings));
+        Ok(report)
+    }
+}
+
+/// A finding where the name of a file says that it is no map of bumps, and nobody has said otherwise.
+fn named_otherwise(input: &Path, settings: &BakeSettings) -> Option<Finding> {
+    let stem = input.file_stem()?.to_str()?;
+    let named = role_of(stem).filter(|named| !named.by_letter && settings.map.kind.is_none())?;
+    match named.role {
+        MaterialRole::Other(what) => Some(Finding::NamedOtherwise { what }),
+        _ => None,
+    }
+}
+
+/// Bakes one map. Nothing is written unless everything went well.
+pub(crate) fn run(
+    input: &Path,
+    output: &Path,
+    settings: &BakeSettings,
+    watched: &mut Watched<'_>,
+) -> Result<JobReport, JobError> {
+    let path = || input.to_owned();
+    let choices = &settings.choices;
+    let container =
+        Container::of(output).ok_or_else(|| WriteFilesError::UnknownExtension { path: output.to_owned() })?;
+    choices.check(container)?;
+    check_destination(output, container, &choices.first_file(container))?;
+
+    watched.begin(Stage::Reading)?;
+    let Map { image, info, options: source, green_correlation, mut findings, .. } =
+        read_map(input, &settings.map).map_err(|source| JobError::Map { path: path(), source })?;
+    let roughness = roughness_of(settings, &mut findings)?;
+    let options = choices.options(container, roughness.as_ref());
+
+    watched.begin(Stage::Baking)?;
+    let Baked { arrays, report } = bake(&image, &source, roughness.as_ref().map(Roughness::base), &options)
+        .map_err(|source| JobError::Bake { path: path(), source })?;
+    if settings.broken_texels == BrokenTexels::Refuse && report.counts.broken() > 0 {
+        let (counts, texels) = (report.counts, report.texels);
+        return Err(JobError::BrokenTexels { path: path(), counts, texels });
+    }
+    // The pixels are not needed any more, and what follows needs room.
+    drop((image, roughness));
+
+    watched.begin(Stage::Compressing)?;
+    let (stored, compression) =
+        compressed(arrays, choices, container, watched).map_err(|error| match error {
+            CompressError::Stopped => JobError::Cancelled,
+            source => JobError::Compress { path: path(), source },
+        })?;
+
+    watched.begin(Stage::Writing)?;
+    let files = write(input, output, settings, &stored, watched)?;
+    findings.extend(
+        leftover_parts(output, options.layout, &files)
+            .into_iter()
+            .map(|path| Finding::LeftFromEarlierBake { path }),
+    );
+    findings.extend(blocks_that_do_not_fit(container, &options, &info));
+    findings.extend(unused_roughness(settings));
+    let of_target = choices.target.findings(container, &options);
+    findings.extend(of_target.into_iter().map(|finding| Finding::Target { finding, container }));
+    Ok(JobReport {
+        input: path(),
+        files,
+        info,
+        source,
+        options,
+        report,
+        compression,
+        green_correlation,
+        reader_limits: reader_limits(container, stored[0].layer_count(), stored[0].sample_type()),
+        findings,
+        times: Vec::new(),
+    })
+}
+
+/// The material's roughness, with a finding where the layout needs one and nobody named it.
+fn roughness_of(settings: &BakeSettings, findings: &mut Vec<Finding>) -> Result<Option<Roughness>, JobError> {
+    if let Some(input) = &settings.roughness {
+        return Ok(Some(input.load(&settings.map.read.limits)?));
+    }
+    match settings.choices.layout.base_role() {
+        BaseRole::Apart => {
+            findings.push(Finding::SpecularPowerAssumed { power: TOKSVIG_POWER });
+            Ok(Some(Roughness::Variance(1.0 / TOKSVIG_POWER)))
+        }
+        BaseRole::Contained => {
+            findings.push(Finding::RoughnessAssumedZero);
+            Ok(None)
+        }
+        BaseRole::OnRequest => Ok(None),
+    }
+}
+
+/// The textures as they go into files, compressed and split where that is wanted.
+fn compressed(
+    mut arrays: Vec<TextureArray>,
+    choices: &BakeChoices,
+    container: Container,
+    watched: &Watched<'_>,
+) -> Result<(Vec<Stored>, Option<roughcast_io::CompressionError>), CompressError> {
+    let splits = choices.splits(container);
+    if splits && arrays.iter().any(|array| array.layers.len() > 1) {
+        mark_set(&mut arrays);
+    }
+    let (stored, error) = stored_of(arrays, choices.blocks, &|fraction| watched.report(Some(fraction)))?;
+    let stored = if splits { stored.into_iter().flat_map(Stored::split).collect() } else { stored };
+    Ok((stored, error))
+}
+
+/// Writes all files, and puts them in their places unless the watch stops the job.
+fn write(
+    input: &Path,
+    output: &Path,
+    settings: &BakeSettings,
+    stored: &[Stored],
+    watched: &Watched<'_>,
+) -> Result<Vec<PathBuf>, JobError> {
+    let roughness = settings.roughness.as_ref().and_then(RoughnessInput::file);
+    let inputs = [Some(input), roughness].into_iter().flatten().map(Path::to_owned);
+    let mut files = TextureFiles::new(output, settings.choices.supercompression)?.protecting(inputs);
+    for (index, part) in stored.iter().enumerate() {
+        files.add(part)?;
+        watched.tell(Some((index + 1) as f32 / stored.len() as f32))?;
+    }
+    if settings.sidecar == SidecarFile::Json {
+        let sidecar = Sidecar::new(stored, files.paths()).to_json();
+        let text = serde_json::to_string_pretty(&sidecar).expect("a sidecar is plain data");
+        files.add_text("json", &text)?;
+    }
+    Ok(files.commit()?)
+}
+
+/// A finding where a roughness was given that nothing of what is stored depends on.
+fn unused_roughness(settings: &BakeSettings) -> Option<Finding> {
+    let given = settings.roughness.as_ref()?.form();
+    let BakeChoices { layout, base, .. } = settings.choices;
+    let uses = layout.base_role() != BaseRole::OnRequest || base == Base::Baked;
+    (!uses).then_some(Finding::RoughnessNotStored { layout, given })
+}
+
+/// Direct3D refuses to create block-compressed textures whose sides are not multiples of the blocks' side; Vulkan, Metal and
+/// OpenGL do not (Microsoft, "Texture Block Compression in Direct3D 11", virtual size versus physical size).
+fn blocks_that_do_not_fit(container: Container, options: &BakeOptions, info: &FileInfo) -> Option<Finding> {
+    const BLOCK_SIDE: usize = 4;
+    let (width, height) = (info.width, info.height);
+    let fits = width.is_multiple_of(BLOCK_SIDE) && height.is_multiple_of(BLOCK_SIDE);
+    (container == Container::Dds && options.blocks == Blocks::Bc && !fits)
+        .then_some(Finding::BlocksDoNotFit { width, height })
+}

@@ -1,0 +1,74 @@
+//! From map files to baked texture files: what the program, a Python package, a web server or an asset importer has in common.
+//!
+//! A short tour, in the order of the work:
+//!
+//! 1. [`read_map`] reads a file and decides what nobody said: heights or normals, in which channels, with green up or down. What
+//!    is odd about it comes back as [`Finding`]s, data that a program puts into words.
+//! 2. [`RoughnessInput`] loads the roughness of the material, from a number or a picture.
+//! 3. [`BakeChoices`] says what is stored and how; what is left open follows from the container and the [`Target`].
+//! 4. [`BakeJob`] does all of a map: read, bake, compress, write. Its files appear together or not at all, with a [`Sidecar`] where
+//!    that is wanted. [`JobReport`] has the numbers.
+//! 5. [`FolderJob`] does a folder of maps, several at a time.
+//! 6. A [`Watch`] hears how jobs get on, and may stop them.
+//!
+//! [`bake_for`] is the short way for renderers: the textures of a shading model from a map in memory.
+//!
+//! The library prints nothing and knows no options of a command line. Work is shared by the rayon pool in which it is called.
+//!
+//! # Example
+//!
+//! ```
+//! use std::ops::ControlFlow;
+//!
+//! use roughcast::texture::Layout;
+//! use roughcast::{Image, SampleType};
+//! use roughcast_io::png_levels;
+//! use roughcast_pipeline::{BakeJob, BakeSettings, Finding, Progress};
+//!
+//! # let folder = std::env::temp_dir().join(format!("roughcast-doc-{}", std::process::id()));
+//! # std::fs::create_dir_all(&folder)?;
+//! let map = folder.join("flat.png");
+//! let heights = Image::zeros(16, 16, 1, SampleType::U8);
+//! png_levels::write_level(&heights, &Default::default(), std::fs::File::create(&map)?)?;
+//!
+//! let mut settings = BakeSettings::new(Layout::Pbr);
+//! settings.map.kind = Some(roughcast::Kind::Height);
+//! let job = BakeJob { input: map, output: folder.join("flat.ktx2"), settings };
+//! let report = job.run(&|progress: &Progress<'_>| {
+//!     eprintln!("{} {}", progress.input.display(), progress.stage);
+//!     ControlFlow::Continue(())
+//! })?;
+//!
+//! assert_eq!(report.files, [folder.join("flat.normal.ktx2"), folder.join("flat.roughness.ktx2")]);
+//! assert_eq!(report.findings, [Finding::RoughnessAssumedZero]);
+//! # std::fs::remove_dir_all(&folder)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+#![forbid(unsafe_code)]
+
+mod choices;
+mod error;
+mod findings;
+mod folder;
+mod job;
+mod map;
+mod model_textures;
+mod report;
+mod roughness;
+mod sidecar;
+mod target;
+mod watch;
+
+pub use choices::{BakeChoices, ChoiceError, LayerFiles, PbrChoice};
+pub use error::{FolderError, JobError};
+pub use findings::{Finding, RoughnessForm};
+pub use folder::{DEFAULT_JOBS, EXTENSIONS, FileOutcome, FolderJob, FolderResult, SkipReason};
+pub use job::{BakeJob, BakeSettings, BrokenTexels, SidecarFile, TOKSVIG_POWER};
+pub use map::{Map, MapError, MapOptions, ReadMapError, kind_by_pixels, map_of, read_map};
+pub use model_textures::{TextureOptions, bake_for};
+pub use report::JobReport;
+pub use roughness::{Roughness, RoughnessError, RoughnessInput, SPECULAR_POWERS};
+pub use sidecar::{Sidecar, SidecarPart};
+pub use target::{ReaderLimit, Target, TargetError, TargetFinding, reader_limits};
+pub use watch::{Progress, Stage, Unwatched, Watch};

@@ -1,0 +1,68 @@
+//! What a job says of itself, as data.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use roughcast::texture::Bounds;
+use roughcast::{BakeOptions, BakeReport, SourceOptions};
+use roughcast_io::{CompressionError, FileInfo};
+
+use crate::findings::Finding;
+use crate::target::ReaderLimit;
+use crate::watch::Stage;
+
+/// What was read, made and written, in numbers.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct JobReport {
+    /// The map.
+    pub input: PathBuf,
+    /// The files that were written, in their order.
+    pub files: Vec<PathBuf>,
+    /// What the map's file says of itself.
+    pub info: FileInfo,
+    /// How its pixels were read.
+    pub source: SourceOptions,
+    /// How it was baked.
+    pub options: BakeOptions,
+    /// What the bake says.
+    pub report: BakeReport,
+    /// What block compression costs, where there is any.
+    pub compression: Option<CompressionError>,
+    /// What the test of green measured, -1 ..= 1; `None` for heights and where there is too little to judge by.
+    pub green_correlation: Option<f64>,
+    /// What common readers refuse of such files.
+    pub reader_limits: Vec<ReaderLimit>,
+    /// What the user should hear about, in the order in which it was found.
+    pub findings: Vec<Finding>,
+    /// The stages, with the time that each took.
+    pub times: Vec<(Stage, Duration)>,
+}
+
+impl JobReport {
+    /// The largest errors of what the files give back, those of the blocks included.
+    pub fn bounds(&self) -> Bounds {
+        self.with_blocks(self.report.bounds)
+    }
+
+    /// The same without the steepest 0.1 % of the texels.
+    pub fn bounds_of_most(&self) -> Bounds {
+        self.with_blocks(self.report.bounds_of_most)
+    }
+
+    fn with_blocks(&self, stored: Bounds) -> Bounds {
+        self.compression.map_or(stored, |blocks| blocks.added_to(stored))
+    }
+
+    /// The range of the stored slopes, where a shader needs it to decode the texels.
+    pub fn scale(&self) -> Option<f32> {
+        let BakeOptions { layout, bits, .. } = self.options;
+        layout.uses_scale(bits).then_some(self.report.scale)
+    }
+
+    /// The range of the stored variances or standard deviations, where a shader needs it to decode the texels.
+    pub fn variance_scale(&self) -> Option<f32> {
+        let BakeOptions { layout, bits, .. } = self.options;
+        layout.uses_variance_scale(bits).then_some(self.report.variance_scale)
+    }
+}

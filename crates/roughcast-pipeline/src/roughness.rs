@@ -1,0 +1,212 @@
+//! The base roughness of the material: a number, or a picture that is read from a file.
+
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+
+use roughcast::texture::RoughnessStored;
+use roughcast::{BaseRoughness, Image, RoughnessMap, variance_from_stored};
+use roughcast_io::{Decoded, FileInfo, Limits, ReadError, ReadOptions, read_image_file};
+
+use crate::findings::RoughnessForm;
+use crate::map::{MapError, refuse_baked};
+
+/// The Blinn-Phong exponents that materials may have: below 1 nothing is shiny, and above this single floats carry no bump.
+pub const SPECULAR_POWERS: RangeInclusive<f32> = 1.0..=1_000_000.0;
+
+/// Where the roughness of a material comes from.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum RoughnessInput {
+    /// A Blinn-Phong exponent.
+    SpecularPower(f32),
+    /// One number for the whole material.
+    Value {
+        /// The number.
+        value: f32,
+        /// What it is.
+        stored: RoughnessStored,
+    },
+    /// A picture; it is resampled where its size is not the map's.
+    File {
+        /// The picture.
+        path: PathBuf,
+        /// The channel, by name; `None` for green in colour, as glTF packs it, and the only one in grey.
+        channel: Option<String>,
+        /// What its values are.
+        stored: RoughnessStored,
+    },
+}
+
+/// Why the roughness of a material could not be had.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RoughnessError {
+    /// The number is not one that this kind of roughness can be.
+    #[error(
+        "{value} is no roughness stored as '{stored}': it must be from {} to {}",
+        range.start(),
+        range.end()
+    )]
+    OutOfRange {
+        /// The number.
+        value: f32,
+        /// What it should be.
+        stored: RoughnessStored,
+        /// The numbers allowed.
+        range: RangeInclusive<f32>,
+    },
+    /// The picture cannot be read.
+    #[error("the roughness {} cannot be read", path.display())]
+    Read {
+        /// The picture.
+        path: PathBuf,
+        /// Why.
+        source: ReadError,
+    },
+    /// The picture does not have the channel that was named.
+    #[error("the roughness {} cannot be read from the channel that was named", path.display())]
+    Channel {
+        /// The picture.
+        path: PathBuf,
+        /// Why.
+        source: ReadError,
+    },
+    /// The picture is one that `bake` wrote.
+    #[error("{} holds no roughness of a material", path.display())]
+    Map {
+        /// The picture.
+        path: PathBuf,
+        /// Why.
+        source: MapError,
+    },
+}
+
+/// A base roughness with the picture that it may come from.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Roughness {
+    /// The variance of slopes, per axis.
+    Variance(f32),
+    /// A channel of a picture.
+    Map {
+        /// The picture.
+        image: Image,
+        /// The channel.
+        channel: usize,
+        /// What its values are.
+        stored: RoughnessStored,
+    },
+}
+
+impl Roughness {
+    /// As [`roughcast::bake()`] takes it.
+    pub fn base(&self) -> BaseRoughness<'_> {
+        match self {
+            Roughness::Variance(variance) => BaseRoughness::Variance(*variance),
+            Roughness::Map { image, channel, stored } => {
+                BaseRoughness::Map(RoughnessMap { image: image.view(), channel: *channel, stored: *stored })
+            }
+        }
+    }
+
+    /// Whether it is a colour picture with roughness in green: glTF's packed texture, of which the rest is worth keeping.
+    pub fn is_packed(&self) -> bool {
+        matches!(self, Roughness::Map { image, channel: 1, .. } if image.channels() >= 3 && !is_grey(image))
+    }
+}
+
+/// Whether red, green and blue are equal throughout, but for what lossy compression does.
+fn is_grey(image: &Image) -> bool {
+    /// JPEG's rounding of chroma.
+    const LOSSY: f32 = 4.5 / 255.0;
+    (0..image.height()).all(|y| {
+        (0..image.width()).all(|x| {
+            let [r, g, b] = [0, 1, 2].map(|channel| image.get(x, y, channel));
+            (r - g).abs() <= LOSSY && (b - g).abs() <= LOSSY
+        })
+    })
+}
+
+/// The place of a channel of this name. The only channel of a grey picture is its red as well.
+fn channel_of(info: &FileInfo, name: &str) -> Option<usize> {
+    let is_grey = info.channels.len() == 1 && info.channels[0] == "Y";
+    let place = info.channels.iter().position(|channel| channel.eq_ignore_ascii_case(name));
+    place.or_else(|| (is_grey && name.eq_ignore_ascii_case("r")).then_some(0))
+}
+
+impl RoughnessInput {
+    /// The picture, where it is one.
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            RoughnessInput::File { path, .. } => Some(path),
+            _ => None,
+        }
+    }
+
+    /// How it was given.
+    pub fn form(&self) -> RoughnessForm {
+        match self {
+            RoughnessInput::SpecularPower(_) => RoughnessForm::SpecularPower,
+            RoughnessInput::Value { .. } | RoughnessInput::File { .. } => RoughnessForm::Roughness,
+        }
+    }
+
+    /// The roughness, read from its file where it is one.
+    ///
+    /// # Errors
+    /// [`RoughnessError`].
+    pub fn load(&self, limits: &Limits) -> Result<Roughness, RoughnessError> {
+        match self {
+            RoughnessInput::SpecularPower(power) => {
+                Ok(Roughness::Variance(variance_of(*power, RoughnessStored::SpecularPower)?))
+            }
+            RoughnessInput::Value { value, stored } => Ok(Roughness::Variance(variance_of(*value, *stored)?)),
+            RoughnessInput::File { path, channel, stored } => {
+                picture(path, channel.as_deref(), *stored, limits)
+            }
+        }
+    }
+}
+
+fn variance_of(value: f32, stored: RoughnessStored) -> Result<f32, RoughnessError> {
+    let range = match stored {
+        RoughnessStored::SpecularPower => SPECULAR_POWERS,
+        _ => 0.0..=1.0,
+    };
+    if !range.contains(&value) {
+        return Err(RoughnessError::OutOfRange { value, stored, range });
+    }
+    Ok(variance_from_stored(value, stored))
+}
+
+fn picture(
+    path: &Path,
+    channel: Option<&str>,
+    stored: RoughnessStored,
+    limits: &Limits,
+) -> Result<Roughness, RoughnessError> {
+    let Decoded { image, info } = read(path, channel, limits)?;
+    refuse_baked(&info).map_err(|source| RoughnessError::Map { path: path.to_owned(), source })?;
+    let channel = match channel {
+        Some(name) => channel_of(&info, name).unwrap_or(0),
+        None if image.channels() >= 3 => 1,
+        None => 0,
+    };
+    Ok(Roughness::Map { image, channel, stored })
+}
+
+/// The picture, or of it the channel that was named where the picture as such does not have it: a layer of an EXR may.
+fn read(path: &Path, channel: Option<&str>, limits: &Limits) -> Result<Decoded, RoughnessError> {
+    let whole = ReadOptions::from(*limits);
+    let unread = |source| RoughnessError::Read { path: path.to_owned(), source };
+    let Some(name) = channel else { return read_image_file(path, &whole).map_err(unread) };
+    match read_image_file(path, &whole) {
+        Ok(decoded) if channel_of(&decoded.info, name).is_some() => Ok(decoded),
+        Ok(_) | Err(ReadError::OpenChannels { .. }) => {
+            let named = ReadOptions { channels: vec![name.to_owned()], ..whole };
+            read_image_file(path, &named)
+                .map_err(|source| RoughnessError::Channel { path: path.to_owned(), source })
+        }
+        Err(error) => Err(unread(error)),
+    }
+}

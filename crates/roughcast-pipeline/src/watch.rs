@@ -1,0 +1,128 @@
+//! Progress and cancellation.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use roughcast::named_enum;
+
+use crate::JobError;
+
+named_enum! {
+    /// What a job is doing. Stages come in this order.
+    #[derive(PartialOrd, Ord)]
+    #[non_exhaustive]
+    pub enum Stage: "stage" {
+        /// Reading the map and the roughness, and deciding what they are.
+        Reading = "reading",
+        /// Making the textures and their levels.
+        Baking = "baking",
+        /// Compressing them into blocks, where that is wanted.
+        Compressing = "compressing",
+        /// Writing the files. They take their places after the last report of this stage.
+        Writing = "writing",
+        /// The job has ended, well or not.
+        Ended = "ended",
+    }
+}
+
+/// How far a job is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Progress<'a> {
+    /// The map.
+    pub input: &'a Path,
+    /// Its place among the files of a folder that are tried; 0 for a job alone.
+    pub index: usize,
+    /// How many these are; 1 for a job alone.
+    pub count: usize,
+    /// What is being done.
+    pub stage: Stage,
+    /// Which fraction of the stage is done, 0 ..= 1, where that is known. Threads that share the work may report out of order.
+    pub fraction: Option<f32>,
+}
+
+/// Hears how jobs get on, and may stop them.
+///
+/// Any closure `Fn(&Progress) -> ControlFlow<()> + Sync` is one. It is called from any thread, also from several at once, at
+/// the beginning of each stage and, while blocks are compressed and files are written, within it. After
+/// `ControlFlow::Break` a job ends with [`JobError::Cancelled`] and leaves no file behind, and a folder begins no further job. The stage
+/// [`Stage::Baking`] runs to its end, since the bake itself cannot be stopped.
+pub trait Watch: Sync {
+    /// The job has got so far.
+    fn progress(&self, progress: &Progress<'_>) -> ControlFlow<()>;
+}
+
+impl<F: Fn(&Progress<'_>) -> ControlFlow<()> + Sync> Watch for F {
+    fn progress(&self, progress: &Progress<'_>) -> ControlFlow<()> {
+        self(progress)
+    }
+}
+
+/// A watch that hears nothing and stops nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Unwatched;
+
+impl Watch for Unwatched {
+    fn progress(&self, _: &Progress<'_>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}
+
+/// One job that is watched, with the time of each stage.
+pub(crate) struct Watched<'a> {
+    watch: &'a dyn Watch,
+    input: &'a Path,
+    index: usize,
+    count: usize,
+    stage: Option<(Stage, Instant)>,
+    times: Vec<(Stage, Duration)>,
+}
+
+impl<'a> Watched<'a> {
+    pub fn new(watch: &'a dyn Watch, input: &'a Path, index: usize, count: usize) -> Self {
+        Self { watch, input, index, count, stage: None, times: Vec::new() }
+    }
+
+    /// Ends the stage before and begins this one, unless the job is in it already.
+    pub fn begin(&mut self, stage: Stage) -> Result<(), JobError> {
+        if self.stage.is_none_or(|(current, _)| current != stage) {
+            self.end_stage();
+            self.stage = Some((stage, Instant::now()));
+        }
+        self.tell(None)
+    }
+
+    /// Tells how much of the stage is done.
+    pub fn tell(&self, fraction: Option<f32>) -> Result<(), JobError> {
+        match self.report(fraction) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(JobError::Cancelled),
+        }
+    }
+
+    /// As [`Watched::tell`], for work that stops at a `Break`.
+    pub fn report(&self, fraction: Option<f32>) -> ControlFlow<()> {
+        let Some((stage, _)) = self.stage else { return ControlFlow::Continue(()) };
+        let Self { input, index, count, .. } = *self;
+        self.watch.progress(&Progress { input, index, count, stage, fraction })
+    }
+
+    /// Ends the job. What the watch says has no effect on it any more.
+    pub fn end(&mut self) -> ControlFlow<()> {
+        self.end_stage();
+        self.stage = Some((Stage::Ended, Instant::now()));
+        self.report(None)
+    }
+
+    fn end_stage(&mut self) {
+        if let Some((stage, since)) = self.stage.take().filter(|(stage, _)| *stage != Stage::Ended) {
+            self.times.push((stage, since.elapsed()));
+        }
+    }
+
+    /// The stages that were gone through, with the time that each took.
+    pub fn times(&self) -> &[(Stage, Duration)] {
+        &self.times
+    }
+}
