@@ -338,7 +338,6 @@ impl ShadingArgs {
             repair: self.repair,
             masking: self.masking,
             footprint: self.footprint,
-            ..LobeOptions::default()
         }
     }
 
