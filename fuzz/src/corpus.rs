@@ -18,7 +18,7 @@ const MAX_BYTES: u64 = 64 * 1024;
 /// a seed gives the same runs everywhere.
 ///
 /// # Errors
-/// Where a folder cannot be read, or `corpus/` has nothing for the target.
+/// If a folder cannot be read, or `corpus/` has nothing for the target.
 pub fn files_of(target: &Target) -> io::Result<Vec<Vec<u8>>> {
     let own = repository().join("fuzz/corpus").join(target.name);
     let mut paths = files_in(&own)?;

@@ -28,7 +28,7 @@ use crate::{UsageError, usage};
 /// Turn a normal or height map into textures whose mip levels keep the bumps as roughness.
 ///
 /// The extension of the output says the format: .ktx2 or .dds, both ready for a GPU; .exr or .tx, a tiled EXR, half or float; or .png,
-/// one picture a level (NAME.L0.png, NAME.L1.png ...). A layout of several files writes NAME.PART.ext. With a folder as
+/// one picture per level (NAME.L0.png, NAME.L1.png ...). A layout of several files writes NAME.PART.ext. With a folder as
 /// input, every map in it is baked into the output folder, and a bad file does not stop the others.
 #[derive(clap::Args, Clone)]
 #[command(after_help = layout_help())]

@@ -137,7 +137,7 @@ const STILL: u8 = 80;
 const MOVING: u8 = 70;
 /// The quality that shows no steps in smooth pictures.
 const SMOOTH: u8 = 95;
-/// Pictures have the best quality that takes no more bytes a pixel: smooth ones, in which losses are seen first, take few.
+/// Pictures have the best quality that takes no more bytes per pixel: smooth ones, in which losses are seen first, take few.
 const CHEAP: f64 = 0.15;
 
 fn png(picture: &Srgb8Picture) -> Vec<u8> {

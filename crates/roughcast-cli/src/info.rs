@@ -258,7 +258,7 @@ impl LevelSlopes {
     }
 }
 
-/// Smallest and largest finite value of a channel over all levels; `None` where no value is finite.
+/// Smallest and largest finite value of a channel over all levels; `None` if no value is finite.
 fn range_over_levels(texture: &Texture, channel: usize) -> Option<(f32, f32)> {
     texture.levels.iter().filter_map(|level| range_of(level, channel)).reduce(larger_range)
 }
@@ -267,7 +267,7 @@ fn larger_range((low, high): (f32, f32), other: (f32, f32)) -> (f32, f32) {
     (low.min(other.0), high.max(other.1))
 }
 
-/// Smallest and largest finite value of a channel; `None` where no value is finite.
+/// Smallest and largest finite value of a channel; `None` if no value is finite.
 fn range_of(image: &Image, channel: usize) -> Option<(f32, f32)> {
     let samples = image.samples();
     let values = (channel..samples.len()).step_by(image.channels()).map(|index| samples.get(index));

@@ -1,4 +1,4 @@
-//! The `roughcast` program: one file a subcommand.
+//! The `roughcast` program: one file per subcommand.
 //!
 //! Results go to stdout, everything else to stderr. Exit codes: 0 done, 1 an input or a file failed, 2 the command
 //! line makes no sense.

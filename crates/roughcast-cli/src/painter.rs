@@ -49,7 +49,7 @@ impl Painter {
     }
 }
 
-/// One sample a pixel of filtered textures, on the processor.
+/// One sample per pixel of filtered textures, on the processor.
 pub struct MethodPainter {
     pub shading: Shading,
     pub textures: BakedTextures,

@@ -46,7 +46,7 @@ pub struct RoughnessArgs {
 }
 
 impl RoughnessArgs {
-    /// What the arguments name; `None` where they name nothing.
+    /// What the arguments name; `None` if they name nothing.
     pub fn input(&self) -> Option<RoughnessInput> {
         if let Some(power) = self.specular_power {
             return Some(RoughnessInput::SpecularPower(power));

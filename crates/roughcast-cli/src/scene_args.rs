@@ -213,7 +213,7 @@ pub struct CameraArgs {
 }
 
 impl CameraArgs {
-    /// The scene for a map of so many texels and a picture of this size.
+    /// The scene for a map of this many texels and a picture of this size.
     pub fn scene(
         &self,
         scene: &SceneArgs,

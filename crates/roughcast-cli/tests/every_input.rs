@@ -12,7 +12,7 @@ use roughcast_testdata::rows_with_files;
 
 const FOLDERS: [&str; 4] = ["materials", "heights", "formats", "hdri"];
 
-/// Means are compared in f64, but every texel of every level was rounded to f32 on its way: differences of so many
+/// Means are compared in f64, but every texel of every level was rounded to f32 on its way: differences of this many
 /// parts of the slopes' mean square, beside the storage's own error, are rounding.
 const ROUNDING: f64 = 1e-5;
 

@@ -55,7 +55,7 @@ fn is_writing(child: &Child, folder: &Path) -> bool {
     })
 }
 
-/// Kills the run as soon as the file that it writes has bytes; `false` where it was done before.
+/// Kills the run as soon as the file that it writes has bytes; `false` if it was done before.
 fn killed_while_writing(mut child: Child, folder: &Path) -> bool {
     loop {
         if is_writing(&child, folder) {

@@ -17,7 +17,7 @@ impl Staged {
     /// Waits for the copy and returns its bytes, rows without padding.
     ///
     /// # Errors
-    /// [`GpuError::ReadBack`] where the device was lost.
+    /// [`GpuError::ReadBack`] if the device was lost.
     pub async fn read(self, gpu: &Gpu) -> Result<Vec<u8>, GpuError> {
         map(gpu, &self.buffer).await?;
         let view = self
@@ -35,7 +35,7 @@ impl Staged {
 /// Encodes a copy of a whole buffer, which needs the usage `COPY_SRC` and a size that is a multiple of four.
 ///
 /// # Errors
-/// [`GpuError`] where the copy does not fit into memory.
+/// [`GpuError`] if the copy does not fit into memory.
 pub async fn stage_buffer(
     gpu: &Gpu,
     encoder: &mut wgpu::CommandEncoder,
@@ -50,7 +50,7 @@ pub async fn stage_buffer(
 /// follow each other.
 ///
 /// # Errors
-/// [`GpuError`] where the copy does not fit into memory, or the texture holds depth or several planes.
+/// [`GpuError`] if the copy does not fit into memory, or the texture holds depth or several planes.
 pub async fn stage_texture(
     gpu: &Gpu,
     encoder: &mut wgpu::CommandEncoder,
@@ -92,7 +92,7 @@ pub async fn stage_texture(
 /// The bytes of a whole buffer; see [`stage_buffer`].
 ///
 /// # Errors
-/// [`GpuError`] where the copy does not fit into memory or the device was lost.
+/// [`GpuError`] if the copy does not fit into memory or the device was lost.
 pub async fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let staged = stage_buffer(gpu, &mut encoder, buffer).await?;
@@ -103,7 +103,7 @@ pub async fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, Gp
 /// The texels of one level of a texture, rows without padding; see [`stage_texture`].
 ///
 /// # Errors
-/// [`GpuError`] where the copy does not fit into memory or the device was lost.
+/// [`GpuError`] if the copy does not fit into memory or the device was lost.
 pub async fn read_texture(gpu: &Gpu, texture: &wgpu::Texture, level: u32) -> Result<Vec<u8>, GpuError> {
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let staged = stage_texture(gpu, &mut encoder, texture, level).await?;
@@ -124,7 +124,7 @@ async fn staging_buffer(gpu: &Gpu, size: u64) -> Result<wgpu::Buffer, GpuError> 
 /// Waits until all that was submitted so far is done.
 ///
 /// # Errors
-/// [`GpuError::ReadBack`] where the device was lost.
+/// [`GpuError::ReadBack`] if the device was lost.
 pub async fn submitted_work_done(gpu: &Gpu) -> Result<(), GpuError> {
     let ask = |answer: Answer<()>| gpu.queue.on_submitted_work_done(move || answer.send(()));
     called_back(&gpu.device, ask).await.map_err(|reason| GpuError::ReadBack { reason })

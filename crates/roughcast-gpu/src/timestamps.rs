@@ -3,7 +3,7 @@
 use crate::read_back::read_buffer;
 use crate::{Gpu, GpuError};
 
-/// Room for the begin and the end of so many spans in one set of queries (WebGPU's limit is 4096 queries).
+/// Room for the begin and the end of this many spans in one set of queries (WebGPU's limit is 4096 queries).
 const MOST_SPANS: u32 = 2048;
 const QUERY_BYTES: u64 = 8;
 
@@ -46,7 +46,7 @@ impl Timestamps {
     /// Room for `capacity` spans, 1 to 2048.
     ///
     /// # Errors
-    /// [`GpuError::Feature`] where the device has no timestamps.
+    /// [`GpuError::Feature`] if the device has no timestamps.
     pub async fn new(gpu: &Gpu, capacity: u32) -> Result<Self, GpuError> {
         if !gpu.has_timestamps() {
             let instead = "measure whole frames with a clock of the CPU instead";
@@ -94,7 +94,7 @@ impl Timestamps {
     /// Waits for the submitted commands and returns the spans, of which none is left in use.
     ///
     /// # Errors
-    /// [`GpuError::ReadBack`] where the device was lost.
+    /// [`GpuError::ReadBack`] if the device was lost.
     pub async fn read(&mut self, gpu: &Gpu) -> Result<Vec<Measured>, GpuError> {
         let bytes = read_buffer(gpu, &self.results).await?;
         let ticks: Vec<u64> = bytemuck::pod_collect_to_vec(&bytes);
@@ -141,7 +141,7 @@ impl Span {
     /// Around commands outside of passes, such as copies.
     ///
     /// # Errors
-    /// [`GpuError::Feature`] where the device cannot.
+    /// [`GpuError::Feature`] if the device cannot.
     pub fn begin_outside_passes(
         &self,
         gpu: &Gpu,
@@ -153,7 +153,7 @@ impl Span {
     /// The end of [`Span::begin_outside_passes`].
     ///
     /// # Errors
-    /// [`GpuError::Feature`] where the device cannot.
+    /// [`GpuError::Feature`] if the device cannot.
     pub fn end_outside_passes(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) -> Result<(), GpuError> {
         self.write(gpu, encoder, self.begin + 1)
     }

@@ -14,7 +14,7 @@ use roughcast_scene::{Filter, Picture, Plane, Sampler, Scene, Shape, Sphere, Tor
 /// Squares of round shapes along v. Their triangles lie within 2e-5 of the shape.
 const DETAIL: u32 = 256;
 
-/// With one texel a pixel, no filter and the same lobes, what is left is single against double floats: directions and
+/// With one texel per pixel, no filter and the same lobes, what is left is single against double floats: directions and
 /// texture coordinates are off by a few 1e-7 (a mesh far smaller than one, ten times as much), and a lobe's flank makes some
 /// ten times that of it; the largest measured is 2e-4. The values compared are relative, down to a hundredth of the brightest.
 const SAME_TEXELS: f64 = 1e-3;

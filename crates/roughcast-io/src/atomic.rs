@@ -3,8 +3,8 @@
 //! A file is written without a name, or under a hidden one beside its destination (see [`temporary`]), and takes its place when it is
 //! complete. Whatever goes wrong before that leaves an older file as it was.
 //!
-//! The disk is not told to sync. A bake that a power cut destroyed can be repeated, and waiting for hundreds of megabytes
-//! to reach the disk takes longer than the bake; what is guarded against is a program or a disk that fails half-way.
+//! The file is not synced to the disk. A bake lost to a power cut can be repeated, and waiting for hundreds of megabytes
+//! to reach the disk takes longer than the bake. The guard is against a program or a disk that fails half-way.
 
 mod temporary;
 
@@ -17,7 +17,7 @@ use temporary::Temporary;
 /// Symbolic links that are followed one after the other, as Linux does.
 const MAX_LINKS: usize = 40;
 
-/// A file to write to, which takes its place at [`AtomicFile::commit`]; dropped before, it vanishes.
+/// A file to write to, which takes its place at [`AtomicFile::commit`]; if it is dropped before that, it vanishes.
 #[derive(Debug)]
 pub struct AtomicFile {
     destination: PathBuf,
@@ -27,12 +27,12 @@ pub struct AtomicFile {
 }
 
 impl AtomicFile {
-    /// Opens a temporary file beside `destination`. A file that is there already stays until the commit, and hands its
-    /// permissions on; otherwise the permissions are those of any new file. A symbolic link is followed.
+    /// Opens a temporary file beside `destination`. An existing file stays until the commit, and passes on its
+    /// permissions; otherwise the permissions are those of any new file. Symbolic links are followed.
     ///
     /// # Errors
-    /// Where the folder is missing or cannot be written to, and where the destination is a folder, a device or
-    /// write-protected. The message names the fault and the mend, the kind is that of the cause.
+    /// If the folder is missing or cannot be written to, and if the destination is a folder, a device or
+    /// write-protected. The message names the fault and the remedy; the kind is that of the cause.
     pub fn create(destination: &Path) -> io::Result<Self> {
         let old = fs::metadata(destination).ok();
         if let Some(old) = &old {
@@ -44,15 +44,15 @@ impl AtomicFile {
         Ok(Self { file: BufWriter::new(file), permissions, destination })
     }
 
-    /// Puts the file in its place, over the one that was there.
+    /// Puts the file in its place, replacing any file there.
     ///
     /// # Errors
-    /// Where the last bytes cannot be written or the file cannot be renamed: then the destination is as it was.
+    /// If the last bytes cannot be written or the file cannot be renamed: then the destination is as it was.
     pub fn commit(self) -> io::Result<()> {
         self.complete()?.rename()
     }
 
-    /// Everything that can fail for want of space.
+    /// Everything that can fail for lack of space.
     fn complete(self) -> io::Result<Complete> {
         let file = self.file.into_inner().map_err(io::IntoInnerError::into_error)?;
         if let Some(permissions) = self.permissions {
@@ -78,7 +78,7 @@ impl Seek for AtomicFile {
     }
 }
 
-/// A file of which all bytes are written.
+/// A file whose bytes are all written.
 struct Complete {
     destination: PathBuf,
     file: Temporary,
@@ -90,7 +90,7 @@ impl Complete {
     }
 }
 
-/// Several files that belong together: none takes its place before all are written.
+/// Several files that belong together: none takes its place until all are written.
 #[derive(Debug, Default)]
 pub struct AtomicSet {
     files: Vec<AtomicFile>,
@@ -102,10 +102,10 @@ impl AtomicSet {
         Self::default()
     }
 
-    /// Adds a file of which everything has been written.
+    /// Adds a file that has been written completely.
     ///
     /// # Errors
-    /// Where a file of the set has the same destination already: one of the two would be lost.
+    /// If a file of the set has the same destination already: one of the two would be lost.
     pub fn push(&mut self, file: AtomicFile) -> io::Result<()> {
         if self.files.iter().any(|other| other.destination == file.destination) {
             let message = "two of the files to write have this name: give each a name of its own";
@@ -118,9 +118,9 @@ impl AtomicSet {
     /// Puts all files in their places.
     ///
     /// # Errors
-    /// Where the last bytes of any file cannot be written: then all destinations are as they were. Where a file cannot be
-    /// renamed, which little but a change of its folder in the meantime can cause: then those added before it are in
-    /// place, and it and the others are not. The message starts with the name of the file.
+    /// If the last bytes of any file cannot be written: then all destinations are as they were. If a file cannot be
+    /// renamed, which happens only if its folder has changed in the meantime: then those added before it are in
+    /// place, and it and the later ones are not. The message starts with the name of the file.
     pub fn commit(self) -> io::Result<()> {
         let named = |destination: &Path, error: io::Error| {
             io::Error::new(error.kind(), format!("{}: {error}", destination.display()))
@@ -152,7 +152,7 @@ fn check_replaceable(old: &Metadata) -> io::Result<()> {
     Err(io::Error::new(kind, message))
 }
 
-/// The one path by which a file is known, so that two ways to write it are found to be the same.
+/// The canonical path of a file, so that two spellings of it compare equal.
 fn resolved(destination: &Path) -> io::Result<PathBuf> {
     if let Ok(existing) = fs::canonicalize(destination) {
         return Ok(existing);
@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_appears_at_the_commit_and_not_before() {
+    fn a_file_appears_only_at_the_commit() {
         let folder = folder();
         let path = folder.path().join("map.exr");
         let mut file = AtomicFile::create(&path).expect("a writable folder");
@@ -298,7 +298,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_link_to_nothing_is_followed_to_where_it_leads() {
+    fn a_dangling_link_is_followed_to_its_target() {
         use std::os::unix::fs::symlink;
         let folder = folder();
         fs::create_dir(folder.path().join("below")).expect("space");
@@ -321,14 +321,14 @@ mod tests {
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn a_folder_that_takes_no_files_is_not_called_missing() {
+    fn a_read_only_folder_is_not_reported_as_missing() {
         let message =
             AtomicFile::create(Path::new("/proc/map.exr")).expect_err("no new files there").to_string();
         assert!(message.contains("/proc takes no new files"), "{message}");
     }
 
     #[test]
-    fn bad_destinations_are_refused_with_the_mend() {
+    fn bad_destinations_are_refused_with_advice() {
         let folder = folder();
         let refusal = |path: &Path| AtomicFile::create(path).expect_err("a bad destination").to_string();
         assert!(refusal(folder.path()).contains("it is a folder"));
@@ -357,7 +357,7 @@ mod tests {
             set.push(file).expect("another name");
         }
         assert!(!folder.path().join("a").exists() && !folder.path().join("b").exists());
-        // The same file by another way.
+        // The same file by another path.
         let detour = folder.path().join("..").join(folder.path().file_name().expect("it has a name"));
         let again = AtomicFile::create(&detour.join("a")).expect("a writable folder");
         assert!(set.push(again).expect_err("the same name").to_string().contains("a name of its own"));
@@ -367,7 +367,7 @@ mod tests {
     }
 
     #[test]
-    fn a_set_that_is_given_up_leaves_nothing() {
+    fn a_dropped_set_leaves_nothing() {
         let folder = folder();
         fs::write(folder.path().join("a"), "old").expect("space");
         let mut set = AtomicSet::new();

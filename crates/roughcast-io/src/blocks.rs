@@ -1,6 +1,6 @@
 //! Block compression: BC4 for one channel, BC5 for two, BC7 for four.
 //!
-//! Blocks of 4 x 4 texels take 8 (BC4) or 16 bytes (BC5, BC7). They are lossy: [`decompress`] gives what a graphics
+//! Blocks of 4 x 4 texels take 8 (BC4) or 16 bytes (BC5, BC7). They are lossy: [`decompress`] returns what a graphics
 //! processor will see, so that the error added can be measured and reported.
 
 use std::ops::ControlFlow;
@@ -16,14 +16,14 @@ use crate::WriteError;
 use crate::payload::Shape;
 use crate::texels::{BlockCode, TexelFormat};
 
-/// A block format that is written.
+/// A block format that can be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum BlockFormat {
-    /// One channel, 4 bits a texel.
+    /// One channel, 4 bits per texel.
     Bc4,
-    /// Two independent channels, 8 bits a texel.
+    /// Two independent channels, 8 bits per texel.
     Bc5,
-    /// Four channels, 8 bits a texel.
+    /// Four channels, 8 bits per texel.
     Bc7,
 }
 
@@ -50,9 +50,9 @@ impl BlockFormat {
         }
     }
 
-    /// How a block of RGBA texels is compressed. For BC7 the "fast" settings: the next better ones take several times as
-    /// long, minutes for a large texture, and gain little. Opaque blocks, which most packed materials' are, have settings
-    /// that do not spend time on the fourth channel.
+    /// How a block of RGBA texels is compressed. BC7 uses the "fast" settings: the next better ones take several times as
+    /// long, minutes for a large texture, and gain little. Opaque blocks, as in most packed materials, have settings
+    /// that spend no time on the fourth channel.
     fn variant(self, rgba: &[u8; 64]) -> CompressionVariant {
         match self {
             BlockFormat::Bc4 => CompressionVariant::BC4,
@@ -104,17 +104,17 @@ pub struct BlockLayer {
     pub levels: Vec<Vec<u8>>,
 }
 
-/// Hears which fraction of some work is done, 0 ..= 1, from any thread, and may stop it. Fractions of work that threads share may come
+/// Is told which fraction of some work is done, 0 ..= 1, from any thread, and may stop it. Fractions of work that threads share may come
 /// out of order.
 pub type FractionDone<'a> = dyn Fn(f32) -> ControlFlow<()> + Sync + 'a;
 
-/// Compresses 8-bit textures. Sizes that are no multiple of 4 are filled up by repeating the edge.
+/// Compresses 8-bit textures. Sizes that are not multiples of 4 are padded by repeating the edge.
 ///
 /// Blocks do not depend on each other, so the result is the same for any number of threads. BC4 and BC5 take well under a
 /// second for a million texels, BC7 about nine on one core.
 ///
 /// # Errors
-/// [`WriteError::Unsupported`] where the samples are not 8-bit or the number of channels is not that of the format.
+/// [`WriteError::Unsupported`] if the samples are not 8-bit or the number of channels is not that of the format.
 pub fn compress(array: &TextureArray, format: BlockFormat) -> Result<BlockArray, WriteError> {
     match compress_watched(array, format, &|_| ControlFlow::Continue(()))? {
         ControlFlow::Continue(blocks) => Ok(blocks),
@@ -122,7 +122,7 @@ pub fn compress(array: &TextureArray, format: BlockFormat) -> Result<BlockArray,
     }
 }
 
-/// As [`compress`], but `watch` hears of each row of blocks and may stop the work: then the result is `Break`.
+/// As [`compress`], but `watch` is told of each row of blocks and may stop the work: then the result is `Break`.
 ///
 /// # Errors
 /// As [`compress`].
@@ -153,20 +153,20 @@ pub fn compress_watched(
     Ok(ControlFlow::Continue(BlockArray { info: array.info, format, width, height, layers }))
 }
 
-/// Blocks along a side of so many texels.
+/// The number of blocks along a side of this many texels.
 fn block_side(texels: usize) -> usize {
     texels.div_ceil(4)
 }
 
-/// `blocks_done` hears how many more blocks are done.
+/// `blocks_done` is told how many more blocks are done.
 fn compress_level(
     level: &Image,
     format: BlockFormat,
     blocks_done: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
 ) -> Result<ControlFlow<(), Vec<u8>>, WriteError> {
     let unsupported = |what| {
-        let mend = "quantise to 8 bits, with 1 channel for BC4, 2 for BC5, 4 for BC7";
-        WriteError::Unsupported { container: format.name(), what, mend }
+        let remedy = "quantise to 8 bits, with 1 channel for BC4, 2 for BC5, 4 for BC7";
+        WriteError::Unsupported { container: format.name(), what, remedy }
     };
     let Samples::U8(texels) = level.samples() else {
         return Err(unsupported(format!("{:?} samples", level.samples().sample_type())));
@@ -207,7 +207,7 @@ fn rgba_of_block(level: &Image, texels: &[u8], column: usize, row: usize) -> [u8
 /// BC7 in 8 bits.
 ///
 /// # Panics
-/// Where the number of bytes of a level is not that of its blocks.
+/// If the number of bytes of a level is not that of its blocks.
 pub fn decompress(blocks: &BlockArray) -> TextureArray {
     let format = TexelFormat::Blocks(blocks.format.code());
     let layers = blocks.layers.iter().map(|layer| {

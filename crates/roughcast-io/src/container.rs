@@ -1,4 +1,4 @@
-//! The containers that textures are written to, and what each can hold.
+//! The containers that textures are written to, and what each can store.
 
 use std::path::Path;
 
@@ -19,30 +19,30 @@ named_enum! {
     }
 }
 
-/// Why a container cannot hold what a bake with these options makes.
+/// Why a container cannot store the result of a bake with these options.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ContainerError {
-    /// Only KTX2 and DDS hold blocks.
-    #[error("{container} cannot hold compressed blocks: write ktx2 or dds, or do not compress")]
+    /// Only KTX2 and DDS store blocks.
+    #[error("{container} cannot store compressed blocks: write ktx2 or dds, or do not compress")]
     Blocks {
         /// The container.
         container: Container,
     },
-    /// EXR holds half and single floats.
-    #[error("exr holds floats, not {bits} bits: store half or single floats")]
+    /// EXR stores half and single floats.
+    #[error("exr stores floats, not {bits} bits: store half or single floats")]
     IntegersInExr {
         /// The bits asked for.
         bits: SampleType,
     },
-    /// The layout exists in floats alone, and PNG holds none.
-    #[error("png holds no floats, which the layout '{layout}' needs: write exr")]
+    /// The layout exists only in floats, which PNG cannot store.
+    #[error("png cannot store floats, which the layout '{layout}' needs: write exr")]
     FloatLayoutInPng {
         /// The layout.
         layout: Layout,
     },
-    /// PNG holds 8 or 16 bits.
-    #[error("png holds 8 or 16 bits, not {bits}: store 8 or 16 bits, or write exr")]
+    /// PNG stores 8 or 16 bits.
+    #[error("png stores 8 or 16 bits, not {bits}: store 8 or 16 bits, or write exr")]
     FloatsInPng {
         /// The bits asked for.
         bits: SampleType,
@@ -74,7 +74,7 @@ impl Container {
         }
     }
 
-    /// Refuses what this container cannot hold, before any work is done for it.
+    /// Refuses what this container cannot store, before any work is done for it.
     ///
     /// # Errors
     /// [`ContainerError`] names what does not fit.

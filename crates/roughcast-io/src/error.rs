@@ -1,6 +1,6 @@
 //! Why a file could not be read or written. The caller adds the path.
 
-/// Why bytes do not make an image or a texture, with the mend where there is one.
+/// Why bytes are not an image or a texture, with the remedy if there is one.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadError {
@@ -10,18 +10,18 @@ pub enum ReadError {
     /// There are no bytes.
     #[error("the file is empty")]
     Empty,
-    /// Neither the first bytes nor the extension name a format that is read here.
+    /// Neither the first bytes nor the extension belong to a supported format.
     #[error("not an image that roughcast reads (PNG, JPEG, TGA, BMP, WebP, TIFF, HDR, EXR, KTX2, DDS)")]
     UnknownFormat,
-    /// The format is known, but this kind of it is not read.
-    #[error("{format}: {what} is not supported: {mend}")]
+    /// The format is known, but this variant is not supported.
+    #[error("{format}: {what} is not supported: {remedy}")]
     Unsupported {
         /// The container: `KTX2`, `DDS` ...
         format: &'static str,
         /// What is not supported: `BasisLZ supercompression`, `a cube map` ...
         what: String,
         /// What the user can do.
-        mend: &'static str,
+        remedy: &'static str,
     },
     /// The bytes break the rules of their format.
     #[error("{format}: broken file: {fault}")]
@@ -41,20 +41,20 @@ pub enum ReadError {
         /// [`crate::Limits::max_pixels`].
         max_pixels: u64,
     },
-    /// The names of the channels leave open which of them to read.
-    #[error("{format}: the names of its channels leave open which to read: {contents}")]
+    /// The names of the channels are ambiguous.
+    #[error("{format}: its channel names are ambiguous: {contents}")]
     OpenChannels {
         /// The container.
         format: &'static str,
         /// The layers, and in brackets their channels.
         contents: String,
     },
-    /// A layer or channel was asked for that is not there, or is there several times.
+    /// The requested layer or channel does not exist, or exists several times.
     #[error("{format}: it has no layer or channel '{wanted}', or several: {contents}")]
     NoSuchChannel {
         /// The container.
         format: &'static str,
-        /// What was asked for.
+        /// The requested name.
         wanted: String,
         /// The layers, and in brackets their channels.
         contents: String,
@@ -68,17 +68,17 @@ pub enum ReadError {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteError {
-    /// The disk says no.
+    /// Writing failed.
     #[error(transparent)]
     Io(#[from] std::io::Error),
-    /// The container cannot hold these texels.
-    #[error("{container} cannot hold {what}: {mend}")]
+    /// The container cannot store these texels.
+    #[error("{container} cannot hold {what}: {remedy}")]
     Unsupported {
         /// The container.
         container: &'static str,
-        /// What it cannot hold.
+        /// What it cannot store.
         what: String,
         /// What the user can do.
-        mend: &'static str,
+        remedy: &'static str,
     },
 }

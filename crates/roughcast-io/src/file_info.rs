@@ -1,4 +1,4 @@
-//! What a file says of itself, and how much of it may be read.
+//! What a file says about itself, and how much of it may be read.
 
 use std::collections::BTreeMap;
 
@@ -9,9 +9,9 @@ use roughcast::{Kind, NormalChannels};
 pub struct ReadOptions {
     /// How much the reader may allocate.
     pub limits: Limits,
-    /// The layer or part of an EXR to read, by name, or the image of a TIFF, by number from 1. `None` reads the one that the file leaves no doubt about.
+    /// The layer or part of an EXR to read, by name, or the image of a TIFF, by number from 1. `None` reads the unambiguous one.
     pub layer: Option<String>,
-    /// The channels to read, by name and in this order. Empty reads those that the file's names leave no doubt about.
+    /// The channels to read, by name and in this order. If empty, the names in the file decide.
     pub channels: Vec<String>,
 }
 
@@ -42,14 +42,14 @@ pub enum ValueRange {
     Unorm,
     /// Signed normalised, -1 ..= 1, stored here as floats.
     Snorm,
-    /// Floats, of which the file does not say what range they use.
+    /// Floats whose range the file does not state.
     Float,
 }
 
-/// Where a file itself says that the components of a normal are stored.
+/// Where the components of a normal are stored, according to the file itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum NormalEncoding {
-    /// It says nothing about normals.
+    /// The file does not state it.
     #[default]
     Unstated,
     /// In these channels.
@@ -65,9 +65,9 @@ pub enum LengthUnit {
     Metre,
     /// International or US survey feet.
     Foot,
-    /// Degrees of longitude, which have no one length.
+    /// Degrees of longitude, which have no fixed length.
     Degree,
-    /// The file does not say.
+    /// The file does not state it.
     Unstated,
 }
 
@@ -99,20 +99,20 @@ pub struct FileInfo {
     pub range: ValueRange,
     /// Name of each channel of the image that is read: `R`, `G`, `B`, `A`, `Y`, or EXR's own.
     pub channels: Vec<String>,
-    /// Pairs that the file keeps beside the pixels (KTX2 key-value data, EXR text attributes, PNG text, DDS words).
+    /// Pairs that the file stores alongside the pixels (KTX2 key-value data, EXR text attributes, PNG text, DDS words).
     pub metadata: BTreeMap<String, String>,
-    /// What the file's own words, such as the names of its channels, say it contains.
+    /// What the file contains, according to its own words, such as the names of its channels.
     pub kind: Option<Kind>,
-    /// Where the file says that normals are stored.
+    /// Where normals are stored, according to the file.
     pub normal_encoding: NormalEncoding,
-    /// What the file says of the width of a pixel on the ground (GeoTIFF).
+    /// The width of a pixel on the ground, according to the file (GeoTIFF).
     pub pixel_size: Option<PixelSize>,
     /// What a user should hear about how the file was read: one clause each, without the path.
     pub warnings: Vec<String>,
 }
 
 impl FileInfo {
-    /// What is to be said of a plain picture: one layer, one level, unsigned samples, nothing kept beside them.
+    /// The information of a plain picture: one layer, one level, unsigned samples, no metadata.
     pub(crate) fn of_picture(
         container: &'static str,
         format: String,

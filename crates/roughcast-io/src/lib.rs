@@ -1,22 +1,22 @@
-//! Files in and out for `roughcast`: images of ten formats read, textures with all their levels written and read back.
+//! File input and output for `roughcast`: reads images of ten formats, writes textures with all their levels and reads them back.
 //!
 //! - [`read_image`] and [`read_image_file`] decode PNG, JPEG, TGA, BMP, WebP, TIFF, Radiance HDR, OpenEXR, KTX2 and DDS to
 //!   an [`roughcast::Image`] in the type in which the file stores its samples;
 //! - [`ktx2`], [`dds`] and [`exr`] write a [`roughcast::texture::TextureArray`] with its levels, and read back what they
 //!   wrote; [`png_levels`] writes one level as a PNG;
 //! - [`picture`] writes rendered pictures as PNG, animated PNG and EXR;
-//! - [`compress`] makes BC4, BC5 and BC7 blocks, [`decompress`] shows what a graphics processor will see of them, and
+//! - [`compress`] makes BC4, BC5 and BC7 blocks, [`decompress`] returns what a graphics processor will see, and
 //!   [`stored_of`] also measures what they cost;
-//! - [`texture_files`] writes all files of a layout or none, and finds those that belong together; [`Container`] says what
-//!   each format can hold;
+//! - [`texture_files`] writes all files of a layout or none, and finds those that belong together; [`Container`] knows what
+//!   each format can store;
 //! - `mesh`, with the feature of that name (on by default), reads Wavefront OBJ and glTF;
-//! - [`AtomicFile`] and [`AtomicSet`] let files appear whole or not at all.
+//! - [`AtomicFile`] and [`AtomicSet`] write files atomically.
 //!
-//! Readers take any bytes: none panics, and no memory is taken that [`Limits`] do not allow. Errors are one line with the
-//! fault and the mend; the caller adds the path. Numbers are data: gamma and colour profiles are passed over.
+//! Readers accept any bytes: none panics or allocates more memory than [`Limits`] allow. Errors are one line with the
+//! fault and the remedy; the caller adds the path. Values are data: gamma and colour profiles are ignored.
 //!
-//! Out of scope: what the texels of a layout mean (see [`roughcast::texture`]), cube maps, volumes, BC6H, ASTC, ETC and
-//! Basis Universal, and colour.
+//! Out of scope: the meaning of a layout's texels (see [`roughcast::texture`]), cube maps, volumes, BC6H, ETC2, HDR ASTC,
+//! and colour management.
 //!
 //! # Example
 //!
@@ -30,7 +30,7 @@
 //! let mut file = Vec::new();
 //! ktx2::write(Payload::Texels(&baked.arrays[0]), Supercompression::Zstd, &mut file)?;
 //!
-//! // As textures of ours, with all levels and what they mean …
+//! // As roughcast textures, with all levels and their meaning …
 //! let textures = ktx2::read_textures(&file, &Limits::default())?;
 //! assert_eq!(textures, baked.arrays[0]);
 //!
@@ -79,6 +79,6 @@ use roughcast::Image;
 pub struct Decoded {
     /// The pixels.
     pub image: Image,
-    /// What the file says of itself.
+    /// What the file says about itself.
     pub info: FileInfo,
 }

@@ -2,7 +2,7 @@
 //!
 //! The words are those of ambientCG (`_NormalGL`), Poly Haven (`_nor_gl_1k`), Quixel (`_Albedo`), Unreal (`T_Rock_N`), Unity
 //! (`_MetallicGlossMap`), glTF and Blender (`baseColor`) and Substance (`Normal_OpenGL`). Case, separators and the resolution do not
-//! count; the last word decides, so `gloss_paint_normal.png` is a normal map. A name that ends in several words of which one says
+//! count; the last word decides, so `gloss_paint_normal.png` is a normal map. A name that ends in several words, one of which means
 //! normals, such as `ground_nrm_rgh.png`, is a normal map that contains the others in its further channels.
 
 use roughcast::Green;
@@ -10,11 +10,11 @@ use roughcast::Green;
 /// What a picture of a material contains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MaterialRole {
-    /// Normals; the name may say which way green points.
+    /// Normals; the name may specify which way green points.
     Normal(Option<Green>),
     /// Heights or depths.
     Height,
-    /// Anything that is no map of bumps, in one word for messages: `colour`, `roughness` ...
+    /// Anything that is not a map of bumps, in one word for messages: `colour`, `roughness` ...
     Other(&'static str),
 }
 
@@ -34,7 +34,7 @@ const PACKED: MaterialRole = MaterialRole::Other("packed channels");
 const TRANSMISSION: MaterialRole = MaterialRole::Other("translucency");
 const HELPER: MaterialRole = MaterialRole::Other("a mask or preview");
 
-/// Words, without separators and in lower case, that say what a file contains wherever they end its name.
+/// Words, without separators and in lower case, that identify a file's content wherever they end its name.
 const WORDS: [(&[&str], MaterialRole); 16] = [
     (&["normalgl", "norgl", "normalopengl", "normalogl", "nrmgl", "nrmogl"], UP),
     (&["normaldx", "nordx", "normaldirectx", "normald3d", "nrmdx", "nrmd3d"], DOWN),
@@ -85,7 +85,7 @@ const WORDS: [(&[&str], MaterialRole); 16] = [
     (&["bc"], COLOUR),
 ];
 
-/// Letters that say it only among other files of the same material: `T_Rock_N`, `T_Rock_D`. Alone, `door_h.png` says nothing.
+/// Letters that identify it only among other files of the same material: `T_Rock_N`, `T_Rock_D`. `door_h.png` alone is not identified.
 const LETTERS: [(&str, MaterialRole); 10] = [
     ("n", NORMAL),
     ("h", HEIGHT),
@@ -102,18 +102,18 @@ const LETTERS: [(&str, MaterialRole); 10] = [
 /// The longest name of a role, in words: `occlusion roughness metallic`.
 const MAX_WORDS: usize = 3;
 
-/// What a name says.
+/// What a name means.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NamedRole {
     /// What the file contains.
     pub role: MaterialRole,
-    /// The name without the words that say it, in lower case: the same for all files of a material.
+    /// The name without the words of its role, in lower case: the same for all files of a material.
     pub material: String,
-    /// Whether a single letter says it, which counts only beside other files of the material.
+    /// Whether the role is a single letter, which counts only beside other files of the material.
     pub by_letter: bool,
 }
 
-/// What the name of a file, without its extension, says; `None` where it says nothing.
+/// The role in the name of a file, without its extension; `None` if there is none.
 pub fn role_of(stem: &str) -> Option<NamedRole> {
     let words = words_of(stem);
     if let Some((role, before)) = ending_role(&words) {
@@ -125,7 +125,7 @@ pub fn role_of(stem: &str) -> Option<NamedRole> {
     (!before.is_empty()).then(|| NamedRole { role: *role, material: before.concat(), by_letter: true })
 }
 
-/// The role that the last words say, the longest name first, and the words before it.
+/// The role that the last words name, the longest name first, and the words before it.
 fn ending_role(words: &[String]) -> Option<(MaterialRole, &[String])> {
     (1..=MAX_WORDS.min(words.len())).rev().find_map(|count| {
         let (before, last) = words.split_at(words.len() - count);
@@ -136,7 +136,7 @@ fn ending_role(words: &[String]) -> Option<(MaterialRole, &[String])> {
 }
 
 /// The normals that a picture of several roles contains: `nrm_rgh` is normals in RGB and roughness in alpha. A mask or preview of
-/// normals is none.
+/// normals is not one.
 fn normals_among(last: MaterialRole, mut before: &[String]) -> Option<(MaterialRole, &[String])> {
     if last == HELPER {
         return None;
@@ -152,8 +152,8 @@ fn normals_among(last: MaterialRole, mut before: &[String]) -> Option<(MaterialR
     normals.map(|role| (role, before))
 }
 
-/// What the names of files that lie side by side say: a single letter counts where another file of the same material says what it
-/// contains.
+/// The roles in the names of files in one folder: a single letter counts if another file of the same material is identified by
+/// its name.
 pub fn roles_of<'a>(stems: impl IntoIterator<Item = &'a str>) -> Vec<Option<NamedRole>> {
     let roles: Vec<Option<NamedRole>> = stems.into_iter().map(role_of).collect();
     let of_material =
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn other_names_say_nothing() {
+    fn other_names_have_no_role() {
         for stem in [
             "ocean",
             "0000",

@@ -1,15 +1,15 @@
-//! The pairs of text that files keep beside the pixels, in bounded number and size.
+//! The pairs of text that files store alongside the pixels, in bounded number and size.
 
 use std::collections::BTreeMap;
 
-/// Pairs that are kept of one file. A texture of ours has about twenty.
+/// Pairs that are kept from one file. A baked texture has about twenty.
 const MAX_PAIRS: usize = 256;
 /// Longest key kept, in bytes: EXR allows 255, PNG 79.
 const MAX_KEY_BYTES: usize = 255;
 /// Longest value kept, in bytes. Whole XMP packets and thumbnails are not what these pairs are for.
 pub(crate) const MAX_VALUE_BYTES: usize = 16 << 10;
 
-/// Adds a pair, unless the bounds are reached. A value that is too long is left out, for half of it would be a lie.
+/// Adds a pair, unless the bounds are reached. A value that is too long is left out, because half of it would be wrong.
 /// The first of two values under one key stays.
 pub(crate) fn insert(pairs: &mut BTreeMap<String, String>, key: &str, value: &str) {
     let fits = pairs.len() < MAX_PAIRS && key.len() <= MAX_KEY_BYTES && value.len() <= MAX_VALUE_BYTES;
@@ -18,7 +18,7 @@ pub(crate) fn insert(pairs: &mut BTreeMap<String, String>, key: &str, value: &st
     }
 }
 
-/// Adds a pair whose value is bytes. Text, which may end with NULs, is kept as such; anything else is named by its length.
+/// Adds a pair whose value is bytes. Text, which may end with NULs, is kept as text; anything else becomes its length in words.
 pub(crate) fn insert_bytes(pairs: &mut BTreeMap<String, String>, key: &str, value: &[u8]) {
     let text = std::str::from_utf8(value).ok().map(|text| text.trim_end_matches('\0'));
     match text.filter(|text| !text.contains('\0')) {

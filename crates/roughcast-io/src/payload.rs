@@ -1,4 +1,4 @@
-//! What goes into a texture file, and its shape: the part that KTX2 and DDS have in common.
+//! The contents of a texture file, and its shape: the part that KTX2 and DDS have in common.
 
 use std::borrow::Cow;
 
@@ -20,10 +20,10 @@ pub enum Payload<'a> {
     Blocks(&'a BlockArray),
 }
 
-/// How the levels of a file are packed beyond the texel format. DDS knows none.
+/// How the levels of a file are compressed beyond the texel format. DDS supports none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Supercompression {
-    /// Not at all: a reader can hand the bytes to the graphics processor as they lie in the file.
+    /// Not at all: a reader can hand the bytes of the file to the graphics processor.
     #[default]
     None,
     /// Zstandard, each level as one frame.
@@ -46,18 +46,18 @@ impl Shape {
         (level_side(self.width, level), level_side(self.height, level))
     }
 
-    /// Bytes of one layer of a level; `None` where the number does not fit.
+    /// Bytes of one layer of a level; `None` if the number does not fit.
     pub fn layer_bytes(&self, level: usize) -> Option<usize> {
         let (width, height) = self.level_size(level);
         self.format.bytes(width, height)
     }
 
-    /// Bytes of all layers of a level; `None` where the number does not fit.
+    /// Bytes of all layers of a level; `None` if the number does not fit.
     pub fn level_bytes(&self, level: usize) -> Option<usize> {
         self.layer_bytes(level)?.checked_mul(self.layers)
     }
 
-    /// Refuses shapes that no file may have, or that hold more pixels than the caller allows.
+    /// Refuses invalid shapes, and those with more pixels than the caller allows.
     pub fn check(&self, container: &'static str, limits: &Limits) -> Result<(), ReadError> {
         let (width, height) = (self.width as u64, self.height as u64);
         if width == 0 || height == 0 {
@@ -101,10 +101,10 @@ impl Payload<'_> {
         }
     }
 
-    /// The shape, once it is certain that every level has the size and the format that the shape says.
+    /// The shape, after checking that every level has the size and the format that it states.
     pub(crate) fn shape(&self, container: &'static str) -> Result<Shape, WriteError> {
         let unsupported =
-            |what: String, mend: &'static str| WriteError::Unsupported { container, what, mend };
+            |what: String, remedy: &'static str| WriteError::Unsupported { container, what, remedy };
         let shape = match self {
             Payload::Texels(array) => shape_of_texels(array, &unsupported)?,
             Payload::Blocks(array) => Shape {
@@ -170,8 +170,9 @@ fn shape_of_texels(
     };
     let channels = first.channels();
     if channels == 3 {
-        let mend = "graphics processors seldom take 3 channels: choose a layout of 1, 2 or 4, or write EXR";
-        return Err(unsupported("3 channels".to_owned(), mend));
+        let remedy =
+            "graphics processors seldom support 3 channels: choose a layout of 1, 2 or 4, or write EXR";
+        return Err(unsupported("3 channels".to_owned(), remedy));
     }
     if channels > 4 {
         return Err(unsupported(format!("{channels} channels"), "write EXR, or choose a layout of up to 4"));
@@ -185,7 +186,7 @@ fn shape_of_texels(
     })
 }
 
-/// Builds the textures of a file of ours; `bytes_of(layer, level)` has [`Shape::layer_bytes`] bytes.
+/// Builds the textures of a file written by roughcast; `bytes_of(layer, level)` has [`Shape::layer_bytes`] bytes.
 pub(crate) fn textures_from<'a>(
     container: &'static str,
     info: TextureInfo,
@@ -203,8 +204,8 @@ pub(crate) fn textures_from<'a>(
     Ok(TextureArray { info, layers: layers.collect() })
 }
 
-/// Name of each layer and of its channels: those of the layout. A file with other layers than its layout has is read all
-/// the same, with numbered layers and the channels R, G, B, A; the layout's decoder will say what it misses.
+/// Name of each layer and of its channels: those of the layout. A file with other layers than its layout has is read
+/// too, with numbered layers and the channels R, G, B, A; the layout's decoder will report what is missing.
 fn layer_names(
     container: &'static str,
     info: &TextureInfo,

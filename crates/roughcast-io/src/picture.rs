@@ -1,4 +1,4 @@
-//! Rendered pictures: colours, unlike the textures of the other writers.
+//! Rendered pictures. They contain colours, unlike the textures of the other writers.
 
 use std::collections::BTreeSet;
 use std::io::{Seek, Write};
@@ -29,7 +29,7 @@ impl Srgb8Picture {
         Self { width, height, pixels: vec![0; 3 * width as usize * height as usize] }
     }
 
-    /// Pictures in a row, their tops aligned, `gap` pixels of this grey between them. None of no pictures.
+    /// Pictures in a row, their tops aligned, `gap` pixels of this grey between them. `None` if there are no pictures.
     pub fn side_by_side<'a>(
         pictures: impl IntoIterator<Item = &'a Self> + Clone,
         gap: u32,
@@ -47,7 +47,7 @@ impl Srgb8Picture {
         Some(row)
     }
 
-    /// Copies another picture into this one, its top left corner at `(x, y)`; what lies outside is cut off.
+    /// Copies another picture into this one, its top left corner at `(x, y)`; parts outside are cut off.
     pub fn paste(&mut self, other: &Self, x: u32, y: u32) {
         let columns = other.width.min(self.width.saturating_sub(x)) as usize;
         let rows = other.height.min(self.height.saturating_sub(y));
@@ -62,15 +62,15 @@ impl Srgb8Picture {
 /// Writes a picture as PNG of RGB, marked as sRGB.
 ///
 /// # Errors
-/// [`WriteError::Io`] where `out` fails.
+/// [`WriteError::Io`] if `out` fails.
 pub fn write_png(picture: &Srgb8Picture, out: impl Write) -> Result<(), WriteError> {
     encode(picture, out, |encoder| encoder.set_color(png::ColorType::Rgb), &picture.pixels)
 }
 
-/// Writes the same picture in fewer bytes where it is grey or has few colours: as grey, or with a palette.
+/// Writes the same picture in fewer bytes if it is grey or has few colours: as grey, or with a palette.
 ///
 /// # Errors
-/// [`WriteError::Io`] where `out` fails.
+/// [`WriteError::Io`] if `out` fails.
 pub fn write_compact_png(picture: &Srgb8Picture, out: impl Write) -> Result<(), WriteError> {
     let (pixels, _) = picture.pixels.as_chunks::<3>();
     if let Some(grey) = grey(pixels) {
@@ -96,11 +96,11 @@ pub fn write_compact_png(picture: &Srgb8Picture, out: impl Write) -> Result<(), 
     encode(picture, out, configure, &packed(&indices, picture.width as usize, bits))
 }
 
-/// Writes a picture as JPEG, as grey where it is grey. `quality` goes from 1 to 100; from 80 on hardly any loss is
-/// seen.
+/// Writes a picture as JPEG, as grey if it is grey. `quality` goes from 1 to 100; from 80 on the loss is hardly
+/// visible.
 ///
 /// # Errors
-/// [`WriteError::Unsupported`] where a side is longer than JPEG's 65535; [`WriteError::Io`] where `out` fails.
+/// [`WriteError::Unsupported`] if a side is longer than JPEG's 65535; [`WriteError::Io`] if `out` fails.
 pub fn write_jpeg(picture: &Srgb8Picture, quality: u8, out: impl Write) -> Result<(), WriteError> {
     let Srgb8Picture { width, height, pixels } = picture;
     let mut encoder = JpegEncoder::new_with_quality(out, quality);
@@ -113,17 +113,17 @@ pub fn write_jpeg(picture: &Srgb8Picture, quality: u8, out: impl Write) -> Resul
         _ => WriteError::Unsupported {
             container: "JPEG",
             what: format!("a picture of {width}x{height} pixels"),
-            mend: "make it smaller, or write PNG",
+            remedy: "make it smaller, or write PNG",
         },
     })
 }
 
-/// The one number of every pixel, where all are grey.
+/// The one value of every pixel, if all are grey.
 fn grey(pixels: &[[u8; 3]]) -> Option<Vec<u8>> {
     pixels.iter().map(|[r, g, b]| (r == g && g == b).then_some(*r)).collect()
 }
 
-/// The colours from dark to bright, where one byte can number them.
+/// The colours from dark to bright, if one byte can index them.
 fn palette(pixels: &[[u8; 3]]) -> Option<Vec<[u8; 3]>> {
     let mut colours = BTreeSet::new();
     for pixel in pixels {
@@ -137,7 +137,7 @@ fn palette(pixels: &[[u8; 3]]) -> Option<Vec<[u8; 3]>> {
     Some(colours)
 }
 
-/// Indices of so many bits, rows filled up to whole bytes.
+/// Indices of this many bits, rows filled up to whole bytes.
 fn packed(indices: &[u8], width: usize, bits: u8) -> Vec<u8> {
     let a_byte = usize::from(8 / bits);
     let byte = |indices: &[u8]| {
@@ -180,7 +180,7 @@ pub struct Plane {
 /// Writes planes of linear values as an OpenEXR picture of single floats, ZIP-compressed.
 ///
 /// # Errors
-/// [`WriteError::Unsupported`] where a plane has not `width * height` values; [`WriteError::Io`] where `out` fails.
+/// [`WriteError::Unsupported`] if a plane has not `width * height` values; [`WriteError::Io`] if `out` fails.
 pub fn write_exr(
     (width, height): (usize, usize),
     planes: Vec<Plane>,
@@ -188,7 +188,11 @@ pub fn write_exr(
 ) -> Result<(), WriteError> {
     if planes.is_empty() || planes.iter().any(|plane| plane.values.len() != width * height) {
         let what = format!("planes that are not {width}x{height}");
-        return Err(WriteError::Unsupported { container: "EXR", what, mend: "give each one value a pixel" });
+        return Err(WriteError::Unsupported {
+            container: "EXR",
+            what,
+            remedy: "give each one value per pixel",
+        });
     }
     let channels =
         planes.into_iter().map(|plane| AnyChannel::new(plane.name, FlatSamples::F32(plane.values)));
@@ -219,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_reads_back_and_says_that_it_is_srgb() {
+    fn a_picture_reads_back_and_is_marked_as_srgb() {
         let picture = gradient(7, 5, 3);
         let mut bytes = Vec::new();
         write_png(&picture, &mut bytes).expect("memory takes it");
@@ -230,7 +234,7 @@ mod tests {
         assert_eq!(pixels, picture.pixels);
     }
 
-    /// Pixels of so many colours.
+    /// Pixels of this many colours.
     fn colours(width: u32, height: u32, count: usize, colour: fn(usize) -> [u8; 3]) -> Srgb8Picture {
         let pixels = (0..(width * height) as usize).flat_map(|i| colour(i * 7 % count)).collect();
         Srgb8Picture { width, height, pixels }
@@ -273,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn a_jpeg_is_nearly_the_picture_and_grey_where_that_is() {
+    fn a_jpeg_is_close_to_the_picture_and_grey_if_that_is() {
         // A smooth picture, of which quality 90 loses next to nothing.
         let smooth = |tint: usize| {
             let pixels = (0..48 * 32).flat_map(|i| [i % 48 * 4, i % 48 * 4 + tint, i / 48 * 7]);

@@ -1,4 +1,4 @@
-//! One level of a texture as a PNG file, for tools that read nothing else.
+//! One level of a texture as a PNG file, for tools that read no other format.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -7,18 +7,18 @@ use roughcast::{Image, Samples};
 
 use crate::WriteError;
 
-/// Samples that are turned to the byte order of PNG before they are handed on.
+/// Samples that are converted to the byte order of PNG at a time.
 const PIECE: usize = 1 << 15;
 
 /// Writes an image of 8- or 16-bit unsigned samples as PNG, with `text` as text chunks.
 ///
 /// One channel is written as grey, three as RGB and four as RGBA. PNG has no two channels but grey with alpha, which many
-/// programs multiply into the grey, so two are written as RGB with a blue of zero. There is no gamma and no sRGB chunk:
-/// the numbers are data, not colours, and no program should bend them.
+/// programs multiply into the grey, so two channels are written as RGB with a blue of zero. There is no gamma and no sRGB chunk:
+/// the values are data, not colours, and no program should convert them.
 ///
 /// # Errors
 /// [`WriteError::Unsupported`] for floats, for more than four channels, for more than 2^31 - 1 pixels in a row or rows,
-/// and for a key of `text` that PNG does not allow; [`WriteError::Io`] where `out` fails.
+/// and for a key of `text` that PNG does not allow; [`WriteError::Io`] if `out` fails.
 pub fn write_level(
     image: &Image,
     text: &BTreeMap<String, String>,
@@ -72,7 +72,7 @@ fn add_text(encoder: &mut png::Encoder<impl Write>, key: &str, value: &str) -> R
         .map_err(failure)
 }
 
-/// Hands on the samples, in a few rows at a time so that no second image is in memory.
+/// Passes on the samples, a few rows at a time so that no second image is in memory.
 fn put_samples(image: &Image, out: &mut impl Write) -> std::io::Result<()> {
     let channels = image.channels();
     let piece = PIECE / channels * channels;
@@ -101,11 +101,11 @@ fn in_order<T: Copy + Default, const N: usize>(
     }
 }
 
-fn refusal(what: String, mend: &'static str) -> WriteError {
-    WriteError::Unsupported { container: "PNG", what, mend }
+fn refusal(what: String, remedy: &'static str) -> WriteError {
+    WriteError::Unsupported { container: "PNG", what, remedy }
 }
 
-/// Everything that could be wrong with the image is checked before, so that only the disk remains.
+/// The image has been checked before, so only the disk can fail.
 fn failure(error: png::EncodingError) -> WriteError {
     match error {
         png::EncodingError::IoError(error) => WriteError::Io(error),
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn text_is_kept_and_colour_is_not_spoken_of() {
+    fn text_is_kept_without_colour_chunks() {
         let image = Image::zeros(4, 4, 3, roughcast::SampleType::U8);
         let pairs = [("roughcast.scale", "1.5"), ("author", "Jón Þór ✓")];
         let text = BTreeMap::from(pairs.map(|(key, value)| (key.to_owned(), value.to_owned())));
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn what_png_cannot_hold_is_refused_with_the_mend() {
+    fn unsupported_textures_are_refused_with_advice() {
         let floats = Image::new(1, 1, 1, Samples::F16(vec![f16::ONE])).expect("it fits");
         let message = written(&floats, &BTreeMap::new()).expect_err("floats").to_string();
         assert!(message.contains("16 bits"), "{message}");

@@ -18,7 +18,7 @@ pub enum Stored {
 }
 
 impl Stored {
-    /// As the writers of KTX2 and DDS take it.
+    /// As input for the writers of KTX2 and DDS.
     pub fn payload(&self) -> Payload<'_> {
         match self {
             Stored::Texels(array) => Payload::Texels(array),
@@ -94,7 +94,7 @@ impl Stored {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CompressError {
-    /// The blocks cannot hold these texels.
+    /// The blocks cannot store these texels.
     #[error(transparent)]
     Format(#[from] WriteError),
     /// The error of the blocks cannot be measured, since the textures do not decode.
@@ -106,10 +106,10 @@ pub enum CompressError {
 }
 
 /// Compresses each array into blocks, BC4 for one channel, BC5 for two and BC7 for four, and measures what that costs; with
-/// [`Blocks::None`] the texels stay as they are. `watch` hears the fraction done, from any thread, and may stop the work.
+/// [`Blocks::None`] the texels stay unchanged. `watch` is told the fraction done, from any thread, and may stop the work.
 ///
 /// # Errors
-/// [`CompressError`] where the texels are not 8-bit or have three channels, where the textures do not decode, and where
+/// [`CompressError`] if the texels are not 8-bit or have three channels, if the textures do not decode, or if
 /// `watch` stops the work.
 pub fn stored_of(
     arrays: Vec<TextureArray>,
@@ -165,7 +165,7 @@ impl CompressionError {
     /// Measures the textures after compression against those before it.
     ///
     /// # Errors
-    /// [`DecodeError`] where either are not all files of a layout.
+    /// [`DecodeError`] if either set is not complete.
     pub fn between(before: &[TextureArray], after: &[TextureArray]) -> Result<Self, DecodeError> {
         let sigma = |moments: &Moments| f64::from(0.5 * moments.covariance().trace()).sqrt();
         let (mut squares, mut largest, mut texels) = (0.0, 0.0_f64, 0_u64);

@@ -1,6 +1,6 @@
 //! The files of a texture: one, or several that belong together.
 //!
-//! A layout of one part is one file. A layout of several parts is a file for each, `NAME.PART.ext`; where every layer has a file of its
+//! A layout of one part is one file. A layout of several parts is a file for each, `NAME.PART.ext`; if every layer has a file of its
 //! own, that is `NAME.LAYER.ext`; and PNG has a file for each level, `NAME.L0.png` and so on. [`TextureFiles`] writes all of
 //! them or none; [`read_with_parts`] finds the others beside the one that was named.
 

@@ -1,4 +1,4 @@
-//! Files that are no meshes get one clear line, never a panic.
+//! Files that are not meshes get one clear line, never a panic.
 
 #![cfg(feature = "mesh")]
 
@@ -59,7 +59,7 @@ fn broken_obj_files() {
 }
 
 #[test]
-fn files_that_are_not_there_or_not_meshes() {
+fn missing_files_and_other_formats_are_refused() {
     let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("absent.obj");
     assert!(message(load_mesh(&path), &path).contains("check the path"));
     for name in ["mesh.stl", "mesh", "mesh.", ".obj"] {
@@ -126,7 +126,7 @@ fn broken_gltf_files() {
         (DATA_URI, "an accessor that is not there", |s| s.replace(r#""POSITION":0"#, r#""POSITION":9"#)),
         (DATA_URI, "no triangle", |s| s.replace(r#""indices":1"#, r#""mode":1"#)),
         (DATA_URI, "broken glTF file", |s| s.replace(r#""mesh":0"#, r#""mesh":7"#)),
-        (DATA_URI, "nodes are no trees", |s| s.replace(r#"{"mesh":0}"#, r#"{"mesh":0,"children":[0]}"#)),
+        (DATA_URI, "nodes are not trees", |s| s.replace(r#"{"mesh":0}"#, r#"{"mesh":0,"children":[0]}"#)),
         (DATA_URI, "no scene", |s| s.replace(r#""scene":0,"scenes":[{"nodes":[0]}],"#, "")),
         (DATA_URI, "overlap", |s| s.replace(r#""byteLength":36"#, r#""byteLength":36,"byteStride":4"#)),
         (DATA_URI, "not finite", |s| {

@@ -58,7 +58,7 @@ fn channels_go_by_their_names() {
 const HEIGHT: f32 = 0.893_742;
 
 #[test]
-fn what_names_leave_open_is_asked_with_a_list() {
+fn ambiguous_names_are_refused_with_a_list() {
     for (case, layers) in [
         (
             "missing-exr-layer-choice/e_Blender",
@@ -123,7 +123,7 @@ fn the_display_window_is_the_texture() {
 /// The name of a part, and the names of its channels with a value each.
 type Part<'a> = (Option<&'a str>, &'a [(&'a str, f32)]);
 
-/// A file of layers of one part or of several.
+/// A file whose layers are in one part or in several.
 fn written(parts: &[Part<'_>], display: IntegerBounds, data: IntegerBounds) -> Vec<u8> {
     let layers = parts.iter().map(|(name, channels)| {
         let len = data.size.area();
@@ -152,7 +152,7 @@ fn values(decoded: &Decoded) -> Vec<f32> {
 }
 
 #[test]
-fn files_of_other_programs_are_read_by_name_or_asked_about() {
+fn files_of_other_programs_are_read_by_name_or_refused_as_ambiguous() {
     let window = IntegerBounds::new((0, 0), (4, 3));
     let houdini: &[(&str, f32)] = &[("debris", 1.0), ("height", 2.0), ("mask", 3.0), ("water", 4.0)];
     let beauty: &[(&str, f32)] = &[("R", 1.0), ("G", 2.0), ("B", 3.0), ("A", 4.0)];

@@ -124,7 +124,7 @@ fn a_half_beside_a_float_is_widened() {
 }
 
 #[test]
-fn an_unfinished_file_is_called_so() {
+fn an_unfinished_file_is_reported_as_unfinished() {
     let mut file = write(vec![layer(&["R"], Encoding::UNCOMPRESSED)], Vec2(0, 0));
     // The table of blocks ends where the first block begins: y, the length and one row of halves.
     let block = 4 + 4 + WIDTH * 2;
@@ -135,7 +135,7 @@ fn an_unfinished_file_is_called_so() {
 }
 
 #[test]
-fn a_compression_that_is_too_new_is_named() {
+fn an_unknown_newer_compression_is_named() {
     let mut file = write(vec![layer(&["R"], Encoding::UNCOMPRESSED)], Vec2(0, 0));
     let attribute = b"compression\0compression\0\x01\0\0\0";
     let at = file.windows(attribute.len()).position(|window| window == attribute).unwrap() + attribute.len();

@@ -27,7 +27,7 @@ fn difference(a: &Image, b: &Image) -> (u8, f64) {
 }
 
 #[test]
-fn every_layout_of_samples_and_scans_has_libjpegs_pixels() {
+fn every_layout_of_samples_and_scans_matches_libjpeg() {
     let files = files_in("generated/jpeg");
     let mut compared = 0;
     for path in files.iter().filter(|path| path.ends_with(".jpg")) {
@@ -47,7 +47,7 @@ fn the_comparison_sees_another_picture() {
 }
 
 #[test]
-fn files_of_the_bug_reports_have_libjpegs_pixels() {
+fn files_of_the_bug_reports_match_libjpeg() {
     let case = |name: &str| pixels(&format!("cases/jpeg-noninterleaved-420/{name}.jpg"));
     // The same coefficients in one scan and in three.
     let scans = difference(&case("normal_72x50_420_ni"), &case("normal_72x50_420_interleaved"));
@@ -86,7 +86,7 @@ fn a_file_that_ends_anywhere_is_refused() {
 }
 
 #[test]
-fn what_is_not_read_is_refused_with_its_reason() {
+fn unsupported_files_are_refused_with_a_reason() {
     // The kind of frame, at the marker of the baseline one.
     let frame = |marker: u8| {
         let mut bytes = whole();

@@ -75,7 +75,7 @@ fn dds(flags: u32, code: u32, bits: u32, masks: [u32; 4], texels: &[u32]) -> Vec
     bytes
 }
 
-/// A signed number of so many bits, as it is stored.
+/// A signed number of this many bits, as it is stored.
 fn field(value: f64, bits: u32) -> u32 {
     let full = f64::from((1_u32 << (bits - 1)) - 1);
     (value * full).round() as i32 as u32 & ((1 << bits) - 1)
@@ -150,7 +150,7 @@ fn reversed_masks_of_a2w10v10u10_are_read_as_the_pixels_say() {
     }
 }
 
-/// Colours in BC3 have four values of 5 or 6 bits a block: 0.021 on this small map. Another channel in the place costs 0.1.
+/// Colours in BC3 have four values of 5 or 6 bits per block: 0.021 on this small map. Another channel in the place costs 0.1.
 const BC3_MEAN: f32 = 0.03;
 
 #[test]
@@ -194,7 +194,7 @@ fn the_channels_of_ati2_come_as_they_are_stored() {
 }
 
 #[test]
-fn a_mark_behind_ati2_says_that_x_is_first() {
+fn a_mark_after_ati2_puts_x_first() {
     let mut bytes = std::fs::read(find("cases/dds-ati2-x-first/rock_ati2_plain.dds")).unwrap();
     bytes[88..92].copy_from_slice(b"A2XY");
     let marked = read_image(&bytes, None, &ReadOptions::default()).unwrap();
@@ -237,7 +237,7 @@ const ETC1S_MEAN: f32 = 0.03;
 const UASTC_MEAN: f32 = 0.02;
 
 #[test]
-fn basis_universal_is_the_picture_it_was_made_from() {
+fn basis_universal_matches_its_source_picture() {
     let source = read("formats/ktx2/khr_s_normal_rgb8_mips_zstd.ktx2").image;
     for (name, format, mean_allowed) in [
         ("etc1s_basislz_mips", "ETC1S", ETC1S_MEAN),
@@ -271,7 +271,7 @@ fn basis_universal_is_the_picture_it_was_made_from() {
 const TRANSCODED: f32 = 4.0 / 255.0;
 
 #[test]
-fn etc1s_is_what_another_transcoder_made_bc7_of() {
+fn etc1s_matches_another_transcoder() {
     // Made by the reference transcoder, which keeps x in red, green and blue, and y in alpha.
     let reference = read("cases/ktx2-normal-mode/khr_s_normal_etc1s_basislz_mips_as_bc7.ktx2").image;
     let ours = read("formats/ktx2/khr_s_normal_etc1s_basislz_mips.ktx2").image;

@@ -217,7 +217,7 @@ fn materials_of_real_files() {
 }
 
 #[test]
-fn faults_of_the_numbers_are_those_of_meshes() {
+fn numeric_faults_are_mesh_errors() {
     let path = file("far.obj", "v 0 0 0\nv 1e30 0 0\nv 0 1e30 0\nf 1 2 3\n");
     let file = read_mesh(&path).unwrap();
     assert!(matches!(file.into_mesh(), Err(MeshFault::Size { .. })));

@@ -1,4 +1,4 @@
-//! Pixels held against other decoders and against facts that the files themselves fix.
+//! Compares pixels with other decoders and with facts that the files themselves determine.
 
 mod shared_data;
 
@@ -30,7 +30,7 @@ fn largest_difference(a: &Image, b: &Image) -> f32 {
 }
 
 #[test]
-fn pixels_are_those_of_other_decoders() {
+fn pixels_match_other_decoders() {
     let lines: Vec<&str> = CHECKSUMS.lines().filter(|line| !line.starts_with('#')).collect();
     assert!(lines.len() >= 100, "only {} checksums", lines.len());
     let rows = lines.into_iter().map(|line| line.split_once(' ').expect("a checksum and a path"));
@@ -99,7 +99,7 @@ fn a_half_float_normal_map_is_its_16_bit_source_rounded() {
 }
 
 #[test]
-fn every_half_survives() {
+fn every_half_float_is_kept() {
     let image = must_read("formats/exr/openexr_AllHalfValues.exr").image;
     let Samples::F16(samples) = image.samples() else { panic!("not halves") };
     let mut seen = vec![false; 1 << 16];
@@ -132,7 +132,7 @@ fn heights_keep_all_their_levels() {
 }
 
 #[test]
-fn hdr_maxima_are_those_of_the_manifest() {
+fn hdr_maxima_match_the_manifest() {
     let entries = manifest(&["formats/hdr", "formats/tiny", "hdri"]);
     let mut checked = 0;
     for entry in entries.iter().filter(|entry| entry.path.ends_with(".hdr")) {

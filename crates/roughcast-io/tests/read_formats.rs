@@ -30,7 +30,7 @@ const REFUSED: [(&str, &str); 7] = [
     ("formats/tiff/imgrs_ycbcr_lzw_broken.tif", "YCbCr colour is not supported"),
 ];
 
-/// Files whose channels the manifest's words do not give: transparency beside the colours (`P`, `L` with a tRNS chunk),
+/// Files whose channels do not follow from the manifest: transparency beside the colours (`P`, `L` with a tRNS chunk),
 /// TGA's attribute bit, which is no alpha, and EXR's names without the layer and in our order.
 const CHANNELS: [(&str, &[&str]); 22] = [
     ("formats/png/go_basn3p08-trns.png", &["R", "G", "B", "A"]),
@@ -58,7 +58,7 @@ const CHANNELS: [(&str, &[&str]); 22] = [
 ];
 const SLOPES: [&str; 6] = ["b0_h", "b1_dhds", "b2_dhdt", "b3_dhds2", "b4_dhdt2", "b5_dh2dsdt"];
 
-/// Files whose size the manifest has wrong: it took the planes of a planar image for rows.
+/// Files whose size is wrong in the manifest: it counted the planes of a planar image as rows.
 const SIZES: [(&str, [usize; 2]); 4] = [
     ("formats/tiff/pillow_tiff_strip_planar_16bit_RGB.tiff", [100, 40]),
     ("formats/tiff/pillow_tiff_strip_planar_16bit_RGBa.tiff", [100, 40]),
@@ -141,7 +141,7 @@ fn every_image_is_read_as_described_or_refused_with_its_reason() {
     for entry in &entries {
         if let Some(reason) = lookup(&REFUSED, &entry.path) {
             let error = read(&entry.path).expect_err(&entry.path).to_string();
-            assert!(error.contains(reason), "{}: '{error}' does not say '{reason}'", entry.path);
+            assert!(error.contains(reason), "{}: '{error}' does not contain '{reason}'", entry.path);
             continue;
         }
         let decoded = must_read(&entry.path);
@@ -165,7 +165,7 @@ fn every_image_is_read_as_described_or_refused_with_its_reason() {
 }
 
 #[test]
-fn every_exception_is_about_a_file_that_is_there() {
+fn every_exception_names_an_existing_file() {
     let entries = images();
     let there = |path: &&str| entries.iter().any(|entry| entry.path == *path);
     let exceptions = REFUSED.iter().map(|e| e.0).chain(CHANNELS.iter().map(|e| e.0));

@@ -1,4 +1,4 @@
-//! TIFFs of other writers: their pixels, what the tags say of these, and what is refused.
+//! TIFFs of other writers: their pixels, what their tags mean, and what is refused.
 //!
 //! `testdata/generated/tiff/make.py` made most of the files, with the checksums of the pixels that tifffile decodes.
 
@@ -62,7 +62,7 @@ fn checksum(image: &Image) -> String {
 }
 
 #[test]
-fn pixels_are_those_of_tifffile() {
+fn pixels_match_tifffile() {
     let checksums = std::fs::read_to_string(find("generated/tiff/checksums.txt")).expect("text");
     let lines = checksums.lines().filter(|line| !line.starts_with('#'));
     let expected: Vec<(String, String)> =
@@ -93,8 +93,8 @@ fn every_file_is_read_or_refused_with_advice() {
         match (read(name, &ReadOptions::default()), refusal) {
             (Ok(_), None) => {}
             (Err(ReadError::OpenChannels { .. }), None) if name == "grey_of_6_samples.tif" => {}
-            (Err(ReadError::Unsupported { what, mend, .. }), Some([reason, advice])) => {
-                assert!(what.contains(reason) && mend.contains(advice), "{name}: {what}: {mend}");
+            (Err(ReadError::Unsupported { what, remedy, .. }), Some([reason, advice])) => {
+                assert!(what.contains(reason) && remedy.contains(advice), "{name}: {what}: {remedy}");
                 assert!(!what.contains("support"), "{name}: {what}");
             }
             (result, _) => panic!("{name}: {:?}", result.map(|decoded| decoded.info)),
@@ -115,7 +115,7 @@ fn only_a_sample_that_is_said_to_be_alpha_makes_grey_and_alpha() {
         assert_eq!(info(name).channels, channels, "{name}");
     }
     let warnings = info("rgb_of_6_samples.tif").warnings;
-    assert_eq!(warnings, ["of its 6 samples a pixel, channel3 to channel5 are not read"]);
+    assert_eq!(warnings, ["of its 6 samples per pixel, channel3 to channel5 are not read"]);
     assert_eq!(info("rgb_unspecified.tif").warnings, [""; 0]);
 }
 
@@ -194,7 +194,7 @@ fn texels_without_data_are_nan_and_counted() {
 }
 
 #[test]
-fn numbers_are_parts_of_a_full_scale_or_heights_in_a_unit() {
+fn numbers_are_fractions_of_full_scale_or_heights_in_a_unit() {
     for (name, range) in [
         ("grey_12bit.tif", ValueRange::Unorm),
         ("uint32_rgb.tif", ValueRange::Unorm),
@@ -214,14 +214,14 @@ fn numbers_are_parts_of_a_full_scale_or_heights_in_a_unit() {
 }
 
 #[test]
-fn the_inversion_that_programs_do_not_agree_on_is_told() {
+fn the_inversion_that_programs_disagree_on_gets_a_warning() {
     assert_eq!(info("minis_white_8bit.tif").warnings, [""; 0]);
     let warnings = info("minis_white_16bit.tif").warnings;
     assert_eq!(warnings, ["its 0 is white (photometric interpretation 0), so its values are inverted"]);
 }
 
 #[test]
-fn the_size_of_a_pixel_on_the_ground_is_told() {
+fn the_size_of_a_pixel_on_the_ground_is_reported() {
     let metres = PixelSize { width: 30.0, unit: LengthUnit::Metre };
     assert_eq!(info("nodata_int16_projected.tif").pixel_size, Some(metres));
     let degrees = PixelSize { width: 1.0 / 3600.0, unit: LengthUnit::Degree };
@@ -325,9 +325,9 @@ fn broken_tags_are_named() {
         (&[(279, LONG, 7)], "ends too early"),
         (&[(284, SHORT, 3)], "planar configuration 3"),
         (&[(339, SHORT, 9)], "sample format 9"),
-        (&[(259, SHORT, 5)], "its LZW data are damaged"),
-        (&[(259, SHORT, 8)], "its deflate data are damaged"),
-        (&[(259, SHORT, 50000)], "its ZSTD data are damaged"),
+        (&[(259, SHORT, 5)], "its LZW data is damaged"),
+        (&[(259, SHORT, 8)], "its deflate data is damaged"),
+        (&[(259, SHORT, 50000)], "its ZSTD data is damaged"),
         (&[(259, SHORT, 50001)], "WebP compression is for RGB"),
         (&[(259, SHORT, 4)], "CCITT compression is for one bit"),
         (&[(259, SHORT, 12345)], "compression 12345 is not supported"),
@@ -336,13 +336,13 @@ fn broken_tags_are_named() {
         (&[(262, SHORT, 77)], "the photometric interpretation 77 is not supported"),
     ] {
         let error = error_of(&small(others));
-        assert!(error.contains(words), "{others:?}: '{error}' does not say '{words}'");
+        assert!(error.contains(words), "{others:?}: '{error}' does not contain '{words}'");
     }
 }
 
 /// libtiff applies no predictor to them either; tifffile does.
 #[test]
-fn a_predictor_of_an_uncompressed_file_is_ignored_and_told() {
+fn a_predictor_of_an_uncompressed_file_is_ignored_with_a_warning() {
     let decoded = read_image(&small(&[(317, SHORT, 2)]), None, &ReadOptions::default()).expect("whole");
     assert_eq!(decoded.image.samples(), &Samples::U8(vec![1, 2, 3, 4, 5, 6, 7, 8]));
     assert_eq!(decoded.info.warnings, ["its predictor tag is ignored, since its compression uses none"]);

@@ -27,7 +27,7 @@ pub enum Finding {
         read: Green,
         /// What the test measured, -1 ..= 0.
         correlation: f64,
-        /// The height map of the same material that says so; `None` where the slopes themselves are not those of a surface.
+        /// The height map of the same material that says so; `None` if the slopes themselves are not those of a surface.
         heights: Option<PathBuf>,
     },
     /// The name of the file says which way green points, and the slopes say the opposite and are believed.

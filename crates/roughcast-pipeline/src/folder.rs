@@ -114,7 +114,7 @@ impl<'a> FolderJob<'a> {
     /// under way end at their next report, and the outcome of all these is [`JobError::Cancelled`].
     ///
     /// # Errors
-    /// [`FolderError`] where no map is tried at all.
+    /// [`FolderError`] if no map is tried at all.
     pub fn run(&self, watch: &dyn Watch) -> Result<Vec<FolderResult>, FolderError> {
         self.check_output()?;
         self.settings.choices.check(self.container)?;

@@ -184,7 +184,7 @@ fn height_beside(path: &Path, options: &ReadOptions) -> Option<(PathBuf, Image)>
 /// Decides what the options leave open for an image that was read.
 ///
 /// # Errors
-/// [`MapError`] where it is no map, or may be none.
+/// [`MapError`] if it is no map, or may be none.
 pub fn map_of(Decoded { image, info }: Decoded, options: &MapOptions) -> Result<Map, MapError> {
     refuse_baked(&info)?;
     if options.range == Some(NormalRange::Signed) && !image.samples().sample_type().is_float() {

@@ -21,7 +21,7 @@ pub struct TextureOptions {
 /// Bakes the layout that a model samples.
 ///
 /// # Errors
-/// [`BakeError`] where the map cannot be read.
+/// [`BakeError`] if the map cannot be read.
 pub fn bake_for<'a>(
     shading: Shading,
     map: impl Into<ImageView<'a>>,

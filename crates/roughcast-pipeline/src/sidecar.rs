@@ -46,7 +46,7 @@ impl Sidecar {
     /// other.
     ///
     /// # Panics
-    /// Where nothing is stored, or there are fewer files than parts.
+    /// If nothing is stored, or there are fewer files than parts.
     pub fn new(stored: &[Stored], files: &[PathBuf]) -> Self {
         let first = &stored[0];
         let (width, height) = first.size();

@@ -45,7 +45,7 @@ pub enum TargetFinding {
     FilteredFloats,
     /// Blocks need extensions that phones lack.
     Blocks,
-    /// Loaders of this container take one level and make the others anew, which loses the roughness.
+    /// Loaders of this container take one level and make the others again, which loses the roughness.
     OneLevel,
 }
 

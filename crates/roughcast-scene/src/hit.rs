@@ -45,7 +45,7 @@ impl Frame {
         Self { tangent, bitangent, normal, orthonormal: true }
     }
 
-    /// A frame of any three axes that span space. `None` where they lie (almost) in a plane, or are not finite.
+    /// A frame of any three axes that span space. `None` if they lie (almost) in a plane, or are not finite.
     pub fn new(tangent: DVec3, bitangent: DVec3, normal: DVec3) -> Option<Self> {
         let lengths = tangent.length() * bitangent.length() * normal.length();
         let volume = tangent.dot(bitangent.cross(normal)).abs();

@@ -20,7 +20,7 @@ pub struct Level {
 /// A texture with its levels, as stored: integer texels as 0 ..= 1, floats as they are. Channels that the texture lacks
 /// are 0, the fourth is 1: what graphics hardware returns.
 ///
-/// Four floats a texel are kept, 16 bytes; a summed-area table, made at its first use, takes 32 more for each texel of
+/// Four floats per texel are kept, 16 bytes; a summed-area table, made at its first use, takes 32 more for each texel of
 /// level 0.
 #[derive(Clone, Debug)]
 pub struct Mipmap {
@@ -32,7 +32,7 @@ impl Level {
     /// A level of these texels, row by row from the top.
     ///
     /// # Errors
-    /// [`MipmapError::Size`] where their number does not fit, or is zero.
+    /// [`MipmapError::Size`] if their number does not fit, or is zero.
     pub fn new(width: usize, height: usize, texels: Vec<[f32; 4]>) -> Result<Self, MipmapError> {
         let got = texels.len();
         if got == 0 || width.checked_mul(height) != Some(got) {
@@ -79,7 +79,7 @@ impl Mipmap {
     /// A texture as a sampler sees it.
     ///
     /// # Errors
-    /// [`MipmapError::Channels`] where it has more than four channels, [`MipmapError::Size`] where it has no level.
+    /// [`MipmapError::Channels`] if it has more than four channels, [`MipmapError::Size`] if it has no level.
     pub fn of(texture: &Texture) -> Result<Self, MipmapError> {
         let channels = texture.levels.first().map_or(0, Image::channels);
         if channels > 4 {
@@ -91,7 +91,7 @@ impl Mipmap {
     /// A texture of these levels, the finest first. Their sizes need not be halves of each other.
     ///
     /// # Errors
-    /// [`MipmapError::Size`] where there is none.
+    /// [`MipmapError::Size`] if there is none.
     pub fn new(levels: Vec<Level>) -> Result<Self, MipmapError> {
         if levels.is_empty() {
             return Err(MipmapError::Size { level: 0, width: 0, height: 0, got: 0 });

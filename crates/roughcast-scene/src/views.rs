@@ -14,11 +14,11 @@ roughcast::named_enum! {
     pub enum View: "view" {
         /// Texels are magnified: a quarter of one in a pixel.
         Near = "near",
-        /// Three texels a pixel.
+        /// Three texels per pixel.
         Mid = "mid",
-        /// Twenty-four texels a pixel.
+        /// Twenty-four texels per pixel.
         Far = "far",
-        /// Six texels a pixel across, and many along: a plane up to the horizon, round shapes with the light behind them.
+        /// Six texels per pixel across, and many along: a plane up to the horizon, round shapes with the light behind them.
         Grazing = "grazing",
     }
 }

@@ -29,7 +29,7 @@ fn small_set() -> PathBuf {
 /// The folder of the extended corpus, if it is there.
 ///
 /// # Panics
-/// Where it is missing and the environment has `CI=true`.
+/// If it is missing and the environment has `CI=true`.
 fn extended() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     if folder.join("MANIFEST.tsv").is_file() {
@@ -72,18 +72,18 @@ pub fn is_extended() -> bool {
 /// A fixture.
 ///
 /// # Panics
-/// Where no corpus has it.
+/// If no corpus has it.
 #[track_caller]
 pub fn find(path: &str) -> PathBuf {
     available(path).unwrap_or_else(|| panic!("{path} is not in testdata/, and ../shared/data is not there"))
 }
 
-/// A fixture, or `None` where it belongs to the extended corpus and that is missing.
+/// A fixture, or `None` if it belongs to the extended corpus and that is missing.
 ///
 /// For the rows of tables; a test of one file uses [`find`], with a file of the small set.
 ///
 /// # Panics
-/// Where the extended corpus is there and does not have it either.
+/// If the extended corpus is there and does not have it either.
 #[track_caller]
 pub fn available(path: &str) -> Option<PathBuf> {
     let small = small_set().join(path);
@@ -98,7 +98,7 @@ pub fn available(path: &str) -> Option<PathBuf> {
 /// The rows of a table whose files are there.
 ///
 /// # Panics
-/// As [`available`], and where none is left: a test of nothing cannot fail.
+/// As [`available`], and if none is left: a test of nothing cannot fail.
 #[track_caller]
 pub fn rows_with_files<T>(rows: impl IntoIterator<Item = T>, path: impl Fn(&T) -> &str) -> Vec<T> {
     let rows: Vec<T> = rows.into_iter().filter(|row| available(path(row)).is_some()).collect();
@@ -109,7 +109,7 @@ pub fn rows_with_files<T>(rows: impl IntoIterator<Item = T>, path: impl Fn(&T) -
 /// The rows of all manifests; a file that several corpora have comes once.
 ///
 /// # Panics
-/// Where a manifest cannot be read.
+/// If a manifest cannot be read.
 pub fn manifest() -> Vec<Row> {
     let mut seen = BTreeSet::new();
     let rows = corpora().into_iter().flat_map(|corpus| rows_of(&corpus.join("MANIFEST.tsv")));
@@ -130,7 +130,7 @@ fn rows_of(manifest: &Path) -> Vec<Row> {
 /// The paths of all files of a folder and of those below it, in all corpora, sorted.
 ///
 /// # Panics
-/// Where no corpus has the folder.
+/// If no corpus has the folder.
 #[track_caller]
 pub fn files_in(folder: &str) -> Vec<String> {
     files_in_each(&[folder])
@@ -139,7 +139,7 @@ pub fn files_in(folder: &str) -> Vec<String> {
 /// The same of several folders, of which some may be in the extended corpus only.
 ///
 /// # Panics
-/// Where no corpus has any of them.
+/// If no corpus has any of them.
 #[track_caller]
 pub fn files_in_each(folders: &[&str]) -> Vec<String> {
     let mut files = BTreeSet::new();

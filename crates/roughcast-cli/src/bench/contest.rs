@@ -213,7 +213,7 @@ impl Canvas {
     }
 }
 
-/// A plane that covers the whole picture, with maps of so many texels a side, three of them to a pixel.
+/// A plane that covers the whole picture, with maps of this many texels a side, three of them to a pixel.
 fn scene(side: usize, size: (u32, u32)) -> Scene {
     View::Mid.scene(Arc::new(Shape::Plane(Plane::default())), (side, side), size, Material::default())
 }

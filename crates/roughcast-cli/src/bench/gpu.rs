@@ -16,7 +16,7 @@ use crate::{say, say_json};
 
 /// Measure shading and making maps on the graphics card.
 ///
-/// A plane that covers the whole picture is drawn with Blinn-Phong, with a LEAN map, with a LEAN map that is made anew
+/// A plane that covers the whole picture is drawn with Blinn-Phong, with a LEAN map, with a LEAN map that is made again
 /// for every frame, and with a CLEAN map. Times are those of the card's own clock.
 #[derive(clap::Args)]
 pub struct Args {

@@ -30,7 +30,7 @@ impl Distribution {
     /// Of a map whose base roughness has the exponent `specular_power`.
     ///
     /// # Errors
-    /// [`BakeError`] where the map cannot be read.
+    /// [`BakeError`] if the map cannot be read.
     pub fn of(map: &Image, source: &SourceOptions, specular_power: f32) -> Result<Self, BakeError> {
         let options =
             BakeOptions { layout: Layout::Moments, bits: SampleType::F32, ..BakeOptions::default() };

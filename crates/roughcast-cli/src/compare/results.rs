@@ -18,7 +18,7 @@ pub struct Row {
     pub flip: f64,
     /// Relative error of the energy of the highlight, as a part of the truth's; negative where it is too dark.
     pub energy: f64,
-    /// Temporal variance in excess of the truth's, in radiance squared; `None` where it was not measured.
+    /// Temporal variance in excess of the truth's, in radiance squared; `None` if it was not measured.
     pub flicker: Option<f64>,
 }
 

@@ -124,7 +124,7 @@ fn expected(map: &Pattern) -> Result<f64> {
     Ok(f64::from(large / small).sqrt())
 }
 
-/// The covariance of the half vectors, as points `h.xy / h.z` of the surface's frame, weighed by the highlight.
+/// The covariance of the half vectors, as points `h.xy / h.z` of the surface's frame, weighted by the highlight.
 fn highlight(scene: &Scene, picture: &Picture) -> Covariance {
     let (width, height) = (picture.width as u32, picture.height as u32);
     let (mut weight, mut sum, mut squares) = (0.0, DVec2::ZERO, [0.0; 3]);

@@ -1,4 +1,4 @@
-//! `roughcast figures`: the figures of the texts, made anew, each with the claim that it must show and the numbers that
+//! `roughcast figures`: the figures of the texts, made again, each with the claim that it must show and the numbers that
 //! prove it.
 
 mod lean_13;
@@ -24,7 +24,7 @@ use crate::args::one_of;
 use crate::html::{Chart, Page, Verdict};
 use crate::progress;
 
-/// Make the figures of the texts anew, each with its claim and the numbers that prove it.
+/// Make the figures of the texts again, each with its claim and the numbers that prove it.
 ///
 /// Writes index.html, which needs no other file; results.json, with claim, numbers and "holds" of each figure; and the
 /// pictures as NAME.png. Exits with 1 where a claim does not hold.

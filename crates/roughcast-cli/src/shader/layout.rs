@@ -24,7 +24,7 @@ pub struct Layout {
     pub size: u32,
 }
 
-/// The layout of a struct of the library; `None` where there is none of the name.
+/// The layout of a struct of the library; `None` if there is none of the name.
 pub fn layout(module: &Module, name: &str, rule: Rule) -> Option<Layout> {
     let (_, found) = module.types.iter().find(|(_, found)| found.name.as_deref() == Some(name))?;
     let TypeInner::Struct { members, .. } = &found.inner else { return None };

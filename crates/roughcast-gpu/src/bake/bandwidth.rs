@@ -61,7 +61,7 @@ pub async fn bake_bandwidth(
 /// half written.
 ///
 /// # Errors
-/// [`GpuError::Feature`] without timestamps; [`GpuError`] where the textures do not fit into memory.
+/// [`GpuError::Feature`] without timestamps; [`GpuError`] if the textures do not fit into memory.
 pub async fn copy_bandwidth(gpu: &Gpu, bytes: u64) -> Result<Bandwidth, GpuError> {
     let texels = (bytes / 2).div_ceil(COPY_TEXEL).max(1);
     let width = texels.isqrt().next_multiple_of(COPY_TILE);

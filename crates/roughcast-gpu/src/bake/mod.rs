@@ -89,7 +89,7 @@ impl GpuBaker {
     /// For images like this one, which is uploaded as the first. Nothing is baked yet.
     ///
     /// # Errors
-    /// [`GpuError`] where options do not go together or not on a GPU, the map is too large, or a format is not there.
+    /// [`GpuError`] if options do not go together or not on a GPU, the map is too large, or a format is not there.
     pub async fn for_image(
         gpu: &Gpu,
         image: &Image,
@@ -151,7 +151,7 @@ impl GpuBaker {
     /// Replaces the map by another image of the same size, channels and sample type.
     ///
     /// # Errors
-    /// [`GpuError::Shape`] where the image is of another kind.
+    /// [`GpuError::Shape`] if the image is of another kind.
     pub fn upload(&self, image: &Image) -> Result<(), GpuError> {
         let size = self.job.size;
         let same_size = (image.width(), image.height()) == (size.width as usize, size.height as usize);
@@ -227,7 +227,7 @@ impl GpuBaker {
     /// What the texels mean. An automatic scale is read back from the GPU.
     ///
     /// # Errors
-    /// [`GpuError::ReadBack`] where the device was lost.
+    /// [`GpuError::ReadBack`] if the device was lost.
     pub async fn info(&self) -> Result<TextureInfo, GpuError> {
         let mut info = self.job.plan.info;
         if !self.job.target.is_float() {
@@ -240,7 +240,7 @@ impl GpuBaker {
     /// follow from the map.
     ///
     /// # Errors
-    /// [`GpuError::ReadBack`] where the device was lost.
+    /// [`GpuError::ReadBack`] if the device was lost.
     pub async fn max_slope(&self) -> Result<f32, GpuError> {
         Ok(self.stores().await?[LIMIT_AT])
     }
@@ -252,7 +252,7 @@ impl GpuBaker {
     /// Texels that the last bake had to mend; nothing where it was made by render passes, which do not count.
     ///
     /// # Errors
-    /// [`GpuError::ReadBack`] where the device was lost.
+    /// [`GpuError::ReadBack`] if the device was lost.
     pub async fn counts(&self) -> Result<Option<SourceCounts>, GpuError> {
         if matches!(self.work, Work::Raster(_)) {
             return Ok(None);
@@ -265,7 +265,7 @@ impl GpuBaker {
     /// The baked textures in memory, to be written to files.
     ///
     /// # Errors
-    /// [`GpuError`] where they do not fit into memory or the device was lost.
+    /// [`GpuError`] if they do not fit into memory or the device was lost.
     pub async fn read_back(&self) -> Result<TextureArray, GpuError> {
         let info = self.info().await?;
         self.job.target.read_back(&self.gpu, &self.job.textures, info).await

@@ -11,7 +11,7 @@ use crate::{Gpu, GpuError};
 /// `roughcast_scene::render::Method` makes it. `renderer` must be one for [`RenderTarget::Parts`].
 ///
 /// # Errors
-/// [`GpuError`] where the picture or the scene is not one that can be rendered, or the device was lost.
+/// [`GpuError`] if the picture or the scene is not one that can be rendered, or the device was lost.
 pub async fn render(
     renderer: &Renderer,
     drawing: &mut Drawing,

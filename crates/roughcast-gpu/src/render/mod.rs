@@ -112,7 +112,7 @@ impl Renderer {
     /// A renderer for targets of this kind.
     ///
     /// # Errors
-    /// [`GpuError::Format`] where the device cannot render to the format; [`GpuError::Feature`] where its shaders cannot
+    /// [`GpuError::Format`] if the device cannot render to the format; [`GpuError::Feature`] if its shaders cannot
     /// read lists of lights.
     pub async fn new(gpu: &Gpu, target: RenderTarget) -> Result<Self, GpuError> {
         for format in target.formats() {
@@ -139,7 +139,7 @@ impl Renderer {
     /// Makes a shape and textures ready to be drawn. [`Drawing::set_view`] has to follow.
     ///
     /// # Errors
-    /// [`GpuError::OnlyOnCpu`] for a filter that hardware does not have; [`GpuError::Refused`] where the driver does not
+    /// [`GpuError::OnlyOnCpu`] for a filter that hardware does not have; [`GpuError::Refused`] if the driver does not
     /// compile the shader.
     pub async fn prepare(
         &mut self,
@@ -228,7 +228,7 @@ impl Drawing {
     /// shape is that of the geometry; it only tells here where the depths lie.
     ///
     /// # Errors
-    /// [`GpuError::Scene`] where the camera shows nothing or the size is zero; and where so many lights do not fit.
+    /// [`GpuError::Scene`] if the camera shows nothing or the size is zero; and where so many lights do not fit.
     pub async fn set_view(
         &mut self,
         renderer: &Renderer,

@@ -77,7 +77,7 @@ impl ShaderKey {
 /// textures in the order of [`TexelReader::inputs`].
 ///
 /// # Errors
-/// [`UnknownName`] where the library lacks the model.
+/// [`UnknownName`] if the library lacks the model.
 pub fn shader_source(key: ShaderKey) -> Result<String, UnknownName> {
     let ShaderKey { shading, reader, level } = key;
     let modules = [&[shading.name(), "reflectance", reader.module], reader.gaussians.modules()].concat();

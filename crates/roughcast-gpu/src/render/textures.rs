@@ -23,7 +23,7 @@ impl GpuTextures {
     /// 8-bit and 16-bit unsigned, half or single floats. Three channels become four.
     ///
     /// # Errors
-    /// [`GpuError::Detail`] where a texture is missing; [`GpuError::Format`] where the device cannot filter what is stored;
+    /// [`GpuError::Detail`] if a texture is missing; [`GpuError::Format`] if the device cannot filter what is stored;
     /// and where the textures are too large.
     pub async fn new(gpu: &Gpu, shading: Shading, arrays: &[TextureArray]) -> Result<Self, GpuError> {
         let inputs = model_inputs(shading, arrays)?;
@@ -45,7 +45,7 @@ impl GpuTextures {
     /// layout, in their order. They need the usage `TEXTURE_BINDING`.
     ///
     /// # Errors
-    /// [`GpuError::Shape`] where the textures are not those of the model; [`GpuError::Format`] where the device cannot
+    /// [`GpuError::Shape`] if the textures are not those of the model; [`GpuError::Format`] if the device cannot
     /// filter them.
     pub fn of_baked(
         gpu: &Gpu,

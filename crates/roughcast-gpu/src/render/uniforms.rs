@@ -71,7 +71,7 @@ pub(super) fn light_words(lights: &[Light]) -> Vec<u32> {
     words
 }
 
-/// Words of a buffer for lights of so many words: twice as many where the device's limit allows it, so that lights added
+/// Words of a buffer for lights of this many words: twice as many where the device's limit allows it, so that lights added
 /// one by one do not cost a buffer each.
 pub(super) fn room_for(words: usize, limit_bytes: u64) -> usize {
     let limit = usize::try_from(limit_bytes / size_of::<u32>() as u64).unwrap_or(usize::MAX);

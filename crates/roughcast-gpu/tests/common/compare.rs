@@ -16,7 +16,7 @@ pub struct Difference {
 /// Compares all layers, levels and channels.
 ///
 /// # Errors
-/// Where the two are not of one shape.
+/// If the two are not of one shape.
 pub fn difference(a: &TextureArray, b: &TextureArray) -> Result<Difference, String> {
     let mut found = Difference { steps: 0, place: String::new(), texels_that_differ: 0, texels: 0 };
     if a.layers.len() != b.layers.len() {

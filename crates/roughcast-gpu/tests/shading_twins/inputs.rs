@@ -64,7 +64,7 @@ impl Inputs {
         self.mixture(count)
     }
 
-    /// A distribution of so many Gaussians.
+    /// A distribution of this many Gaussians.
     pub fn mixture(&mut self, count: usize) -> Distribution {
         let mut rest = 1.0;
         let parts: Vec<WeightedGaussian> = (0..count)

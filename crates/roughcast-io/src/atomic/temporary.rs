@@ -11,14 +11,14 @@ use std::time::{Duration, SystemTime};
 
 use tempfile::NamedTempFile;
 
-/// Characters of the destination's name that go into the temporary one, which a file system might else find too long.
+/// Characters of the destination's name used in the temporary one, which might otherwise be too long for the file system.
 const NAME_CHARACTERS: usize = 48;
 /// The end of the names of hidden files.
 const SUFFIX: &str = ".tmp";
-/// A hidden file that nobody has written to for so long belongs to a program that was killed.
+/// A hidden file that has not been written to for this long belongs to a program that was killed.
 const STALE: Duration = Duration::from_secs(3600);
 
-/// A file that is not in its place yet; dropped, it vanishes.
+/// A file that is not in its place yet; if it is dropped, it vanishes.
 #[derive(Debug)]
 pub(super) enum Temporary {
     /// Without a name.
@@ -38,7 +38,7 @@ impl Temporary {
         Self::create_named(destination)
     }
 
-    /// An empty hidden file, after those that killed programs have left are removed.
+    /// An empty hidden file; first removes those that killed programs have left.
     pub(super) fn create_named(destination: &Path) -> io::Result<Self> {
         remove_stale(destination, SystemTime::now());
         named(destination).map(Self::Named)
@@ -53,7 +53,7 @@ impl Temporary {
         }
     }
 
-    /// Puts the file in its place, over the one that was there.
+    /// Puts the file in its place, replacing any file there.
     pub(super) fn persist(self, destination: &Path) -> io::Result<()> {
         match self {
             #[cfg(target_os = "linux")]
@@ -83,7 +83,7 @@ fn folder_of(destination: &Path) -> &Path {
     destination.parent().unwrap_or(Path::new("."))
 }
 
-/// A file without a name in a folder; `None` where the file system has no such thing, or anything else is wrong.
+/// A file without a name in a folder; `None` if the file system does not support that, or anything else fails.
 #[cfg(target_os = "linux")]
 fn unnamed(folder: &Path) -> Option<File> {
     use rustix::fs::{Mode, OFlags, open};
@@ -101,7 +101,7 @@ fn by_descriptor(file: &File) -> String {
 }
 
 /// Gives an unnamed file its name. A name that is taken cannot be replaced in one step, so there the file gets a hidden name
-/// first: a kill between the two calls is all that could leave it.
+/// first: only a kill between the two calls could leave it behind.
 #[cfg(target_os = "linux")]
 fn link(file: &File, destination: &Path) -> io::Result<()> {
     use rustix::fs::{AtFlags, CWD, linkat};
@@ -110,7 +110,7 @@ fn link(file: &File, destination: &Path) -> io::Result<()> {
     };
     match link_to(destination) {
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
-            // A name that is free, found by making a file of it.
+            // A free name, found by creating a file with it.
             let hidden = named(destination)?.into_temp_path();
             fs::remove_file(&hidden)?;
             link_to(&hidden)?;
@@ -139,7 +139,7 @@ fn named(destination: &Path) -> io::Result<NamedTempFile> {
     builder.tempfile_in(folder_of(destination))
 }
 
-/// Removes the hidden files of a destination that are old. What cannot be read or removed is left.
+/// Removes the old hidden files of a destination. Files that cannot be read or removed are left.
 fn remove_stale(destination: &Path, now: SystemTime) {
     let prefix = prefix(destination);
     let Ok(entries) = fs::read_dir(folder_of(destination)) else { return };
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn both_kinds_take_their_place_over_an_older_file_or_none() {
+    fn both_kinds_replace_an_older_file_or_create_a_new_one() {
         for create in [Temporary::create, Temporary::create_named] {
             let folder = tempfile::tempdir().expect("a temporary folder");
             let destination = folder.path().join("map.exr");

@@ -60,7 +60,7 @@ const BLOCKS: [(u32, &str, BlockCode); 18] = [
     (99, "BC7_UNORM_SRGB", BlockCode::Bc7),
 ];
 
-/// Four letters, how they are called, and the blocks that they stand for.
+/// Four letters, their name, and the blocks that they stand for.
 const FOUR_CC_BLOCKS: [([u8; 4], &str, BlockCode); 8] = [
     (*b"DXT1", "DXT1 (BC1_UNORM)", BlockCode::Bc1),
     (*b"DXT3", "DXT3 (BC2_UNORM)", BlockCode::Bc2),
@@ -103,29 +103,29 @@ const FLAG_BUMP_LUMINANCE: u32 = 0x4_0000;
 const FLAG_BUMP_DUDV: u32 = 0x8_0000;
 
 /// Bump formats of Direct3D 9 with signed fields of several lengths, by their number: bits, masks of u, v and, if there is
-/// one, w. Luminance and alpha beside them are no part of a normal.
+/// one, w. Luminance and alpha beside them are not part of a normal.
 const BUMP_FIELDS: [(u32, &str, u32, &[u32]); 3] = [
     (61, "L6V5U5", 16, &[0x1f, 0x3e0]),
     (62, "X8L8V8U8", 32, &[0xff, 0xff00]),
     (67, "A2W10V10U10", 32, &[0x3ff, 0xf_fc00, 0x3ff0_0000]),
 ];
 
-/// The masks that Direct3D's own library writes for A2W10V10U10: u and w have changed places against the format's definition.
+/// The masks that Direct3D's own library writes for A2W10V10U10: u and w are swapped relative to the format's definition.
 const REVERSED_UVW: [u32; 3] = [0x3ff0_0000, 0xf_fc00, 0x3ff];
 
 const CONVERT: &str = "convert it to R8G8B8A8, R16G16, BC5 or BC7 UNORM first";
 
-/// What the pixel format of a file says.
+/// The meaning of a file's pixel format.
 pub(super) struct Format {
     pub texels: TexelFormat,
-    /// In the words of the format.
+    /// Its name.
     pub name: String,
-    /// What the format is made for.
+    /// The purpose of the format.
     pub kind: Option<Kind>,
     pub normals: NormalEncoding,
     /// Where each channel of the image comes from, where the file has moved them.
     pub moved: Option<Vec<Source>>,
-    /// Whether the first and the last channel may have changed places, which only the pixels tell.
+    /// Whether the first and the last channel may be swapped, which only the pixels show.
     pub may_be_reversed: bool,
 }
 
@@ -146,7 +146,7 @@ impl Format {
     }
 }
 
-/// The pixel format of a file, or why it is not read.
+/// The pixel format of a file, or why it is not supported.
 pub(super) fn pixel_format(header: &Header) -> Result<Format, ReadError> {
     let format = match header.pixel_format {
         PixelFormat::Dxgi(number) => of_dxgi(number).map(|(texels, name)| Format::plain(texels, name)),
@@ -192,7 +192,7 @@ fn of_dxgi(number: u32) -> Result<(TexelFormat, String), ReadError> {
     }
 }
 
-/// Says by family what a format is that is not read; the numbers are those of `DXGI_FORMAT`.
+/// Names the family of an unsupported format; the numbers are those of `DXGI_FORMAT`.
 fn not_read(number: u32) -> ReadError {
     let what = match number {
         3 | 4 | 7 | 8 | 12 | 14 | 17 | 18 | 25 | 30 | 32 | 36 | 38 | 42 | 43 | 50 | 52 | 57 | 59 | 62
@@ -209,12 +209,12 @@ fn not_read(number: u32) -> ReadError {
 fn of_four_cc(code: [u8; 4], swizzle_code: [u8; 4]) -> Result<Format, ReadError> {
     match &code {
         b"ATI2" => return Ok(ati2(swizzle_code)),
-        // x first in so many letters.
+        // x first in this many letters.
         b"A2XY" => {
             let format = Format::plain(TexelFormat::Blocks(BlockCode::Bc5), "A2XY (BC5_UNORM)");
             return Ok(format.of_normals(NormalEncoding::Stated(NormalChannels::Xy)));
         }
-        // Doom 3 and the NVIDIA tools: x in alpha. Red and alpha change places, and z follows, since the blue of the blocks is
+        // Doom 3 and the NVIDIA tools: x in alpha. Red and alpha are swapped, and z is computed, since the blue of the blocks is
         // too coarse.
         b"RXGB" => {
             let format = Format::plain(TexelFormat::Blocks(BlockCode::Bc3), "RXGB (BC3_UNORM)");
@@ -254,8 +254,8 @@ fn of_four_cc(code: [u8; 4], swizzle_code: [u8; 4]) -> Result<Format, ReadError>
     })
 }
 
-/// Two blocks of BC4. ATI's own tools wrote y first; texconv, GIMP and the NVIDIA tools write x first, the last of them with a
-/// mark behind the FourCC. Without it neither order is always right.
+/// Two blocks of BC4. ATI's own tools wrote y first; texconv, GIMP and the NVIDIA tools write x first, the last with a
+/// mark after the FourCC. Without it neither order is always right.
 fn ati2(swizzle_code: [u8; 4]) -> Format {
     let blocks = TexelFormat::Blocks(BlockCode::Bc5);
     if swizzle_code == *b"A2XY" {
@@ -288,7 +288,7 @@ fn of_masks(masks: Masks) -> Result<Format, ReadError> {
     let (channels, names): (&[u32], &'static [&'static str]) = if flags & FLAG_RGB != 0 {
         match (green | blue != 0, blue != 0, has_alpha) {
             (false, _, false) => (&[red], &["R"]),
-            // Luminance and alpha, called red and alpha: the NVIDIA tools' A8L8 has x in the one and y in the other.
+            // Luminance and alpha, named red and alpha: the NVIDIA tools' A8L8 has x in the former and y in the latter.
             (false, _, true) => (&[red, alpha], &["R", "G"]),
             (true, false, false) => (&[red, green], &["R", "G"]),
             (_, _, false) => (&[red, green, blue], &["R", "G", "B"]),
@@ -308,11 +308,11 @@ fn of_masks(masks: Masks) -> Result<Format, ReadError> {
     }
     match Packed::new(texel_bytes(bits), channels, names) {
         Some(packed) => Ok(Format::plain(TexelFormat::Packed(packed), name())),
-        None => Err(malformed(format!("{bits} bits with masks {channels:x?} are no pixel format"))),
+        None => Err(malformed(format!("{bits} bits with masks {channels:x?} are not a pixel format"))),
     }
 }
 
-/// Whole bytes of a texel; 0 where its bits are no whole bytes.
+/// Bytes of a texel; 0 if its bits are not whole bytes.
 fn texel_bytes(bits: u32) -> usize {
     if bits.is_multiple_of(8) { bits as usize / 8 } else { 0 }
 }
@@ -365,6 +365,6 @@ fn bump_fields(name: &str, bits: u32, masks: &[u32]) -> Result<Format, ReadError
             let format = Format::plain(TexelFormat::Packed(packed.signed()), name);
             Ok(format.of_normals(NormalEncoding::Unstated))
         }
-        None => Err(malformed(format!("{bits} bits with masks {masks:x?} are no bump format"))),
+        None => Err(malformed(format!("{bits} bits with masks {masks:x?} are not a bump format"))),
     }
 }

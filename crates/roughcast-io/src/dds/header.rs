@@ -3,7 +3,7 @@
 use super::{IDENTIFIER, malformed, unsupported};
 use crate::ReadError;
 
-/// Fields of a header that makes sense. Pitch, capabilities and most flags are passed over: too many writers lie in them.
+/// Fields of a valid header. Pitch, capabilities and most flags are ignored: too many writers get them wrong.
 #[derive(Clone, Debug)]
 pub(super) struct Header {
     pub width: u32,
@@ -15,13 +15,13 @@ pub(super) struct Header {
     /// `dwReserved1`, which belongs to the writer.
     pub reserved: [u32; 11],
     pub pixel_format: PixelFormat,
-    /// Whether the writer says that these are normals, as the NVIDIA tools do.
+    /// Whether the file is marked as normals, as by the NVIDIA tools.
     pub has_normals: bool,
     /// Where the texels start.
     pub data_offset: usize,
 }
 
-/// Which texels.
+/// The texel format.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum PixelFormat {
     /// Number of a `DXGI_FORMAT`.
@@ -116,7 +116,7 @@ impl Header {
     }
 }
 
-/// From the words behind the size of `DDS_PIXELFORMAT`.
+/// From the words after the size of `DDS_PIXELFORMAT`.
 fn legacy_pixel_format(words: &[u32]) -> PixelFormat {
     if words[0] & FLAG_FOUR_CC != 0 {
         return PixelFormat::FourCc { code: words[1].to_le_bytes(), swizzle_code: words[2].to_le_bytes() };

@@ -1,8 +1,8 @@
 //! DDS, the texture container of Direct3D: <https://learn.microsoft.com/windows/win32/direct3ddds/dx-graphics-dds>.
 //!
-//! Written, always with the DX10 header: 1, 2 or 4 channels of 8-bit or 16-bit UNORM, half or single float, and BC4, BC5,
-//! BC7. Read as an image: these and their relatives, also SNORM, blue first, BC1, BC2, BC3, the masked and the numbered
-//! formats of Direct3D 9. Cube maps, volumes, integers, depth, BC6H, YUV and palettes are refused with a mend.
+//! Writes, always with the DX10 header: 1, 2 or 4 channels of 8-bit or 16-bit UNORM, half or single float, and BC4, BC5,
+//! BC7. Reads, as an image: these and their relatives, also SNORM, blue first, BC1, BC2, BC3, the masked and the numbered
+//! formats of Direct3D 9. Cube maps, volumes, integers, depth, BC6H, YUV and palettes are refused with advice.
 
 mod format;
 mod header;
@@ -21,6 +21,6 @@ fn malformed(fault: impl Into<String>) -> crate::ReadError {
     crate::ReadError::Malformed { format: CONTAINER, fault: fault.into() }
 }
 
-fn unsupported(what: impl Into<String>, mend: &'static str) -> crate::ReadError {
-    crate::ReadError::Unsupported { format: CONTAINER, what: what.into(), mend }
+fn unsupported(what: impl Into<String>, remedy: &'static str) -> crate::ReadError {
+    crate::ReadError::Unsupported { format: CONTAINER, what: what.into(), remedy }
 }

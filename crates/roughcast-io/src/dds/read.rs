@@ -15,16 +15,16 @@ use crate::{Decoded, FileInfo, Limits, ReadError};
 /// Reads level 0 of layer 0 as an image.
 ///
 /// SNORM formats become floats in -1 ..= 1, BC4 and BC5 UNORM 16-bit samples, masks 8-bit or 16-bit ones. Signed bump formats
-/// become floats of two or three channels. The two channels of an `ATI2` file come as they are stored; where the file says which
-/// of them is x, [`FileInfo::normal_encoding`] has it. A DXT5 file comes as RGBA, also where it keeps the x of normals in its
-/// alpha, but in RXGB and its relatives the components are put back in their places.
+/// become floats of two or three channels. The two channels of an `ATI2` file keep their order; if the file specifies which
+/// of them is x, [`FileInfo::normal_encoding`] contains it. A DXT5 file is read as RGBA, even if it keeps the x of normals in its
+/// alpha, but the components of RXGB and its relatives are put back in their places.
 ///
 /// # Errors
-/// [`ReadError`] where the file is broken, too large for `limits`, or of a kind that is not read (see [`super`]).
+/// [`ReadError`] if the file is broken, too large for `limits`, or of a kind that is not read (see [`super`]).
 pub fn read_image(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
     let header = Header::parse(bytes)?;
     let (mut shape, format) = shape_of(&header)?;
-    // Level 0 is all that is wanted, so a count of levels that cannot be is no reason to refuse the file.
+    // Only level 0 is read, so an impossible count of levels is no reason to refuse the file.
     shape.levels = shape.levels.min(full_chain(shape.width, shape.height));
     shape.check(CONTAINER, limits)?;
     let texels = shape
@@ -53,18 +53,18 @@ pub fn read_image(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
     Ok(Decoded { image, info })
 }
 
-/// Reads a file that roughcast wrote: all layers with all their levels. Blocks are decompressed: BC4 and BC5 to 16-bit
+/// Reads a file written by roughcast: all layers with all their levels. Blocks are decompressed: BC4 and BC5 to 16-bit
 /// samples, BC7 to 8-bit ones.
 ///
 /// # Errors
-/// [`ReadError`] where the file is broken, too large for `limits`, or not one of ours ([`ReadError::Info`]).
+/// [`ReadError`] if the file is broken, too large for `limits`, or not written by roughcast ([`ReadError::Info`]).
 pub fn read_textures(bytes: &[u8], limits: &Limits) -> Result<TextureArray, ReadError> {
     let header = Header::parse(bytes)?;
     let info = TextureInfo::from_words(&header.reserved)?;
     let (shape, format) = shape_of(&header)?;
     shape.check(CONTAINER, limits)?;
     if !shape.is_of_a_payload() {
-        return Err(unsupported(format!("a baked texture in {}", format.name), "bake it anew"));
+        return Err(unsupported(format!("a baked texture in {}", format.name), "bake it again"));
     }
     // Layer after layer, each with all its levels, the largest first.
     let lengths: Vec<usize> = (0..shape.levels)
@@ -106,7 +106,7 @@ fn too_short(shape: &Shape) -> ReadError {
     malformed(format!("it is too short for {}x{} texels of its format", shape.width, shape.height))
 }
 
-/// The words that belong to the writer: ours as pairs, those of others as hexadecimal numbers.
+/// The words reserved for the writer: roughcast's as pairs, those of others as hexadecimal numbers.
 fn metadata_of(words: &[u32; 11]) -> BTreeMap<String, String> {
     if let Ok(info) = TextureInfo::from_words(words) {
         return info.to_pairs();

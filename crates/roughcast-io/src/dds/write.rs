@@ -11,14 +11,14 @@ use crate::texels::TexelFormat;
 /// words of the header.
 ///
 /// # Errors
-/// [`WriteError`] where the payload has 3 or more than 4 channels, its layers or levels do not fit each other, or
+/// [`WriteError`] if the payload has 3 or more than 4 channels, its layers or levels do not fit each other, or
 /// writing fails.
 pub fn write(payload: Payload<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
     let shape = payload.shape(CONTAINER)?;
     let dxgi_format = format::written(&shape.format).ok_or_else(|| WriteError::Unsupported {
         container: CONTAINER,
         what: "this texel format".to_owned(),
-        mend: "store 1, 2 or 4 channels, or BC4, BC5 or BC7 blocks",
+        remedy: "store 1, 2 or 4 channels, or BC4, BC5 or BC7 blocks",
     })?;
     out.write_all(&header(&shape, dxgi_format, &payload.info().to_words()))?;
     for layer in 0..shape.layers {
@@ -38,7 +38,7 @@ fn header(shape: &Shape, dxgi_format: u32, reserved: &[u32; 11]) -> Vec<u8> {
     let depth = 1;
     put(&[shape.height as u32, shape.width as u32, pitch, depth, shape.levels as u32]);
     put(reserved);
-    // The pixel format says only that the DX10 header does.
+    // The pixel format only refers to the DX10 header.
     put(&[32, 0x4, u32::from_le_bytes(*b"DX10"), 0, 0, 0, 0, 0]);
     // A texture; with more than one level also complex and mip-mapped.
     put(&[if shape.levels > 1 { 0x1000 | 0x8 | 0x40_0000 } else { 0x1000 }, 0, 0, 0, 0]);
@@ -47,7 +47,7 @@ fn header(shape: &Shape, dxgi_format: u32, reserved: &[u32; 11]) -> Vec<u8> {
     header
 }
 
-/// Bytes of a row for plain texels, of the whole of level 0 for blocks, and the flag that says which. Readers go by the
+/// Bytes of a row for plain texels, of the whole of level 0 for blocks, and the flag that tells them apart. Readers use the
 /// size, so a number too large for 32 bits may be cut off.
 fn pitch(shape: &Shape) -> (u32, u32) {
     let (flag, bytes) = match shape.format {

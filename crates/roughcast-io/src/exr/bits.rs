@@ -1,6 +1,6 @@
 //! Bits into bytes, as deflate packs them.
 
-/// Some bits, and in the highest byte their number.
+/// Some bits, with their number in the highest byte.
 pub(super) type Entry = u32;
 
 const COUNT_SHIFT: u32 = 24;

@@ -15,7 +15,7 @@ pub(super) const FIRST_LENGTH_SYMBOL: usize = 257;
 pub(super) const WORD: usize = 8;
 /// Deflate's longest match is 258 bytes.
 pub(super) const MOST_RUN_WORDS: usize = 258 / WORD;
-/// Two distances have a code though only the first is used: not every decoder takes a code with a single symbol.
+/// Two distances have a code although only the first is used: not every decoder accepts a code with a single symbol.
 const DISTANCE_LENGTHS: [u8; 2] = [1, 1];
 /// The order in which the lengths of the description's own code are stated (RFC 1951, 3.2.7).
 const DESCRIPTION_ORDER: [u8; 19] = [16, 17, 18, 0, 8, 7, 9, 6, 10, 5, 11, 4, 12, 3, 13, 2, 14, 1, 15];

@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn streams_inflate_to_what_went_in() {
+    fn streams_inflate_to_their_input() {
         let noise = noise(200_000);
         check(&[], 0);
         check(&[7], 0);
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn runs_of_every_length_survive() {
+    fn runs_of_every_length_round_trip() {
         for run in 1..600 {
             let mut bytes = vec![1, 2, 3];
             bytes.extend(std::iter::repeat_n(9, run));
@@ -211,13 +211,13 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_shrink_grows_by_its_framing_alone() {
+    fn incompressible_data_grows_only_by_its_framing() {
         let noise = noise(49_152);
         assert_eq!(check(&noise, 24_576), noise.len() + ZLIB_OVERHEAD + 2 * STORED_OVERHEAD);
     }
 
     #[test]
-    fn what_is_even_nearly_vanishes() {
+    fn constant_data_shrinks_to_almost_nothing() {
         // A run of 256 bytes takes a bit for its length, five extra bits and one for its distance.
         let even = vec![128; 49_152];
         assert!(check(&even, 24_576) < 49_152 / 256 + 64);

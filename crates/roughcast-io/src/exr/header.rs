@@ -34,7 +34,7 @@ const SOFTWARE_VALUE: &str = concat!("roughcast ", env!("CARGO_PKG_VERSION"));
 /// Magic number, version and attributes.
 ///
 /// # Errors
-/// [`WriteError::Unsupported`] where the name of a text attribute is not one that a file can have.
+/// [`WriteError::Unsupported`] if the name of a text attribute is not one that a file can have.
 pub(super) fn encode(plan: &Plan, info: &TextureInfo, options: &ExrOptions) -> Result<Vec<u8>, WriteError> {
     let mut attributes = structure(plan, options.compression);
     for (name, value) in text_attributes(info, options) {
@@ -69,7 +69,7 @@ pub(super) fn encode(plan: &Plan, info: &TextureInfo, options: &ExrOptions) -> R
     Ok(bytes)
 }
 
-/// What says how the file is built: name, type and value of each attribute.
+/// The attributes that describe the file's structure: name, type and value of each.
 fn structure(plan: &Plan, compression: ExrCompression) -> BTreeMap<String, (&'static str, Vec<u8>)> {
     let (width, height) = plan.size();
     let window: Vec<u8> =

@@ -1,4 +1,4 @@
-//! Prefix codes of limited length, as deflate wants them (RFC 1951, 3.2.2).
+//! Prefix codes of limited length, as deflate requires (RFC 1951, 3.2.2).
 
 /// Largest alphabet here: the literals and lengths of deflate.
 pub(super) const MAX_SYMBOLS: usize = 286;
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn the_code_is_huffmans_where_no_limit_bites() {
+    fn the_code_is_huffmans_if_the_limit_is_not_reached() {
         // Known by hand: ((1+1)+2)+4 against 8.
         let mut lengths = [0; 6];
         code_lengths(&[8, 1, 0, 1, 4, 2], 15, &mut lengths);

@@ -14,7 +14,7 @@ pub(super) struct Channel<'a> {
     index: usize,
 }
 
-/// The order and the place of everything in the file.
+/// The order and the positions of everything in the file.
 pub(super) struct Plan<'a> {
     array: &'a TextureArray,
     /// By name, as OpenEXR demands.
@@ -50,7 +50,7 @@ pub(super) fn tile_places(width: usize, height: usize) -> impl Iterator<Item = T
 
 impl<'a> Plan<'a> {
     /// # Errors
-    /// [`WriteError::Unsupported`] where the array is not one that a mip-mapped EXR part can hold.
+    /// [`WriteError::Unsupported`] if the array is not one that a mip-mapped EXR part can hold.
     pub(super) fn new(array: &'a TextureArray) -> Result<Self, WriteError> {
         let Some(first) = array.layers.first().filter(|layer| !layer.levels.is_empty()) else {
             return Err(refusal("a texture without texels".to_owned(), "bake at least one level"));
@@ -168,6 +168,6 @@ fn check_names(channels: &[Channel]) -> Result<(), WriteError> {
     Ok(())
 }
 
-pub(super) fn refusal(what: String, mend: &'static str) -> WriteError {
-    WriteError::Unsupported { container: "EXR", what, mend }
+pub(super) fn refusal(what: String, remedy: &'static str) -> WriteError {
+    WriteError::Unsupported { container: "EXR", what, remedy }
 }

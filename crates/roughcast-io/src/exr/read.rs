@@ -27,9 +27,9 @@ const CHUNK_HEAD: usize = 5 * size_of::<i32>();
 /// Reads all channels and all levels of a file that [`super::write()`] wrote.
 ///
 /// # Errors
-/// [`ReadError::Malformed`] where the bytes break the rules of OpenEXR or end too early; [`ReadError::Unsupported`] for
-/// OpenEXR files that are built otherwise; [`ReadError::Info`] where roughcast's metadata is missing;
-/// [`ReadError::TooLarge`] where level 0 of all layers together has more pixels than `limits` allow.
+/// [`ReadError::Malformed`] if the bytes break the rules of OpenEXR or end too early; [`ReadError::Unsupported`] for
+/// OpenEXR files that are built otherwise; [`ReadError::Info`] if roughcast's metadata is missing;
+/// [`ReadError::TooLarge`] if level 0 of all layers together has more pixels than `limits` allow.
 pub fn read_textures(bytes: &[u8], limits: &Limits) -> Result<TextureArray, ReadError> {
     read_layers(bytes, limits, |info| layers_of(info).to_vec())
 }
@@ -147,7 +147,7 @@ fn placed_channels(header: &Header, specs: &[LayerSpec]) -> Result<Vec<PlacedCha
     }
 }
 
-/// A file whose header has been found good.
+/// A file whose header is valid.
 struct File<'a> {
     bytes: &'a [u8],
     /// Where the table of offsets starts.
@@ -266,6 +266,6 @@ fn unsupported(what: &str) -> ReadError {
     ReadError::Unsupported {
         format: "EXR",
         what: what.to_owned(),
-        mend: "give the file as roughcast wrote it",
+        remedy: "give the file as roughcast wrote it",
     }
 }

@@ -88,7 +88,7 @@ fn all_sizes_types_and_layers_read_back_bit_for_bit() {
 }
 
 #[test]
-fn files_of_every_layout_need_nothing_but_their_bytes() {
+fn files_of_every_layout_are_self_contained() {
     for &layout in Layout::ALL {
         for &part in layout.parts() {
             let info = TextureInfo { scale: 2.5, ..TextureInfo::new(layout, part) };
@@ -162,7 +162,7 @@ fn compare_with_the_exr_crate(array: &TextureArray, compression: ExrCompression)
 }
 
 #[test]
-fn attributes_say_what_the_texels_mean() {
+fn attributes_describe_the_texels() {
     let wrap = BTreeMap::from([("wrapmodes".to_owned(), "periodic,clamp".to_owned())]);
     let options = ExrOptions { attributes: wrap, ..ExrOptions::default() };
     let mut out = Cursor::new(Vec::new());
@@ -196,7 +196,7 @@ fn the_bytes_do_not_depend_on_the_number_of_threads() {
 }
 
 #[test]
-fn writing_starts_where_the_stream_stands_and_ends_behind_the_file() {
+fn writing_starts_at_the_stream_position_and_ends_after_the_file() {
     use std::io::{Seek, SeekFrom, Write};
     let array = array(53, 37, LAYERS[1], SampleType::F16);
     let mut out = Cursor::new(b"before".to_vec());
@@ -215,7 +215,7 @@ fn refusal(array: &TextureArray, options: &ExrOptions) -> String {
 }
 
 #[test]
-fn what_exr_cannot_hold_is_refused_with_the_mend() {
+fn unsupported_textures_are_refused_with_advice() {
     let plain = ExrOptions::default();
     for sample_type in [SampleType::U8, SampleType::U16] {
         let message = refusal(&array(4, 4, LAYERS[0], sample_type), &plain);
@@ -252,7 +252,7 @@ fn too_many_pixels_are_refused_before_they_are_read() {
 
 /// Each byte of a small file in turn gets several other values, and the file is cut at each length.
 #[test]
-fn no_broken_byte_brings_the_reader_down() {
+fn corrupt_bytes_do_not_panic() {
     let good = written(&array(70, 3, LAYERS[1], SampleType::F16), ExrCompression::Zip);
     let mut refused = 0;
     for index in 0..good.len() {

@@ -24,7 +24,7 @@ const BATCH: usize = 256;
 /// # Errors
 /// [`WriteError::Unsupported`] for 8- and 16-bit unsigned samples, for channel names that are not unique over the layers,
 /// for layers whose levels or sample types differ or whose levels do not go down to 1x1, and for attributes with a name
-/// that OpenEXR keeps for itself; [`WriteError::Io`] where `out` fails.
+/// that OpenEXR keeps for itself; [`WriteError::Io`] if `out` fails.
 pub fn write(
     array: &TextureArray,
     options: &ExrOptions,

@@ -16,7 +16,7 @@ impl BlockCompressor {
         Self { sorted: Vec::new(), differences: Vec::new(), deflater: Deflater::new() }
     }
 
-    /// What the file holds for the bytes of a block: compressed, or the bytes themselves where that would not be shorter;
+    /// What the file contains for the bytes of a block: compressed, or the bytes themselves if that would not be shorter;
     /// readers tell the two apart by their size.
     pub(super) fn compress<'a>(&'a mut self, block: &'a [u8]) -> &'a [u8] {
         sort_by_place(block, &mut self.sorted);
@@ -32,7 +32,7 @@ fn sort_by_place(block: &[u8], sorted: &mut Vec<u8>) {
     sorted.resize(block.len(), 0);
     let (even, odd) = sorted.split_at_mut(block.len() / 2);
     let (pairs, _) = block.as_chunks::<2>();
-    // One half after the other, and by shifts: only so does the compiler make vector code of it.
+    // One half after the other, and by shifts: the compiler vectorises only this form.
     for (even, pair) in even.iter_mut().zip(pairs) {
         *even = u16::from_le_bytes(*pair) as u8;
     }
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn blocks_inflate_to_what_went_in() {
+    fn blocks_inflate_to_their_input() {
         let block: Vec<u8> = (0..2000_u32).flat_map(|n| (n / 7 * n).to_le_bytes()).collect();
         let mut compressor = BlockCompressor::new();
         let packed = compressor.compress(&block).to_vec();

@@ -1,7 +1,7 @@
 //! Basis Universal in KTX2: ETC1S with BasisLZ, UASTC plain or with Zstandard, and ASTC, by the `basisu` crate.
 //!
-//! The crate is a port of the reference transcoder, and gives the same bytes. It is written for files of its own encoder: sizes are
-//! checked here before it sees a file, and what it does on damaged ones is caught.
+//! The crate is a port of the reference transcoder and gives the same bytes. It expects files of its own encoder: sizes are
+//! checked here before it sees a file, and its panics on damaged files are caught.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -104,6 +104,6 @@ fn transcoded(bytes: &[u8]) -> Result<Vec<u8>, ReadError> {
                 "convert it to BC5 or BC7 with `ktx transcode`",
             ))
         }
-        Ok(Err(_)) | Err(_) => Err(malformed("its Basis Universal data are broken, or of an unknown kind")),
+        Ok(Err(_)) | Err(_) => Err(malformed("its Basis Universal data is broken, or of an unknown kind")),
     }
 }

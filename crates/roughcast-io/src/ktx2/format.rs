@@ -9,7 +9,7 @@ use crate::texels::{BlockCode, Encoding, Order, Packed, Plain, TexelFormat, rgba
 /// Number, name without `VK_FORMAT_`, channels, encoding, order.
 ///
 /// The `_SRGB` formats are read as raw numbers: normal and height maps carry that label only by mistake, and undoing a
-/// curve that was never applied would bend every normal. Whoever has a true sRGB picture can see the label in
+/// curve that was never applied would bend every normal. Callers with a true sRGB picture can see the label in
 /// [`crate::FileInfo::format`].
 const PLAIN: [(u32, &str, usize, Encoding, Order); 34] = [
     (9, "R8_UNORM", 1, Unorm8, Rgba),
@@ -87,7 +87,7 @@ const PACKED: [(u32, &str, usize, &[u32], bool); 17] = [
     (1_000_340_001, "A4B4G4R4_UNORM", 2, &[0xf, 0xf0, 0xf00, 0xf000], false),
 ];
 
-/// The texel format of a `vkFormat` and its name, or why it is not read.
+/// The texel format of a `vkFormat` and its name, or why it is not supported.
 pub(super) fn texel_format(vk_format: u32) -> Result<(TexelFormat, &'static str), ReadError> {
     let plain = PLAIN.iter().find(|row| row.0 == vk_format);
     if let Some(&(_, name, channels, encoding, order)) = plain {
@@ -104,10 +104,10 @@ pub(super) fn texel_format(vk_format: u32) -> Result<(TexelFormat, &'static str)
     Err(not_read(vk_format))
 }
 
-/// Says by family what a format is that is not read; the numbers are those of Vulkan's `VkFormat`.
+/// Names the family of an unsupported format; the numbers are those of Vulkan's `VkFormat`.
 fn not_read(vk_format: u32) -> ReadError {
     const TO_PLAIN: &str = "convert it to R8G8, R16G16, BC5 or BC7 UNORM first";
-    let (what, mend) = match vk_format {
+    let (what, remedy) = match vk_format {
         53..=56 | 60..=63 | 66..=69 => ("a packed integer format", TO_PLAIN),
         11..=14 | 18..=21 | 25..=28 | 32..=35 | 39..=42 | 46..=49 => ("an 8-bit integer format", TO_PLAIN),
         72..=75 | 79..=82 | 86..=89 | 93..=96 => ("a 16-bit integer format", TO_PLAIN),
@@ -124,10 +124,10 @@ fn not_read(vk_format: u32) -> ReadError {
         1_000_054_000..=1_000_054_007 => ("PVRTC compression", TO_PLAIN),
         _ => ("its texel format", TO_PLAIN),
     };
-    unsupported(format!("{what} (vkFormat {vk_format})"), mend)
+    unsupported(format!("{what} (vkFormat {vk_format})"), remedy)
 }
 
-/// What a writer must say of a texel format: its `vkFormat`, its `typeSize`, and its data format descriptor.
+/// What a writer must state about a texel format: its `vkFormat`, its `typeSize`, and its data format descriptor.
 pub(super) struct Written {
     pub vk_format: u32,
     pub type_size: u32,
@@ -135,7 +135,7 @@ pub(super) struct Written {
     pub descriptor: Vec<u8>,
 }
 
-/// `None` where the format is none that is written.
+/// `None` if the format cannot be written.
 pub(super) fn written(format: &TexelFormat) -> Option<Written> {
     match format {
         TexelFormat::Plain(plain) => {

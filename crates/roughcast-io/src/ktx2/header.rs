@@ -36,13 +36,13 @@ impl Universal {
     }
 }
 
-/// A file whose header makes sense. Nothing of the size of the texture has been allocated.
+/// A file whose header is valid. Nothing of the size of the texture has been allocated.
 pub(super) struct Container<'a> {
     bytes: &'a [u8],
     scheme: Scheme,
     level_index: Vec<LevelEntry>,
     pub vk_format: u32,
-    /// Where the texels are read by Basis Universal's transcoder.
+    /// Set if Basis Universal's transcoder reads the texels.
     pub universal: Option<Universal>,
     /// The channels of the samples of the data format descriptor.
     descriptor_channels: Vec<u8>,
@@ -135,7 +135,7 @@ impl<'a> Container<'a> {
         }
     }
 
-    /// Holds the size that level 0 states against what its texels need, before the transcoder allocates it.
+    /// Checks the stated size of level 0 against what its texels need, before the transcoder allocates it.
     pub fn check_universal_level(&self, universal: Universal) -> Result<(), ReadError> {
         let entry = self.level_index[0];
         let too_short = || malformed("level 0 lies outside of the file");
@@ -145,7 +145,7 @@ impl<'a> Container<'a> {
         };
         let layers = self.layers as u64;
         match universal {
-            // Of a run of equal blocks each takes a fraction of a bit at best.
+            // Each block of a run of equal blocks takes a fraction of a bit at best.
             Universal::Etc1s if blocks(4) > (data.len() as u64 + 1) * ETC1S_MAX_BLOCKS_PER_BYTE => {
                 Err(too_short())
             }
@@ -162,7 +162,7 @@ impl<'a> Container<'a> {
         }
     }
 
-    /// What the samples of the data format descriptor say the channels contain.
+    /// What the channels contain, by the samples of the data format descriptor.
     pub fn universal_content(&self, universal: Universal) -> Content {
         // Numbers of `khr_df_channels`; 15 is alpha.
         match (universal, &self.descriptor_channels[..]) {
@@ -174,7 +174,7 @@ impl<'a> Container<'a> {
         }
     }
 
-    /// The axes along which the image must be turned over so that row 0 is the top and column 0 the left.
+    /// The axes along which the image must be flipped so that row 0 is the top and column 0 the left.
     pub fn flips(&self) -> Result<Vec<Axis>, ReadError> {
         let Some(orientation) = self.pairs.get("KTXorientation") else { return Ok(Vec::new()) };
         match orientation.as_str() {
@@ -186,8 +186,8 @@ impl<'a> Container<'a> {
         }
     }
 
-    /// Where each channel of the image comes from, if the file says so. Channels at the end that would hold what they
-    /// hold anyway when absent (0, or 1 for alpha) are left out: `rg01` of two channels gives two channels.
+    /// Where each channel of the image comes from, if the file specifies it. Channels at the end that would contain what they
+    /// contain anyway when absent (0, or 1 for alpha) are omitted: `rg01` of two channels gives two channels.
     pub fn swizzle(&self, channels: usize) -> Result<Option<Vec<Source>>, ReadError> {
         let Some(swizzle) = self.pairs.get("KTXswizzle") else { return Ok(None) };
         let invalid = || malformed(format!("KTXswizzle is '{}'", swizzle.escape_debug()));
@@ -242,7 +242,7 @@ const ETC1S_MAX_BLOCKS_PER_BYTE: u64 = 4096;
 
 /// The block code of files for Basis Universal's transcoder; `None` for those that a `vkFormat` describes.
 ///
-/// Files without a `vkFormat` say in their data format descriptor what they are.
+/// Files without a `vkFormat` are described by their data format descriptor.
 fn universal_of(
     bytes: &[u8],
     vk_format: u32,
@@ -255,7 +255,7 @@ fn universal_of(
     if vk_format != 0 {
         return Ok(None);
     }
-    // The colour model stands behind the total size and two words of the block.
+    // The colour model follows the total size and two words of the block.
     let model = slice(bytes, u64::from(descriptor_offset) + 12, 1).map(|model| model[0]);
     match model {
         Some(163) => Ok(Some(Universal::Etc1s)),
@@ -264,7 +264,7 @@ fn universal_of(
             format!("colour model {model} without a vkFormat"),
             "convert it to BC5 or BC7, for example with `ktx transcode --target bc5`",
         )),
-        None => Err(malformed("neither a vkFormat nor a data format descriptor says what the texels are")),
+        None => Err(malformed("it has neither a vkFormat nor a data format descriptor")),
     }
 }
 
@@ -278,7 +278,7 @@ fn descriptor_channels(bytes: &[u8], offset: u32, length: u32) -> Vec<u8> {
 }
 
 fn level_index(bytes: &[u8], levels: u32) -> Result<Vec<LevelEntry>, ReadError> {
-    // A count of 0 asks the loader to make the levels; level 0 is there.
+    // A count of 0 asks the loader to generate the levels; level 0 exists.
     let length = u64::from(levels.max(1)) * LEVEL_ENTRY_BYTES as u64;
     let index = slice(bytes, HEADER_BYTES as u64, length)
         .ok_or_else(|| malformed(format!("the index of {levels} levels reaches beyond the file")))?;
@@ -291,7 +291,7 @@ fn level_index(bytes: &[u8], levels: u32) -> Result<Vec<LevelEntry>, ReadError> 
 }
 
 fn key_value_data(bytes: &[u8], offset: u32, length: u32) -> Result<BTreeMap<String, String>, ReadError> {
-    let broken = || malformed("the key-value data are broken");
+    let broken = || malformed("the key-value data is broken");
     let mut rest = slice(bytes, offset.into(), length.into()).ok_or_else(broken)?;
     let mut pairs = BTreeMap::new();
     while !rest.is_empty() {
@@ -307,8 +307,8 @@ fn key_value_data(bytes: &[u8], offset: u32, length: u32) -> Result<BTreeMap<Str
     Ok(pairs)
 }
 
-/// A Zstandard block of 4 bytes can stand for 128 KiB, so no honest level is packed tighter than this. Checked before
-/// the level is allocated: a short file shall not ask for gigabytes.
+/// A Zstandard block of 4 bytes can represent 128 KiB, so no valid level is packed tighter than this. Checked before
+/// the level is allocated: a short file must not ask for gigabytes.
 const ZSTD_MAX_RATIO: usize = 128 * 1024 / 4;
 
 fn inflate_zstd(data: &[u8], expected: usize) -> Result<Vec<u8>, &'static str> {

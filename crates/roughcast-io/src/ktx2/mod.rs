@@ -1,7 +1,7 @@
 //! KTX2, the Khronos texture container: <https://registry.khronos.org/KTX/specs/2.0/ktxspec.v2.html>.
 //!
-//! Written: 1, 2 or 4 channels of 8-bit or 16-bit UNORM, half or single float, and BC4, BC5, BC7; plain or with
-//! Zstandard. Read as an image: these and their relatives, also with 3 channels, SNORM, blue first, or as BC1, BC2, BC3, and
+//! Writes 1, 2 or 4 channels of 8-bit or 16-bit UNORM, half or single float, and BC4, BC5, BC7; plain or with
+//! Zstandard. Reads, as an image: these and their relatives, also with 3 channels, SNORM, blue first, or as BC1, BC2, BC3, and
 //! Basis Universal (ETC1S, UASTC) and ASTC, see `basis.rs`. Cube maps, volumes, integers, depth, BC6H, ETC2 and PVRTC are refused
 //! with advice.
 //!
@@ -29,6 +29,6 @@ fn malformed(fault: impl Into<String>) -> crate::ReadError {
     crate::ReadError::Malformed { format: CONTAINER, fault: fault.into() }
 }
 
-fn unsupported(what: impl Into<String>, mend: &'static str) -> crate::ReadError {
-    crate::ReadError::Unsupported { format: CONTAINER, what: what.into(), mend }
+fn unsupported(what: impl Into<String>, remedy: &'static str) -> crate::ReadError {
+    crate::ReadError::Unsupported { format: CONTAINER, what: what.into(), remedy }
 }

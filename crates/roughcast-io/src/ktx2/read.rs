@@ -11,12 +11,12 @@ use crate::{Decoded, FileInfo, Limits, NormalEncoding, ReadError};
 
 /// Reads level 0 of layer 0 as an image.
 ///
-/// Row 0 of the image is the top and column 0 the left, also where the file's `KTXorientation` says that its own are
-/// not, and channels are in the order that `KTXswizzle` asks for. `_SRGB` formats are read as raw numbers. SNORM
+/// Row 0 of the image is the top and column 0 the left, even if the file's `KTXorientation` says that its own are
+/// not, and channels are in the order that `KTXswizzle` specifies. `_SRGB` formats are read as raw numbers. SNORM
 /// formats become floats in -1 ..= 1, BC4 and BC5 UNORM 16-bit samples.
 ///
 /// # Errors
-/// [`ReadError`] where the file is broken, too large for `limits`, or of a kind that is not read (see [`super`]).
+/// [`ReadError`] if the file is broken, too large for `limits`, or of a kind that is not read (see [`super`]).
 pub fn read_image(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
     let file = Container::parse(bytes)?;
     let Decoded { mut image, mut info } = match file.universal {
@@ -37,14 +37,14 @@ pub fn read_image(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
     Ok(Decoded { image, info })
 }
 
-/// Whether Khronos' tools were told to store x in red, green and blue, and y in alpha. They write down their options.
+/// Whether Khronos' tools were told to store x in red, green and blue, and y in alpha. They record their options.
 fn is_normal_mode(file: &Container<'_>) -> bool {
     let options = file.pairs.get("KTXwriterScParams").map_or("", String::as_str);
     let words: Vec<String> = options.split_whitespace().map(|word| word.replace('_', "-")).collect();
     words.iter().any(|word| word == "--normal-mode")
 }
 
-/// Level 0 of layer 0 of a file whose `vkFormat` says what its texels are.
+/// Level 0 of layer 0 of a file whose `vkFormat` describes its texels.
 fn read_texels(file: &Container<'_>, limits: &Limits) -> Result<Decoded, ReadError> {
     let (shape, format_name) = shape_of(file, limits)?;
     let (layer_bytes, level_bytes) = sizes(&shape, 0)?;
@@ -62,20 +62,20 @@ fn read_texels(file: &Container<'_>, limits: &Limits) -> Result<Decoded, ReadErr
     Ok(Decoded { image, info })
 }
 
-/// Reads a file that roughcast wrote: all layers with all their levels. Blocks are decompressed: BC4 and BC5 to 16-bit
+/// Reads a file written by roughcast: all layers with all their levels. Blocks are decompressed: BC4 and BC5 to 16-bit
 /// samples, BC7 to 8-bit ones.
 ///
 /// # Errors
-/// [`ReadError`] where the file is broken, too large for `limits`, or not one of ours ([`ReadError::Info`]).
+/// [`ReadError`] if the file is broken, too large for `limits`, or not written by roughcast ([`ReadError::Info`]).
 pub fn read_textures(bytes: &[u8], limits: &Limits) -> Result<TextureArray, ReadError> {
     let file = Container::parse(bytes)?;
     let info = TextureInfo::from_pairs(&file.pairs)?;
     let (shape, format_name) = shape_of(&file, limits)?;
     if !shape.is_of_a_payload() {
-        return Err(unsupported(format!("a baked texture in {format_name}"), "bake it anew"));
+        return Err(unsupported(format!("a baked texture in {format_name}"), "bake it again"));
     }
     if !file.flips()?.is_empty() || file.swizzle(4)?.is_some() {
-        return Err(unsupported("a baked texture that was turned over or swizzled", "bake it anew"));
+        return Err(unsupported("a baked texture that was flipped or swizzled", "bake it again"));
     }
     let mut levels = Vec::new();
     for level in 0..shape.levels {

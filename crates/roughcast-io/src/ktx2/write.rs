@@ -9,13 +9,13 @@ use super::{CONTAINER, IDENTIFIER, format};
 use crate::WriteError;
 use crate::payload::{Payload, Shape, Supercompression};
 
-/// Higher levels gain next to nothing on second moments and take several times as long.
+/// Higher compression levels gain next to nothing on second moments and take several times as long.
 const ZSTD_LEVEL: i32 = 1;
 
-/// Writes a texture file. The same payload gives the same bytes on every machine, whatever its number of threads.
+/// Writes a texture file. The same payload gives the same bytes on every machine, for any number of threads.
 ///
 /// # Errors
-/// [`WriteError`] where the payload has 3 or more than 4 channels, its layers or levels do not fit each other, or
+/// [`WriteError`] if the payload has 3 or more than 4 channels, its layers or levels do not fit each other, or
 /// writing fails.
 pub fn write(
     payload: Payload<'_>,
@@ -26,7 +26,7 @@ pub fn write(
     let format = format::written(&shape.format).ok_or_else(|| WriteError::Unsupported {
         container: CONTAINER,
         what: "this texel format".to_owned(),
-        mend: "store 1, 2 or 4 channels, or BC4, BC5 or BC7 blocks",
+        remedy: "store 1, 2 or 4 channels, or BC4, BC5 or BC7 blocks",
     })?;
     let packed = match supercompression {
         Supercompression::None => None,
@@ -37,7 +37,7 @@ pub fn write(
     out.write_all(&format.descriptor)?;
     out.write_all(&plan.key_values)?;
     let mut position = plan.key_values_offset + plan.key_values.len() as u64;
-    // Smallest level first, as the format demands: a reader of a stream can show something early.
+    // Smallest level first, as the format requires: a streaming reader can show something early.
     for (level, entry) in plan.levels.iter().enumerate().rev() {
         let padding = entry.offset - position;
         io::copy(&mut io::Read::take(io::repeat(0), padding), out)?;
@@ -50,7 +50,7 @@ pub fn write(
     Ok(())
 }
 
-/// One frame a level, as some readers (ruzstd) stop after the first; so only the levels run in parallel.
+/// One frame per level, as some readers (ruzstd) stop after the first; so only the levels run in parallel.
 fn zstd_levels(payload: Payload<'_>, shape: &Shape) -> io::Result<Vec<Vec<u8>>> {
     (0..shape.levels).into_par_iter().map(|level| zstd_level(payload, shape, level)).collect()
 }
@@ -111,7 +111,7 @@ impl Plan {
             Supercompression::None => 0,
             Supercompression::Zstd => 2,
         };
-        // Zero layers mean that this is no array texture, zero depth that it is no volume.
+        // Zero layers mean that this is not an array texture, zero depth that it is not a volume.
         let layers = if shape.layers == 1 { 0 } else { shape.layers as u32 };
         let (depth, faces) = (0, 1);
         let mut header = IDENTIFIER.to_vec();

@@ -1,5 +1,5 @@
-//! Numbers in the buffers of a glTF file: glTF 2.0, sections 3.6.1 and 3.6.2. Every access is held against the sizes that the
-//! file states and the bytes that are there.
+//! Numbers in the buffers of a glTF file: glTF 2.0, sections 3.6.1 and 3.6.2. Every access is checked against the sizes that the
+//! file states and the bytes that exist.
 
 use std::collections::HashMap;
 use std::path::Path;

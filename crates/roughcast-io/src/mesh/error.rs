@@ -1,10 +1,10 @@
-//! Why a file does not make a mesh.
+//! Why a file is not a mesh.
 
 use std::path::PathBuf;
 
 use roughcast_scene::MeshFault;
 
-/// Why a file does not make a mesh.
+/// Why a file is not a mesh.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {fault}", path.display())]
 pub struct MeshFileError {
@@ -29,7 +29,7 @@ pub enum MeshFileFault {
         /// Why not.
         error: std::io::Error,
     },
-    /// The name does not end as meshes do.
+    /// The extension is not that of a mesh format.
     #[error("not a mesh that roughcast reads: give a .obj, .gltf or .glb file")]
     UnknownExtension,
     /// More than [`super::MAX_FILE_BYTES`], [`super::MAX_FILE_UV_SETS`], [`roughcast_scene::MAX_TRIANGLES`] or
@@ -42,7 +42,7 @@ pub enum MeshFileFault {
         limit: usize,
     },
     /// A line of an OBJ file breaks its rules.
-    #[error("line {line}: {fault}: mend the line or export the mesh anew")]
+    #[error("line {line}: {fault}: fix the line or export the mesh again")]
     ObjLine {
         /// Counted from one.
         line: usize,
@@ -50,17 +50,17 @@ pub enum MeshFileFault {
         fault: String,
     },
     /// A file breaks the rules of its format.
-    #[error("broken {format} file: {fault}: export the mesh anew")]
+    #[error("broken {format} file: {fault}: export the mesh again")]
     Malformed {
         /// OBJ or glTF.
         format: &'static str,
         /// What is wrong.
         fault: String,
     },
-    /// A kind of glTF file that is not read.
+    /// A variant of glTF that is not supported.
     #[error("{0} is not supported: export the mesh without it")]
     Unsupported(String),
-    /// The numbers of the file make no mesh.
+    /// The numbers of the file are not a valid mesh.
     #[error(transparent)]
     Mesh(#[from] MeshFault),
 }

@@ -31,13 +31,13 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<MeshFile, MeshFileFaul
 
 /// The JSON, whose indices are valid.
 fn document(json: &[u8]) -> Result<Document, MeshFileFault> {
-    // Each value may take a few hundred bytes once it is read.
+    // Each value may take a few hundred bytes in memory.
     if json.iter().filter(|&&b| b == b'{' || b == b',').count() > MAX_JSON_VALUES {
         return Err(MeshFileFault::TooLarge { what: "values in its JSON", limit: MAX_JSON_VALUES });
     }
     let fault = |error: gltf::Error| malformed(one_line(&error));
     let root = gltf::Gltf::from_slice_without_validation(json).map_err(fault)?.document.into_json();
-    // The validation of the gltf crate takes this index for valid before it has looked.
+    // The validation of the gltf crate uses this index before checking it.
     let positions = gltf::json::validation::Checked::Valid(Semantic::Positions);
     let mut primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
     if primitives.any(|p| p.attributes.get(&positions).is_some_and(|i| i.value() >= root.accessors.len())) {
@@ -91,7 +91,7 @@ impl Scene<'_> {
         let mut seen = vec![false; document.nodes().count()];
         while let Some((node, world_from_parent)) = open.pop() {
             if std::mem::replace(&mut seen[node.index()], true) {
-                return Err(malformed("its nodes are no trees"));
+                return Err(malformed("its nodes are not trees"));
             }
             let parent_from_node = Mat4::from_cols_array_2d(&node.transform().matrix()).as_dmat4();
             let world_from_node = world_from_parent * parent_from_node;
@@ -111,7 +111,7 @@ impl Scene<'_> {
         world_from_node: DMat4,
     ) -> Result<(), MeshFileFault> {
         let Some(positions) = primitive.get(&Semantic::Positions) else { return Ok(()) };
-        // Held against the limits before memory is taken: nodes may show one mesh any number of times.
+        // Checked against the limits before memory is allocated: nodes may show one mesh any number of times.
         self.vertices = self.vertices.saturating_add(positions.count());
         if self.vertices > MAX_VERTICES {
             return Err(MeshFileFault::TooLarge { what: "vertices", limit: MAX_VERTICES });
@@ -167,7 +167,7 @@ impl Scene<'_> {
         Ok(part)
     }
 
-    /// A set of texture coordinates after the first. Its faults do not spoil the mesh, which can be shown by the first, so
+    /// A set of texture coordinates after the first. Its faults do not make the mesh unusable, which can be shown by the first, so
     /// what [`roughcast_scene::Mesh::new`] checks is checked here.
     fn uv_set(
         &mut self,

@@ -1,10 +1,10 @@
-//! What a mesh file says of its materials.
+//! The materials of a mesh file.
 
 use std::path::PathBuf;
 
 use roughcast::Wrap;
 
-/// A material, with glTF's meanings and defaults (glTF 2.0, section 3.9). Of an OBJ file only its name is known.
+/// A material, with glTF's meanings and defaults (glTF 2.0, section 3.9). For an OBJ file only its name is known.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MeshMaterial {
@@ -26,7 +26,7 @@ pub struct MeshMaterial {
     pub normal_scale: f32,
     /// Occlusion in red.
     pub occlusion_texture: Option<MeshTexture>,
-    /// 0 without occlusion, 1 with all of the texture's.
+    /// Strength of the occlusion: 0 for none, 1 for all of the texture's.
     pub occlusion_strength: f32,
     /// Linear RGB, by which the texture is multiplied.
     pub emissive: [f32; 3],
@@ -34,7 +34,7 @@ pub struct MeshMaterial {
     pub emissive_texture: Option<MeshTexture>,
     /// What alpha means.
     pub alpha_mode: AlphaMode,
-    /// From which alpha on [`AlphaMode::Mask`] shows the surface.
+    /// The alpha from which on [`AlphaMode::Mask`] shows the surface.
     pub alpha_cutoff: f32,
     /// Whether the back is shown too.
     pub double_sided: bool,
@@ -46,9 +46,9 @@ pub enum AlphaMode {
     /// Nothing.
     #[default]
     Opaque,
-    /// The surface is there or not.
+    /// The surface is either opaque or invisible.
     Mask,
-    /// How much of the surface is seen before what is behind it.
+    /// How much the surface covers what is behind it.
     Blend,
 }
 

@@ -1,6 +1,6 @@
 //! Triangle meshes from files: Wavefront OBJ and glTF 2.0, with their materials and all sets of texture coordinates.
 //!
-//! [`read_mesh`] keeps apart what the file keeps apart; [`load_mesh`] makes one [`Mesh`] of all of it, to be rendered.
+//! [`read_mesh`] keeps the file's parts separate; [`load_mesh`] merges them into one [`Mesh`] to render.
 //!
 //! ```no_run
 //! use roughcast_io::mesh::read_mesh;
@@ -77,7 +77,7 @@ impl MeshFile {
     /// One mesh of all primitives, with missing normals and tangents computed; see [`Mesh::new`].
     ///
     /// # Errors
-    /// What the numbers of the file do not allow; the reader has not looked at them.
+    /// The fault in the numbers of the file, which the reader has not checked.
     pub fn into_mesh(self) -> Result<Mesh, MeshFault> {
         Mesh::new(self.primitives.into_iter().map(|primitive| primitive.triangles).collect())
     }
@@ -85,9 +85,9 @@ impl MeshFile {
 
 /// Reads a mesh file: Wavefront OBJ (`.obj`) or glTF 2.0 (`.gltf`, `.glb`).
 ///
-/// Of glTF all triangles of the default scene are taken, in the places that its nodes give them; skins, morph targets,
-/// animations and extensions are not. Of OBJ polygons are cut into triangles, lines and points are left out, and `.mtl` files are not
-/// read: a material is a name. Images are not read. Tangents of a file are taken as they are. Some exporters write them
+/// From glTF it reads all triangles of the default scene, placed by its nodes, but no skins, morph targets,
+/// animations or extensions. From OBJ it reads polygons, cut into triangles, but no lines and points, and no `.mtl` files:
+/// a material is a name. It reads no images. It keeps the tangents of a file as they are. Some exporters write them
 /// with the bitangent along growing v, against the convention of [`TriangleMesh`]; maps for such a mesh have green down.
 ///
 /// # Errors
@@ -116,7 +116,7 @@ fn contents(path: &Path) -> Result<MeshFile, MeshFileFault> {
     }
 }
 
-/// The bytes of a file, or an error before more than the limit are held.
+/// The bytes of a file, or an error before more than the limit is in memory.
 fn read_file(path: &Path) -> Result<Vec<u8>, MeshFileFault> {
     let too_large = MeshFileFault::TooLarge { what: "bytes", limit: MAX_FILE_BYTES };
     let file = std::fs::File::open(path)?;

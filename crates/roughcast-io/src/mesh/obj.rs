@@ -1,6 +1,6 @@
 //! Wavefront OBJ, read with `tobj`.
 //!
-//! OBJ's v grows upwards, ours downwards.
+//! v grows upwards in OBJ and downwards in roughcast.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -36,7 +36,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<MeshFile, MeshFileFault> {
 fn material_names(text: &str) -> Vec<String> {
     let mut seen = std::collections::HashSet::new();
     let used = text.lines().filter(|line| line.split_whitespace().next() == Some("usemtl"));
-    // As tobj has it: a name may contain spaces.
+    // As in tobj: a name may contain spaces.
     let names = used.map(|line| line.split_once(' ').unwrap_or_default().1.trim());
     names.filter(|name| !name.is_empty() && seen.insert(*name)).map(str::to_owned).collect()
 }
@@ -47,7 +47,7 @@ fn library(names: &[String]) -> (Vec<tobj::Material>, HashMap<String, usize>) {
     (names.iter().map(material).collect(), places.collect())
 }
 
-/// What tobj calls an object without a name.
+/// tobj's name for an object without one.
 const UNNAMED: &str = "unnamed_object";
 
 fn primitive(model: tobj::Model) -> Primitive {
@@ -67,11 +67,11 @@ fn groups<const N: usize>(values: &[f32]) -> Vec<[f32; N]> {
     values.chunks_exact(N).map(|c| std::array::from_fn(|i| c[i])).collect()
 }
 
-/// What the corners of a face name, in their order, and the lines that declare them.
+/// What the corners of a face refer to, in their order, and the lines that declare them.
 const KINDS: [(&str, &str); 3] = [("v", "position"), ("vt", "texture coordinate"), ("vn", "normal")];
 
-/// Refuses indices that name nothing, with the line, and too many faces, before `tobj` sees them: it multiplies indices
-/// unchecked and takes memory for all faces.
+/// Refuses dangling indices, with the line, and too many faces, before `tobj` sees them: it multiplies indices
+/// unchecked and allocates memory for all faces.
 fn check(text: &str) -> Result<(), MeshFileFault> {
     let words = |line| str::split_whitespace(line);
     let declared = |kind: &str| text.lines().filter(|&line| words(line).next() == Some(kind)).count();
@@ -95,7 +95,7 @@ fn check(text: &str) -> Result<(), MeshFileFault> {
             return Err(MeshFileFault::TooLarge { what: "triangles", limit: MAX_TRIANGLES });
         }
         for (kind, index) in words.flat_map(|corner| corner.split('/').enumerate().take(3)) {
-            // Empty or not a number is tobj's to judge.
+            // tobj reports empty and non-numeric indices.
             let Ok(index) = index.parse::<i64>() else { continue };
             // Negative ones count back from the last that was declared.
             let there = if index < 0 { index >= -so_far[kind] } else { (1..=total[kind]).contains(&index) };

@@ -46,7 +46,7 @@ pub(super) fn relative_path(uri: &str) -> Option<PathBuf> {
     let decoded = percent_decoded(uri)?;
     let path = Path::new(&decoded);
     let inside = path.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
-    // A scheme such as http: or C: is no relative reference.
+    // A scheme such as http: or C: is not a relative reference.
     let scheme = uri.split('/').next().is_some_and(|first| first.contains(':'));
     (inside && !scheme && !decoded.is_empty() && !decoded.contains('\0')).then(|| path.to_owned())
 }

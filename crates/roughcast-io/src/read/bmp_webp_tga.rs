@@ -24,7 +24,7 @@ pub(super) fn read_bmp(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadErr
     decode("BMP", BmpDecoder::new(Cursor::new(bytes)).map_err(|e| fault("BMP", e))?, limits)
 }
 
-/// A look at a BMP's header before it is decoded. What is missing in it is left to the decoder.
+/// Checks a BMP's header before it is decoded. The decoder reports what is missing in it.
 struct BmpHeader<'a>(&'a [u8]);
 
 impl BmpHeader<'_> {
@@ -62,7 +62,7 @@ impl BmpHeader<'_> {
         Ok(())
     }
 
-    /// `None` where it has no runs, or ends too early.
+    /// `None` if it has no runs, or ends too early.
     fn leaves_out_pixels(&self) -> Option<bool> {
         const RLE8: u32 = 1;
         const RLE4: u32 = 2;
@@ -94,13 +94,13 @@ impl BmpHeader<'_> {
 pub(super) fn read_webp(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
     let decoder = WebPDecoder::new(Cursor::new(bytes)).map_err(|e| fault("WebP", e))?;
     if decoder.has_animation() {
-        return Err(unsupported("WebP", "an animation", "save the frame that is meant as a PNG"));
+        return Err(unsupported("WebP", "an animation", "save the wanted frame as a PNG"));
     }
     check_webp_chunks(bytes, limits)?;
     decode("WebP", decoder, limits)
 }
 
-/// Refuses what the decoder lets pass: a file that was cut within its last rows, which it fills with the row above, and
+/// Refuses what the decoder accepts: a file that was truncated within its last rows, which it fills with the row above, and
 /// a lossy frame larger than the image, for which it allocates before it compares the two.
 fn check_webp_chunks(bytes: &[u8], limits: &Limits) -> Result<(), ReadError> {
     /// Tag, start code, width and height of 14 bits each: RFC 6386, 9.1.
@@ -124,7 +124,7 @@ fn check_webp_chunks(bytes: &[u8], limits: &Limits) -> Result<(), ReadError> {
 
 /// Reads a TGA: grey, grey and alpha, RGB or RGBA. Palettes become RGB or RGBA, five bits become eight.
 pub(super) fn read_tga(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
-    // A format without a signature: what its header says is the only sign that this is one.
+    // A format without a signature: its header is the only sign of the format.
     const IMAGE_TYPE_OFFSET: usize = 2;
     const IMAGE_TYPES: [u8; 6] = [1, 2, 3, 9, 10, 11];
     const HEADER_BYTES: usize = 18;
@@ -138,7 +138,7 @@ pub(super) fn read_tga(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadErr
     decode("TGA", TgaDecoder::new(Cursor::new(bytes)).map_err(|e| fault("TGA", e))?, limits)
 }
 
-/// Refuses what the decoder passes over, and what the format leaves open.
+/// Refuses what the decoder ignores, and what the format leaves undefined.
 fn check_tga_pixels(image_type: u8, bits: u8, descriptor: u8) -> Result<(), ReadError> {
     const GREY: [u8; 2] = [3, 11];
     const ATTRIBUTE_BITS: u8 = 0b1111;
@@ -189,7 +189,7 @@ fn fault(format: &'static str, error: ImageError) -> ReadError {
         ImageError::Unsupported(error) => match error.kind() {
             UnsupportedErrorKind::Color(ExtendedColorType::Unknown(bits)) => unsupported(
                 format,
-                format_args!("a picture of {bits} bits a pixel of this type"),
+                format_args!("a picture of {bits} bits per pixel of this type"),
                 SAVE_AS_PNG,
             ),
             UnsupportedErrorKind::Color(color) => {
@@ -202,7 +202,7 @@ fn fault(format: &'static str, error: ImageError) -> ReadError {
         ImageError::IoError(e) if e.kind() == std::io::ErrorKind::UnexpectedEof => {
             malformed(format, "the file ends too early")
         }
-        // What the decoder says, without the words by which the crate introduces it.
+        // The decoder's message, without the crate's introduction.
         ImageError::Decoding(error) => match error.source() {
             Some(source) => malformed(format, source),
             None => malformed(format, error),
@@ -266,7 +266,7 @@ mod tests {
             let error = read(pixels).unwrap_err().to_string();
             assert!(error.contains("leaves out pixels"), "{pixels:?}: {error}");
         }
-        // A file that is cut is the decoder's affair.
+        // The decoder handles truncated files.
         assert!((0..whole.len()).all(|length| read(&whole[..length]).is_err()));
     }
 
@@ -276,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tga_must_say_what_its_16_grey_bits_are() {
+    fn a_tga_must_state_what_its_16_grey_bits_are() {
         let read = |descriptor| read_tga(&tga(3, 16, descriptor, &[10, 20]), &Limits::default());
         assert_eq!(samples(read(8).unwrap()), [10, 20]);
         let error = read(0).unwrap_err().to_string();

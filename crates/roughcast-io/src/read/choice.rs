@@ -1,12 +1,12 @@
-//! Channels chosen by name, of the formats without layers.
+//! Channels chosen by name, for the formats without layers.
 
 use crate::texels::{Source, swizzled};
 use crate::{Decoded, ReadError, ReadOptions};
 
-/// The picture with the channels that the options name, in that order, or as it is where they name none.
+/// The picture with the channels that the options name, in that order, or unchanged if they name none.
 ///
 /// # Errors
-/// [`ReadError::NoSuchChannel`], also where a layer is named.
+/// [`ReadError::NoSuchChannel`], also if a layer is named.
 pub(super) fn chosen(decoded: Decoded, options: &ReadOptions) -> Result<Decoded, ReadError> {
     let Decoded { image, mut info } = decoded;
     let missing = |wanted: &str| ReadError::NoSuchChannel {
@@ -27,7 +27,7 @@ pub(super) fn chosen(decoded: Decoded, options: &ReadOptions) -> Result<Decoded,
     let places = options.channels.iter().map(place).collect::<Result<Vec<usize>, _>>()?;
     let sources: Vec<Source> = places.iter().map(|&place| Source::Channel(place)).collect();
     let image = swizzled(&image, &sources);
-    // Whoever names a channel means its values, also those of an alpha.
+    // A channel chosen by name is read for its values, even an alpha.
     let called = |place: usize| {
         if info.channels[place] == "A" { "alpha".to_owned() } else { info.channels[place].clone() }
     };
@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_there_is_refused_with_a_list() {
+    fn missing_channels_are_refused_with_a_list() {
         let error = chosen(picture(), &with(&["height"])).expect_err("no height").to_string();
         assert!(error.contains("'height'") && error.contains("R, G, B, A"), "{error}");
         let layer = ReadOptions { layer: Some("N".to_owned()), ..ReadOptions::default() };

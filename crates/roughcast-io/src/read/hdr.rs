@@ -1,6 +1,6 @@
 //! Radiance HDR (`.hdr`, `.pic`), after the Radiance file format document and `color.c` of Radiance.
 //!
-//! Read here instead of by the `image` crate, which knows only one of the two signatures in use and whose count of
+//! Not read with the `image` crate, which knows only one of the two signatures in use and whose count of
 //! old run lengths overflows on damaged files.
 
 use std::collections::BTreeMap;
@@ -15,7 +15,7 @@ const FORMAT: &str = "HDR";
 /// A pixel as stored: three mantissas and their common exponent.
 type Rgbe = [u8; 4];
 
-/// Reads an HDR as three floats a pixel.
+/// Reads an HDR as three floats per pixel.
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
     let mut input = Input(bytes);
     let metadata = read_header(&mut input)?;
@@ -155,10 +155,7 @@ fn read_line(input: &mut Input<'_>, row: &mut [Rgbe]) -> Result<(), ReadError> {
     if PLANAR_WIDTHS.contains(&row.len()) && first[0] == 2 && first[1] == 2 && first[2] < 128 {
         let stated = usize::from(u16::from_be_bytes([first[2], first[3]]));
         if stated != row.len() {
-            return Err(malformed(
-                FORMAT,
-                format_args!("a row of {} pixels says it has {stated}", row.len()),
-            ));
+            return Err(malformed(FORMAT, format_args!("a row of {} pixels states {stated}", row.len())));
         }
         (0..4).try_for_each(|channel| read_channel(input, row, channel))
     } else {

@@ -1,8 +1,8 @@
 //! JPEG, by the `jpeg-decoder` crate.
 //!
-//! Of the pure Rust decoders it is the one that handles every layout of samples and scans: of 953 files written by libjpeg-turbo
+//! It is the only pure Rust decoder that handles every layout of samples and scans: for 953 files written by libjpeg-turbo
 //! (22 choices of sampling factors, interleaved and other scans, progressive with successive approximation, restart intervals,
-//! odd sizes, grey and RGB) it differs by at most 4 of 255 from libjpeg's pixels in all but 18, and those are the ones that
+//! odd sizes, grey and RGB) it differs by at most 4 of 255 from libjpeg's pixels in all but 18, which
 //! [`layout::Layout::check`] refuses. zune-jpeg 0.5.15, which is 10 % faster, decodes 222 of them wrongly without an error.
 //!
 //! Chroma is interpolated as libjpeg does by default ("fancy upsampling"); what remains is the rounding of the cosine transform.

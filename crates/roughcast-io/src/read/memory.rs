@@ -1,17 +1,17 @@
-//! Sizes held against the limits, and buffers whose lack is an error instead of an abort.
+//! Checks sizes against the limits, and allocates buffers with an error instead of an abort.
 
 use std::fmt::Display;
 
 use crate::{Limits, ReadError};
 
-/// Longest ratio of raw to compressed bytes that deflate can reach: 258 bytes by two codes of one bit each.
+/// Largest ratio of raw to compressed bytes that deflate can reach: 258 bytes by two codes of one bit each.
 /// (<https://zlib.net/zlib_tech.html>, "maximum compression factor")
 pub(super) const DEFLATE_MAX_RATIO: u64 = 1032;
 
 /// The sides of an image, if there are pixels and not too many.
 ///
 /// # Errors
-/// [`ReadError::Malformed`] where a side is zero, [`ReadError::TooLarge`] where the pixels exceed the limit.
+/// [`ReadError::Malformed`] if a side is zero, [`ReadError::TooLarge`] if the pixels exceed the limit.
 pub(crate) fn check_size(
     format: &'static str,
     width: u64,
@@ -31,7 +31,7 @@ pub(crate) fn check_size(
     }
 }
 
-/// `len` zeros. Unlike `vec!` it gives an error where memory runs out.
+/// `len` zeros. Unlike `vec!` it returns an error if memory runs out.
 pub(super) fn zeros<T: bytemuck::Zeroable>(len: usize) -> Result<Vec<T>, ReadError> {
     bytemuck::allocation::try_zeroed_vec(len).map_err(|()| {
         let message = format!("not enough memory for {len} samples");
@@ -39,17 +39,17 @@ pub(super) fn zeros<T: bytemuck::Zeroable>(len: usize) -> Result<Vec<T>, ReadErr
     })
 }
 
-/// [`ReadError::Malformed`], with the words of a decoder pressed into one line of bounded length.
+/// [`ReadError::Malformed`], with a decoder's message shortened to one line of bounded length.
 pub(super) fn malformed(format: &'static str, fault: impl Display) -> ReadError {
     ReadError::Malformed { format, fault: one_line(&fault.to_string()) }
 }
 
-/// [`ReadError::Unsupported`], with the words of a decoder pressed into one line of bounded length.
-pub(super) fn unsupported(format: &'static str, what: impl Display, mend: &'static str) -> ReadError {
-    ReadError::Unsupported { format, what: one_line(&what.to_string()), mend }
+/// [`ReadError::Unsupported`], with a decoder's message shortened to one line of bounded length.
+pub(super) fn unsupported(format: &'static str, what: impl Display, remedy: &'static str) -> ReadError {
+    ReadError::Unsupported { format, what: one_line(&what.to_string()), remedy }
 }
 
-/// A decoder may quote the file: line breaks and length are the file's, until here.
+/// A decoder may quote the file, so the file controls line breaks and length up to here.
 fn one_line(text: &str) -> String {
     const MAX_CHARS: usize = 200;
     let words: Vec<&str> =
@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn memory_that_is_not_there_is_an_error() {
+    fn running_out_of_memory_is_an_error() {
         assert!(matches!(zeros::<u64>(usize::MAX / 16), Err(ReadError::Io(_))));
     }
 

@@ -1,6 +1,6 @@
-//! Reading image files: what kind a file is, and which reader takes it.
+//! Reading image files: identifies a file's format and picks its reader.
 //!
-//! A file is known by its first bytes, whatever its name says; only TGA, which need not have a signature, is known by
+//! The first bytes of a file identify its format, whatever its name; only TGA, which need not have a signature, is identified by
 //! its extension.
 
 mod bmp_webp_tga;
@@ -18,7 +18,7 @@ pub(crate) use memory::check_size;
 
 use crate::{Decoded, ReadError, ReadOptions};
 
-/// The file formats that are read.
+/// The supported file formats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Format {
     Png,
@@ -40,14 +40,14 @@ enum Format {
 /// profiles and gamma are ignored, since these files hold data, not colours.
 ///
 /// EXR may contain many layers and channels: [`ReadOptions::layer`] and [`ReadOptions::channels`] choose. TIFF may contain many
-/// images, which the former names by their number. Of the other formats, which have no layers, channels are chosen by their names in [`crate::FileInfo::channels`].
+/// images, which the former selects by number. In the other formats, which have no layers, channels are chosen by their names in [`crate::FileInfo::channels`].
 ///
-/// `extension`, in lower case and without the dot, only decides for TGA files without a footer: all other formats are
-/// known by their first bytes.
+/// `extension`, in lower case and without the dot, matters only for TGA files without a footer: all other formats are
+/// identified by their first bytes.
 ///
 /// # Errors
-/// [`ReadError`]: no known format, a kind that is not read, damaged bytes, or more pixels than `limits` allow. No
-/// input makes it panic, and nothing is allocated before its size has been held against the limits.
+/// [`ReadError`]: an unknown format, an unsupported variant, damaged bytes, or more pixels than `limits` allow. No
+/// input makes it panic, and nothing is allocated before its size has been checked against the limits.
 pub fn read_image(
     bytes: &[u8],
     extension: Option<&str>,
@@ -72,13 +72,13 @@ pub fn read_image(
 /// Reads level 0 of layer 0 of an image file, by [`read_image`].
 ///
 /// # Errors
-/// [`ReadError::Io`] where the file cannot be read, and all of [`read_image`].
+/// [`ReadError::Io`] if the file cannot be read, and all of [`read_image`].
 pub fn read_image_file(path: &Path, options: &ReadOptions) -> Result<Decoded, ReadError> {
     read_image_of(path, &std::fs::read(path)?, options)
 }
 
-/// Reads level 0 of layer 0 of an image file of which these are the bytes, by [`read_image`]. Of the path only the extension
-/// counts, where the bytes leave the format open.
+/// Reads level 0 of layer 0 of an image file with these bytes, by [`read_image`]. Only the extension of the path
+/// counts, and only if the bytes do not identify the format.
 ///
 /// # Errors
 /// As [`read_image`].
@@ -87,7 +87,7 @@ pub fn read_image_of(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result
     read_image(bytes, extension.as_deref(), options)
 }
 
-/// What the first bytes, or for TGA the last ones or the extension, say of the format.
+/// The format, by the first bytes, or for TGA by the last ones or the extension.
 fn format_of(bytes: &[u8], extension: Option<&str>) -> Result<Format, ReadError> {
     const SIGNATURES: [(&[u8], Format); 13] = [
         (b"\x89PNG\r\n\x1a\n", Format::Png),
@@ -101,10 +101,10 @@ fn format_of(bytes: &[u8], extension: Option<&str>) -> Result<Format, ReadError>
         (b"#?RADIANCE", Format::Hdr),
         (b"#?RGBE", Format::Hdr),
         (b"\x76\x2f\x31\x01", Format::Exr),
-        // Version 1, too: the reader of KTX2 refuses it with a mend.
+        // Version 1, too: the reader of KTX2 refuses it with advice.
         (b"\xabKTX ", Format::Ktx2),
         (b"DDS ", Format::Dds),
-        // A file that a broken upload cut: named here so that it is called a broken PNG, not an unknown format.
+        // A file truncated by a failed upload: recognised here, so that it is reported as a broken PNG, not as an unknown format.
         (b"\x89PNG", Format::Png),
     ];
     const TGA_FOOTER: &[u8] = b"TRUEVISION-XFILE.\0";
@@ -112,7 +112,7 @@ fn format_of(bytes: &[u8], extension: Option<&str>) -> Result<Format, ReadError>
     if bytes.is_empty() {
         return Err(ReadError::Empty);
     }
-    // The two letters of a BMP may begin a TGA too; the extension and the footer then know better.
+    // The two letters of a BMP may begin a TGA too; then the extension or the footer decides.
     let is_tga = extension == Some("tga") || bytes.ends_with(TGA_FOOTER);
     let by_signature = SIGNATURES.iter().find(|(signature, _)| bytes.starts_with(signature));
     match by_signature {
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn an_empty_file_says_so() {
+    fn an_empty_file_is_reported_as_empty() {
         let error = format_of(b"", Some("png")).unwrap_err();
         assert_eq!(error.to_string(), "the file is empty");
     }

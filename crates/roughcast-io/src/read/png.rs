@@ -19,7 +19,7 @@ const SWAP_CHUNK: usize = 1 << 16;
 /// Reads a PNG. Palettes become RGB, or RGBA with a transparency chunk; 1, 2 and 4 bits become 8 of full range.
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
     let mut options = png::DecodeOptions::default();
-    // A file whose checksum is wrong holds other pixels than were written: these are data, so say so.
+    // A wrong checksum means that the pixels are not those that were written: these are data, so it is an error.
     options.set_ignore_adler32(false);
     options.set_ignore_iccp_chunk(true);
     let mut decoder = png::Decoder::new_with_options(Cursor::new(bytes), options);
@@ -63,7 +63,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> 
     Ok(Decoded { image, info })
 }
 
-/// Decodes the image and the rest of the file, so that one that was cut is an error.
+/// Decodes the image and the rest of the file, so that a truncated one is an error.
 fn decode(reader: &mut png::Reader<Cursor<&[u8]>>, buffer: &mut [u8]) -> Result<(), ReadError> {
     if reader.output_buffer_size() != Some(buffer.len()) {
         return Err(malformed(FORMAT, "its colour type contradicts its size"));

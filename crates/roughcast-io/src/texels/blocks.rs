@@ -11,7 +11,7 @@ use crate::ValueRange;
 /// which is what graphics processors do, too. The others are decoded to 8 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum BlockCode {
-    /// BC1 whose alpha is to be passed over: three channels.
+    /// BC1 whose alpha is ignored: three channels.
     Bc1Rgb,
     /// BC1 with one bit of alpha.
     Bc1,

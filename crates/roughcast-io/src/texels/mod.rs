@@ -25,7 +25,7 @@ pub(crate) enum TexelFormat {
 }
 
 impl TexelFormat {
-    /// Bytes of one layer of a level; `None` where the number does not fit.
+    /// Bytes of one layer of a level; `None` if the number does not fit.
     pub fn bytes(&self, width: usize, height: usize) -> Option<usize> {
         let (units, unit_bytes) = match self {
             TexelFormat::Plain(plain) => (width.checked_mul(height)?, plain.texel_bytes()),

@@ -41,7 +41,7 @@ impl Field {
 pub(crate) enum Numbers {
     /// 0 up to all ones stands for 0 ..= 1.
     Unsigned,
-    /// Two's complement: n bits stand for -1 ..= 1 when divided by `2^(n-1) - 1`; the one number below is -1 as well.
+    /// Two's complement: n bits stand for -1 ..= 1 when divided by `2^(n-1) - 1`; the one number below is -1 too.
     Signed,
 }
 
@@ -55,7 +55,7 @@ pub(crate) struct Packed {
 }
 
 impl Packed {
-    /// A format from the mask of each named channel; `None` where a mask is empty, is not one run of bits, or reaches
+    /// A format from the mask of each named channel; `None` if a mask is empty, is not one run of bits, or reaches
     /// outside of the texel.
     pub fn new(texel_bytes: usize, masks: &[u32], names: &'static [&'static str]) -> Option<Self> {
         assert_eq!(masks.len(), names.len(), "a name for each mask");

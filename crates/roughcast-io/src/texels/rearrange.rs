@@ -1,14 +1,14 @@
-//! Turning an image over and moving its channels, as the metadata of a KTX2 file may ask.
+//! Flips an image and moves its channels, as the metadata of a KTX2 file may require.
 
 use half::f16;
 use roughcast::{Image, Samples};
 
-/// A side along which an image is turned over.
+/// An axis along which an image is flipped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Axis {
-    /// Left and right change places.
+    /// Swaps left and right.
     Horizontal,
-    /// Top and bottom change places.
+    /// Swaps top and bottom.
     Vertical,
 }
 
@@ -20,7 +20,7 @@ pub(crate) enum Source {
     One,
 }
 
-/// The image, turned over along `axis`.
+/// The image, flipped along `axis`.
 pub(crate) fn flipped(image: Image, axis: Axis) -> Image {
     let (width, height, channels) = (image.width(), image.height(), image.channels());
     let flip = Flip { row: width * channels, channels, axis };

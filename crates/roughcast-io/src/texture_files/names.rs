@@ -25,24 +25,24 @@ pub fn file_path(path: &Path, info: &TextureInfo) -> PathBuf {
     path.with_extension(extension)
 }
 
-/// What the name of a file says of its part; `None` where it says nothing.
+/// The part in the name of a file; `None` if there is none.
 pub fn name_of_part(part: Part) -> Option<&'static str> {
     (!matches!(part, Part::Whole | Part::Split)).then_some(part.name())
 }
 
-/// What the name of a file says of its layer, where that has a file of its own.
+/// The layer in the name of a file, if each has a file of its own.
 pub fn name_of_layer(info: &TextureInfo) -> Option<&'static str> {
     info.layer.and(layers_of(info).first()).map(|layer| layer.name)
 }
 
-/// The files that would be taken for parts of this output, but are left from an earlier bake.
+/// Files left from an earlier bake that would be mistaken for parts of this output.
 pub fn leftover_parts(output: &Path, layout: Layout, written: &[PathBuf]) -> Vec<PathBuf> {
     let infos = layout.parts().iter().map(|part| TextureInfo::new(layout, *part));
     let paths = infos.map(|info| file_path(output, &info));
     paths.filter(|path| path != output && !written.contains(path) && path.exists()).collect()
 }
 
-/// `NAME.png` of `NAME.L2.png`; another name stays as it is.
+/// `NAME.png` of `NAME.L2.png`; other names are unchanged.
 pub(super) fn without_level(path: &Path) -> PathBuf {
     let stem = path.with_extension("");
     let is_level = |name: &str| {
@@ -55,7 +55,7 @@ pub(super) fn without_level(path: &Path) -> PathBuf {
     }
 }
 
-/// `NAME.ext` of `NAME.PART.ext`; a file that was renamed stays what it is, and its other parts are not found.
+/// `NAME.ext` of `NAME.PART.ext`; the path of a renamed file is unchanged, and its other parts are not found.
 pub(super) fn whole_path(path: &Path, info: &TextureInfo) -> PathBuf {
     let path = if path.extension().is_some_and(|extension| extension == "png") {
         without_level(path)
@@ -69,7 +69,7 @@ pub(super) fn whole_path(path: &Path, info: &TextureInfo) -> PathBuf {
             stem.set_extension("");
         }
     }
-    // Not `set_extension`, which would take what follows a dot in the name for one.
+    // Not `set_extension`, which would replace what follows a dot in the name.
     let mut name = stem.into_os_string();
     name.push(".");
     name.push(extension);

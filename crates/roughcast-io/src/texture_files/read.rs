@@ -1,4 +1,4 @@
-//! Reading textures that roughcast wrote, with the other files of their set.
+//! Reads textures written by roughcast, with the other files of their set.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use crate::{Decoded, FileInfo, Limits, ReadError, dds, exr, ktx2, read_image_of}
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadFilesError {
-    /// A file cannot be read as a texture of ours.
+    /// A file cannot be read as a baked texture.
     #[error("{} cannot be read as a baked texture", path.display())]
     File {
         /// The file.
@@ -33,12 +33,12 @@ pub enum ReadFilesError {
         /// Why.
         source: io::Error,
     },
-    /// A PNG is no level of the texture that its name says.
+    /// A PNG is not a level of the texture that its name refers to.
     #[error("{} is not level {level} of the texture that {} belongs to", path.display(), first.display())]
     OtherTexture {
         /// The file.
         path: PathBuf,
-        /// The level that its name says.
+        /// The level in its name.
         level: usize,
         /// Level 0 of the texture.
         first: PathBuf,
@@ -59,7 +59,7 @@ pub enum ReadFilesError {
         /// The file that was read first.
         first: PathBuf,
     },
-    /// The layers of the files do not make a texture.
+    /// The layers of the files are not a complete texture.
     #[error("the layers beside {} do not make a texture", path.display())]
     Join {
         /// The file that was read first.
@@ -69,18 +69,18 @@ pub enum ReadFilesError {
     },
 }
 
-/// The layout that a file of ours names in its metadata; `None` for other files.
+/// The layout that a file written by roughcast names in its metadata; `None` for other files.
 pub fn layout_named_in(info: &FileInfo) -> Option<&str> {
     info.metadata.get("roughcast.layout").map(String::as_str)
 }
 
-/// Whether roughcast wrote a file, by its metadata; `false` also where it cannot be read.
+/// Whether roughcast wrote a file, by its metadata; also `false` if it cannot be read.
 pub fn is_baked(path: &Path, limits: &Limits) -> bool {
     let read = std::fs::read(path).ok().and_then(|bytes| read_image_of(path, &bytes, &(*limits).into()).ok());
     read.is_some_and(|decoded| layout_named_in(&decoded.info).is_some())
 }
 
-/// Reads a file that roughcast wrote and the others of its set beside it: the parts of the layout, and the layers where each
+/// Reads a file written by roughcast and the others of its set beside it: the parts of the layout, and the layers if each
 /// has a file of its own. Of PNG, any level may be named.
 ///
 /// # Errors
@@ -89,7 +89,7 @@ pub fn read_with_parts(path: &Path, limits: &Limits) -> Result<Vec<TextureArray>
     with_other_parts(path, read(path, limits)?, limits)
 }
 
-/// All files of the layout of which `first` was read from `path`.
+/// All files of the layout; `first` was read from `path`.
 ///
 /// # Errors
 /// [`ReadFilesError`].
@@ -108,14 +108,14 @@ pub fn with_other_parts(
         }
         if beside.exists() {
             let array = read(&beside, limits)?;
-            // Its name alone says nothing.
+            // The name alone is not enough.
             if arrays[0].info.set != array.info.set {
                 return Err(ReadFilesError::OtherBake { path: beside, first: path.to_owned() });
             }
             arrays.push(array);
         }
     }
-    // A layer that is missing is for the decoder to name; without the others there is nothing to join.
+    // The decoder reports a missing layer; without the others there is nothing to join.
     join_layers(arrays).map_err(|source| ReadFilesError::Join { path: path.to_owned(), source })
 }
 
@@ -128,7 +128,7 @@ fn of_file(path: &Path, error: impl Into<ReadError>) -> ReadFilesError {
     ReadFilesError::File { path: path.to_owned(), source: error.into() }
 }
 
-/// Reads one file that roughcast wrote, of which these are the bytes; of PNG any level, with the others beside it.
+/// Reads one file written by roughcast, given its bytes; for PNG any level, with the others beside it.
 ///
 /// # Errors
 /// [`ReadFilesError`].
@@ -145,20 +145,20 @@ pub fn read_texture_bytes(
         _ => Err(ReadError::Unsupported {
             format: "file",
             what: "a texture in another container than KTX2, DDS, EXR or PNG".to_owned(),
-            mend: "give a file that `roughcast bake` wrote",
+            remedy: "give a file that `roughcast bake` wrote",
         }),
     };
     read.map_err(|error| of_file(path, error))
 }
 
-/// A PNG of ours with what it means.
+/// A PNG written by roughcast, with its meaning.
 fn decoded(path: &Path, bytes: &[u8], limits: &Limits) -> Result<(TextureInfo, Decoded), ReadFilesError> {
     let decoded = read_image_of(path, bytes, &(*limits).into()).map_err(|error| of_file(path, error))?;
     let info = TextureInfo::from_pairs(&decoded.info.metadata).map_err(|error| of_file(path, error))?;
     Ok((info, decoded))
 }
 
-/// All levels of a texture of which `bytes` are one, by the name `NAME.L2.png`.
+/// All levels of a texture, found by the name `NAME.L2.png`; `bytes` are one of them.
 fn read_png(path: &Path, bytes: &[u8], limits: &Limits) -> Result<TextureArray, ReadFilesError> {
     let open = |path: &Path, level: usize| {
         std::fs::read(path).map_err(|source| ReadFilesError::Level { path: path.to_owned(), level, source })

@@ -17,7 +17,7 @@ use crate::{
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteFilesError {
-    /// The extension names no container.
+    /// The extension is not that of a container.
     #[error("{}: textures are written to files that end in .ktx2, .dds, .exr, .tx or .png", path.display())]
     UnknownExtension {
         /// The path given.
@@ -42,7 +42,7 @@ pub enum WriteFilesError {
     Commit(#[source] io::Error),
 }
 
-/// Refuses a destination that cannot be written to, before any work is done for it. `first` is the first file that will be written.
+/// Refuses a destination that cannot be written to, before any work is done. `first` is the first file that will be written.
 ///
 /// # Errors
 /// [`WriteFilesError::File`].
@@ -67,7 +67,7 @@ pub fn is_same_file(a: &Path, b: &Path) -> bool {
     matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
-/// The files of one output. They take their places together at [`TextureFiles::commit`]; dropped before, they vanish.
+/// The files of one output. They take their places together at [`TextureFiles::commit`]; if dropped before that, they vanish.
 #[derive(Debug)]
 pub struct TextureFiles {
     path: PathBuf,
@@ -79,7 +79,7 @@ pub struct TextureFiles {
 }
 
 impl TextureFiles {
-    /// An output at `path`, whose extension names the container. `supercompression` counts for KTX2 alone.
+    /// An output at `path`, whose extension selects the container. `supercompression` applies only to KTX2.
     ///
     /// # Errors
     /// [`WriteFilesError::UnknownExtension`].
@@ -90,7 +90,7 @@ impl TextureFiles {
         Ok(Self { path: path.to_owned(), container, supercompression, inputs, set, written })
     }
 
-    /// Names files that were read, over which nothing is written.
+    /// Registers files that were read, so that they are not overwritten.
     #[must_use]
     pub fn protecting(mut self, inputs: impl IntoIterator<Item = PathBuf>) -> Self {
         self.inputs.extend(inputs);
@@ -124,8 +124,8 @@ impl TextureFiles {
             }
             (Container::Png | Container::Exr, Stored::Blocks(_)) => {
                 let what = "compressed blocks".to_owned();
-                let mend = "write KTX2 or DDS, or do not compress";
-                let source = WriteError::Unsupported { container: self.container.name(), what, mend };
+                let remedy = "write KTX2 or DDS, or do not compress";
+                let source = WriteError::Unsupported { container: self.container.name(), what, remedy };
                 Err(WriteFilesError::File { path: target, source })
             }
         }
@@ -178,7 +178,7 @@ impl TextureFiles {
     }
 }
 
-/// OpenImageIO's words for what lies beyond the edge.
+/// OpenImageIO's names of the wrap modes.
 fn wrap_modes(wrap: Wrap) -> &'static str {
     match wrap {
         Wrap::Repeat => "periodic,periodic",

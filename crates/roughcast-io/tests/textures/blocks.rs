@@ -1,4 +1,4 @@
-//! What block compression costs, and what it leaves alone.
+//! What block compression changes, and what it preserves.
 
 use roughcast::texture::{Layout, Part, Texture, TextureArray, TextureInfo};
 use roughcast::{Image, SampleType, Samples};
@@ -38,7 +38,7 @@ fn flat_blocks_keep_their_value() {
 const END_POINT_SLACK: f32 = 2.0 / 255.0;
 
 #[test]
-fn bc4_and_bc5_err_by_half_a_step_of_the_block() {
+fn bc4_and_bc5_are_within_half_a_step_of_the_block() {
     let mut random = Random::new(7);
     for format in [BlockFormat::Bc4, BlockFormat::Bc5] {
         let channels = format.channels();
@@ -71,7 +71,7 @@ fn root_mean_square_error(a: &Image, b: &Image) -> f64 {
 const NORMAL_MAP_ERROR: f64 = 0.015;
 
 #[test]
-fn a_normal_map_comes_through_nearly_unchanged() {
+fn a_normal_map_is_nearly_unchanged() {
     let source = decoded("formats/ktx2/khr_s_normal_rgb8_mips_zstd.ktx2").image;
     let Samples::U8(rgb) = source.samples() else { panic!("8 bits") };
     let rgba: Vec<u8> = rgb.as_chunks::<3>().0.iter().flat_map(|[r, g, b]| [*r, *g, *b, 255]).collect();
@@ -103,7 +103,7 @@ fn bc7_keeps_the_fourth_channel_as_data() {
 
 #[test]
 fn the_edge_is_repeated_and_not_mixed_with_black() {
-    // 5 texels a row: the second block has one real column. Filled with zeros it could not be flat.
+    // 5 texels per row: the second block has one real column. Filled with zeros it could not be flat.
     let image = Image::new(5, 5, 1, Samples::U8(vec![200; 25])).unwrap();
     let blocks = compress(&array_of(image), BlockFormat::Bc4).unwrap();
     let bytes = &blocks.layers[0].levels[0];

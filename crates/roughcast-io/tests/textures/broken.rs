@@ -1,4 +1,4 @@
-//! Broken and hostile files: an error, no panic, and nothing allocated on the word of a header.
+//! Broken and hostile files: an error, no panic, and nothing allocated because a header says so.
 
 use std::time::{Duration, Instant};
 
@@ -147,7 +147,7 @@ fn numbers_that_contradict_each_other_are_malformed() {
     let dds_changes: [(Change, bool); 5] = [
         ((DDS_WIDTH, 0), false),
         ((DDS_HEIGHT, 6), false),
-        // Level 0 is there in these, which is all that an image needs.
+        // Level 0 exists in these, which is all that an image needs.
         ((DDS_LEVELS, 4), true),
         ((DDS_LEVELS, u32::MAX), true),
         ((DDS_LAYERS, 2), true),
@@ -162,7 +162,7 @@ fn numbers_that_contradict_each_other_are_malformed() {
 }
 
 #[test]
-fn files_of_others_are_no_baked_textures() {
+fn foreign_files_are_not_baked_textures() {
     let ktx2_file = bytes_of("formats/ktx2/khr_s_normal_rgb8_mips_zstd.ktx2");
     let dds_file = bytes_of("formats/dds/dxtk_ground_norm.dds");
     for error in [

@@ -1,4 +1,4 @@
-//! Our KTX2 files in the eyes of an independent reader, and against the rules of the specification.
+//! Our KTX2 files, checked by an independent reader and against the rules of the specification.
 
 use ktx2::{Format, Reader, SupercompressionScheme, dfd};
 use roughcast::SampleType;
@@ -42,7 +42,7 @@ fn check_frame(file: &[u8], format: Format, layers: usize, size: (usize, usize),
     let reader = Reader::new(file).unwrap();
     let header = reader.header();
     let mut wanted = dfd::Basic::from_format(format).unwrap();
-    // The reader's table describes pictures; our numbers are no colours.
+    // The reader's table describes pictures; our values are not colours.
     wanted.0.color_primaries = None;
     assert_eq!(header.format, Some(format));
     assert_eq!(header.type_size, wanted.1, "typeSize of {format:?}");
@@ -83,7 +83,7 @@ fn check_layout(file: &[u8], levels: usize, supercompressed: bool, unit_bytes: u
 }
 
 #[test]
-fn plain_texels_are_understood() {
+fn plain_texels_are_read_by_an_independent_reader() {
     for sample_type in [SampleType::U8, SampleType::U16, SampleType::F16, SampleType::F32] {
         for channels in [1, 2, 4] {
             for (layers, size) in [(1, (53, 37)), (3, (7, 1)), (2, (1, 1))] {
@@ -110,7 +110,7 @@ fn plain_texels_are_understood() {
 }
 
 #[test]
-fn blocks_are_understood() {
+fn blocks_are_read_by_an_independent_reader() {
     let formats = [
         (BlockFormat::Bc4, Format::BC4_UNORM_BLOCK, 8),
         (BlockFormat::Bc5, Format::BC5_UNORM_BLOCK, 16),
@@ -132,9 +132,9 @@ fn blocks_are_understood() {
 }
 
 /// The Khronos tools' own files say what a descriptor must be. Only the primaries may differ: ours are unspecified (0),
-/// as the numbers are no colours, those of most pictures BT.709 (1).
+/// as the values are not colours, those of most pictures BT.709 (1).
 #[test]
-fn descriptors_are_those_of_the_khronos_tools() {
+fn descriptors_match_the_khronos_tools() {
     const PRIMARIES: usize = 13;
     let descriptor = |file: &[u8]| {
         let word = |at: usize| u32::from_le_bytes(file[at..at + 4].try_into().unwrap()) as usize;

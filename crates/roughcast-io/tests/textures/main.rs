@@ -1,4 +1,4 @@
-//! KTX2, DDS and block compression, held against real files and independent readers.
+//! KTX2, DDS and block compression, tested with real files and independent readers.
 
 mod blocks;
 mod broken;

@@ -97,7 +97,7 @@ fn refusal(payload: Payload<'_>) -> String {
 }
 
 #[test]
-fn what_does_not_fit_is_refused_with_a_mend() {
+fn unfit_payloads_are_refused_with_advice() {
     let three = noise_array(SampleType::U8, 3, (4, 4), 1);
     assert!(refusal(Payload::Texels(&three)).contains("3 channels: graphics processors seldom"));
     let six = noise_array(SampleType::F16, 6, (4, 4), 1);

@@ -1,4 +1,4 @@
-//! The same picture in several files must come out the same.
+//! The same picture in several files must be read as the same.
 
 use roughcast::{Image, Samples};
 use roughcast_io::{Limits, ValueRange, dds};

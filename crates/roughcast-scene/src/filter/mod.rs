@@ -1,4 +1,4 @@
-//! Texture filters, one a file. All weigh texels with non-negative weights that sum to one: so a constant stays, and the
+//! Texture filters, one per file. All weigh texels with non-negative weights that sum to one: so a constant stays, and the
 //! covariance of filtered moments stays one.
 
 mod anisotropic;

@@ -13,7 +13,7 @@ use crate::{Bounds, TriangleMesh};
 pub(super) struct Found {
     pub triangle: usize,
     pub distance: f64,
-    /// Barycentric coordinates, one a vertex; they sum to one.
+    /// Barycentric coordinates, one per vertex; they sum to one.
     pub weights: DVec3,
 }
 

@@ -54,7 +54,7 @@ impl Mesh {
     /// A mesh of one or more parts.
     ///
     /// Each part needs positions and indices; its other arrays may be empty. Missing normals are computed, smooth across
-    /// all triangles that meet at a position and weighed by their areas; missing tangents by MikkTSpace. A triangle that
+    /// all triangles that meet at a position and weighted by their areas; missing tangents by MikkTSpace. A triangle that
     /// turns clockwise seen from the side to which its normals point is turned over. Triangles without an area,
     /// and those that repeat another, are dropped. The mesh counts as having the sets of texture coordinates that all parts
     /// have: none, where one part has none.

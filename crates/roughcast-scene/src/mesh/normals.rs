@@ -20,7 +20,7 @@ pub(super) fn turn_towards_normals(mesh: &mut TriangleMesh) {
     }
 }
 
-/// Makes all normals unit; those that are zero become the mean of the triangles at their position, weighed by area.
+/// Makes all normals unit; those that are zero become the mean of the triangles at their position, weighted by area.
 pub(super) fn complete(mesh: &mut TriangleMesh) {
     let missing = mesh.normals.contains(&[0.0; 3]);
     let smooth = if missing { sums_by_position(mesh) } else { HashMap::new() };

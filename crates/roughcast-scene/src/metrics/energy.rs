@@ -7,7 +7,7 @@ use crate::Picture;
 /// over the truth's, minus one. Negative where the picture is too dark.
 ///
 /// # Errors
-/// [`MetricError::NoHighlight`] where the truth has no specular light; [`MetricError::Sizes`],
+/// [`MetricError::NoHighlight`] if the truth has no specular light; [`MetricError::Sizes`],
 /// [`MetricError::NothingCovered`].
 pub fn energy_error(picture: &Picture, truth: &Picture) -> Result<f64, MetricError> {
     let pixels = covered(truth, [picture])?;

@@ -1,4 +1,4 @@
-//! Measures of how far a picture is from the truth, one a file. All take linear radiance, and look only at pixels that a
+//! Measures of how far a picture is from the truth, one per file. All take linear radiance, and look only at pixels that a
 //! surface covers fully in both pictures: how a silhouette is antialiased is not what is measured.
 
 mod energy;

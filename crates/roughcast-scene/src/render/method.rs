@@ -1,4 +1,4 @@
-//! A shading method as a GPU runs it: one sample a pixel, at its centre, from filtered detail.
+//! A shading method as a GPU runs it: one sample per pixel, at its centre, from filtered detail.
 
 use roughcast::shading::{LobeOptions, Shading};
 

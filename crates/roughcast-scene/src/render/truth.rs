@@ -1,4 +1,4 @@
-//! The truth: many rays a pixel, each shaded with the model's base lobe at level 0.
+//! The truth: many rays per pixel, each shaded with the model's base lobe at level 0.
 //!
 //! Source: LEAN mapping, Figure 14: supersampling with a Gaussian pixel filter.
 

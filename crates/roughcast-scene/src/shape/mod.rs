@@ -52,14 +52,14 @@ pub enum ShapeError {
 /// Triangles for a GPU. Front faces are counter-clockwise.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriangleMesh {
-    /// Points in world space, one a vertex.
+    /// Points in world space, one per vertex.
     pub positions: Vec<[f32; 3]>,
     /// Unit normals.
     pub normals: Vec<[f32; 3]>,
     /// Unit tangents (growing u) and the handedness w, as glTF has them: the bitangent (falling v) is w cross(normal,
     /// tangent).
     pub tangents: Vec<[f32; 4]>,
-    /// Sets of texture coordinates, each with one entry a vertex; tangents go by the first. No set, where the surface is not
+    /// Sets of texture coordinates, each with one entry per vertex; tangents go by the first. No set, where the surface is not
     /// textured.
     pub uv_sets: Vec<Vec<[f32; 2]>>,
     /// Three vertices a triangle.

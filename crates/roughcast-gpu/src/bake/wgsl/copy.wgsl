@@ -1,4 +1,4 @@
-// A plain copy from texture to texture, 16 bytes a texel: what a bake is measured against.
+// A plain copy from texture to texture, 16 bytes per texel: what a bake is measured against.
 //
 // Defined elsewhere: the bindings source and copied.
 

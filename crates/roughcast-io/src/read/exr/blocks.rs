@@ -1,7 +1,7 @@
 //! From the blocks of an EXR to the rows of an image.
 //!
-//! The offset table says where each block lies. Every block of level 0 is looked up first, and must lie within the file
-//! and say itself that it is the block looked for; only then is the image allocated, and each block unpacked once. The
+//! The offset table contains the position of each block. Every block of level 0 is looked up first, and must lie within the file
+//! and identify itself as the expected block; only then is the image allocated, and each block unpacked once. The
 //! work and the memory are thus bounded by the pixels and by the bytes of the file, however damaged it is.
 
 use exr::block::UncompressedBlock;
@@ -198,14 +198,14 @@ impl Sample for f32 {
     }
 }
 
-/// The y by which the file knows the block of scan lines of this row: data windows need not begin at 0.
+/// The y that the file uses for the block of scan lines of this row: data windows need not begin at 0.
 fn scan_line_y(header: &Header, row: usize) -> i32 {
     let lines = (row * header.compression.scan_lines_per_block()) as i64;
     // The data window lies within 31 bits, so its rows do.
     (i64::from(header.own_attributes.layer_position.y()) + lines) as i32
 }
 
-/// The compressed bytes of the block at `place` (column, row), after what precedes them has been held against it.
+/// The compressed bytes of the block at `place` (column, row), after its header has been checked against `place`.
 fn find_block<'a>(
     bytes: &'a [u8],
     offset: u64,

@@ -15,7 +15,7 @@ use crate::{ReadError, ReadOptions};
 const MAX_CHANNELS: usize = 16;
 /// Channels of one file. Renderers write some two hundred; each costs time for every block.
 const MAX_STORED_CHANNELS: usize = 1024;
-/// Layers that a question lists.
+/// The most layers that an error lists.
 const MAX_LISTED: usize = 24;
 /// The first of the six channels of OpenImageIO's and RenderMan's bump slopes, which belong together.
 const FIRST_BUMP_SLOPE: &str = "b0_h";
@@ -31,7 +31,7 @@ pub(super) struct Selection {
     pub(super) sample_type: SampleType,
     /// The layer that they belong to, where the file has no channels without one.
     pub(super) layer: Option<String>,
-    /// What else the file contains, in words, where nobody chose.
+    /// What else the file contains, in words, if nothing was chosen.
     pub(super) left_out: Option<String>,
 }
 
@@ -49,7 +49,7 @@ pub(super) struct SelectedChannel {
 /// The channels of one layer of one part.
 struct Group<'a> {
     part: usize,
-    /// As users call it: the part's name, the layer's, or both; empty for channels without any.
+    /// Its name for users: the part's name, the layer's, or both; empty for channels without any.
     name: String,
     channels: Vec<Candidate<'a>>,
 }
@@ -62,9 +62,9 @@ struct Candidate<'a> {
     bytes_before: usize,
 }
 
-/// Chooses the channels of the image: those that `options` name, or those that the names leave no doubt about.
+/// Chooses the channels of the image: those that `options` name, or the unambiguous ones.
 ///
-/// Channels without a layer win over those of layers; of several layers one must be chosen, unless only one has anything to
+/// Channels without a layer take precedence over those of layers; of several layers one must be chosen, unless only one has anything to
 /// read. `keep_all` takes all channels of the first part as they are.
 ///
 /// # Errors
@@ -88,7 +88,7 @@ pub(super) fn select(meta: &MetaData, options: &ReadOptions, keep_all: bool) -> 
     let choices: Vec<(&Group<'_>, Choice)> = groups.iter().map(|group| (group, choice_of(group))).collect();
     let promising: Vec<&(&Group<'_>, Choice)> =
         choices.iter().filter(|(_, choice)| *choice != Choice::Nothing).collect();
-    // Of one part alone, channels without a layer are the picture, and layers what a renderer computed beside it.
+    // In a single part, channels without a layer are the picture, and layers are what a renderer computed in addition.
     let one_part = groups.iter().all(|group| group.part == groups[0].part);
     let bare = promising.iter().find(|(group, _)| one_part && group.name.is_empty());
     let (group, choice) = match (bare, &promising[..]) {
@@ -135,7 +135,7 @@ fn groups(meta: &MetaData) -> Result<Vec<Group<'_>>, ReadError> {
     if groups.is_empty() { Err(malformed(FORMAT, "it has no channels")) } else { Ok(groups) }
 }
 
-/// `part.layer`, but `layer` where the part has the same name, as Nuke and Blender write it; parts without a name are known
+/// `part.layer`, but `layer` if the part has the same name, as Nuke and Blender write it; parts without a name are identified
 /// by their number.
 fn group_name(part_name: Option<&str>, layer: &str, part: Option<usize>) -> String {
     let part_name = part_name.map(str::to_owned).or_else(|| part.map(|number| number.to_string()));
@@ -152,7 +152,7 @@ fn choice_of(group: &Group<'_>) -> Choice {
     choose(&names)
 }
 
-/// The selection that a clear choice makes; `None` where it is not clear. No choice makes colours of luminance and chroma.
+/// The selection that a clear choice makes; `None` if it is not clear. No choice turns luminance and chroma into colours.
 fn clear(group: &Group<'_>, choice: Choice) -> Option<Result<Selection, ReadError>> {
     if has_chroma(group) {
         return Some(Err(unsupported(FORMAT, "luminance with chroma", "save it as RGB")));
@@ -209,7 +209,7 @@ fn named(groups: &[Group<'_>], options: &ReadOptions) -> Result<Selection, ReadE
     }
     let channels = chosen.iter().map(|(group, i)| {
         let candidate = &group.channels[*i];
-        // Whoever names a channel means its values, also those of an alpha.
+        // A channel chosen by name is read for its values, even an alpha.
         let name = if candidate.name.eq_ignore_ascii_case("A") { "alpha" } else { &candidate.name };
         candidate.selected(name)
     });
@@ -301,7 +301,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn groups_are_called_as_users_know_them() {
+    fn groups_have_the_names_that_users_know() {
         assert_eq!(group_name(None, "ViewLayer.Normal", None), "ViewLayer.Normal");
         assert_eq!(group_name(Some("N"), "", Some(1)), "N");
         assert_eq!(group_name(Some("N"), "N", Some(1)), "N");

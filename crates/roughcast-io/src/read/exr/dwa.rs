@@ -1,4 +1,4 @@
-//! The counts at the head of a DWA block, held against the pixels that the block has.
+//! Checks the counts at the head of a DWA block against the pixels of the block.
 //!
 //! The `exr` crate allocates by these counts before it looks at the data, so a damaged block could ask for any amount of
 //! memory. Layout after `internal_dwa_compressor.h` of OpenEXR.
@@ -12,13 +12,13 @@ const COUNTS: usize = 11;
 /// Pixels along the side of a block of the cosine transform.
 const DCT_SIDE: u64 = 8;
 
-/// Whether the counts of one block can be true.
+/// Checks that the counts of one block are possible.
 ///
 /// `width` and `height` are the pixels of the block, `channels` their number in the file, `raw_bytes` the bytes of the
 /// block without compression.
 ///
 /// # Errors
-/// [`ReadError::Malformed`] where the head is cut or states more than the pixels can need.
+/// [`ReadError::Malformed`] if the head is cut or states more than the pixels can need.
 pub(super) fn check(
     block: &[u8],
     width: usize,
@@ -57,8 +57,8 @@ mod tests {
     }
 
     #[test]
-    fn the_most_that_pixels_can_need_passes_and_one_more_does_not() {
-        // 9x8 pixels of 3 half channels: 432 bytes, and two transforms a channel.
+    fn counts_above_what_the_pixels_need_are_refused() {
+        // 9x8 pixels of 3 half channels: 432 bytes, and two transforms per channel.
         let most = [2, 432, 0, 0, 0, 0, 864, 432, 384, 6, 0];
         check(&head(most), 9, 8, 3, 432).unwrap();
         for i in [1, 6, 7, 8, 9] {

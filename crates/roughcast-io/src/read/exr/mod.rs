@@ -1,8 +1,8 @@
 //! OpenEXR: scan lines and tiles, level 0 of mip and rip maps, any flat part of several.
 //!
-//! The `exr` crate reads the header and undoes the compression. The way from one to the other, that is, which block
-//! lies where in the file and where its rows belong in the image, is taken here, since the crate's own way allocates by
-//! what the file states before it has looked whether the bytes are there. See [`blocks`].
+//! The `exr` crate reads the header and undoes the compression. The steps between them, that is, which block
+//! lies where in the file and where its rows belong in the image, are done here, since the crate's own code allocates by
+//! what the file states before checking that the bytes exist. See [`blocks`].
 
 mod blocks;
 mod channels;
@@ -28,7 +28,7 @@ use crate::{Decoded, FileInfo, ReadError, ReadOptions, ValueRange};
 const FORMAT: &str = "EXR";
 /// The compressions numbered 10 and above came after those that are read here.
 const FIRST_UNKNOWN_COMPRESSION: u8 = 10;
-/// The key by which a file says that roughcast wrote it.
+/// The key that marks a file as written by roughcast.
 const LAYOUT_KEY: &str = "roughcast.layout";
 const SAVE_AS_ZIP: &str = "save it with ZIP compression";
 
@@ -41,7 +41,7 @@ pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<Decoded, ReadE
     let mut input = Cursor::new(bytes);
     let meta = MetaData::read_from_buffered(&mut input, false).map_err(|e| header_fault(bytes, e))?;
     let tables_start = input.position();
-    // The layers of a baked texture belong together, whatever they are called.
+    // The layers of a baked texture belong together, whatever their names.
     let is_baked = meta.headers.iter().any(|header| text_pairs(header).contains_key(LAYOUT_KEY));
     let selection = channels::select(&meta, options, is_baked)?;
     let header = &meta.headers[selection.part];
@@ -127,13 +127,13 @@ fn text_pairs(header: &Header) -> BTreeMap<String, String> {
     pairs
 }
 
-/// The crate gives each byte as the character of that number; the files hold UTF-8.
+/// The crate returns each byte as the character of that number; the files contain UTF-8.
 fn text(value: &Text) -> String {
     String::from_utf8_lossy(value.as_slice()).into_owned()
 }
 
-/// Why the header could not be read. The crate skips an attribute that it does not understand and then misses it: of a
-/// compression that is too new it only says that there is none.
+/// Why the header could not be read. The crate skips an attribute that it does not understand and then misses it: for a
+/// compression that is too new it only reports that there is none.
 fn header_fault(bytes: &[u8], error: exr::error::Error) -> ReadError {
     const COMPRESSION_ATTRIBUTE: &[u8] = b"compression\0compression\0\x01\0\0\0";
     let end = bytes.windows(COMPRESSION_ATTRIBUTE.len()).position(|window| window == COMPRESSION_ATTRIBUTE);
@@ -150,9 +150,9 @@ fn fault(error: exr::error::Error) -> ReadError {
     use exr::error::Error;
     match error {
         Error::NotSupported(what) => unsupported(FORMAT, what, SAVE_AS_ZIP),
-        // The crate's words for whatever lies, or would lie, behind the last byte.
+        // The crate's words for anything past the last byte.
         Error::Invalid(what) if what.contains("reference to missing bytes") => {
-            malformed(FORMAT, "it ends too early, or refers to bytes behind its end")
+            malformed(FORMAT, "it ends too early, or refers to bytes past its end")
         }
         Error::Invalid(what) if what.starts_with("missing or invalid") => malformed(FORMAT, what),
         Error::Invalid(what) => malformed(FORMAT, format_args!("invalid {what}")),

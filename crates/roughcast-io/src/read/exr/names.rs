@@ -1,4 +1,4 @@
-//! What the names of an EXR's channels say: which of them are components of a vector, a height, or neither.
+//! What the names of an EXR's channels mean: which of them are components of a vector, a height, or neither.
 //!
 //! A name may begin with that of a layer: `ViewLayer.Normal.X` is channel `X` of the layer `ViewLayer.Normal`. Case does not
 //! count. The words are those of renderers and painters: OpenImageIO (which also knows `red`), Houdini (`height`, `mask`),
@@ -24,7 +24,7 @@ const HEIGHTS: [&str; 9] =
 /// beside them could be one.
 const WEAK_HEIGHTS: [&str; 3] = ["depth", "Z", "Y"];
 
-/// Names of coverage, which is beside the point of any map.
+/// Names of coverage, which is not part of any map.
 const ALPHAS: [&str; 9] = ["A", "alpha", "opacity", "coverage", "RA", "GA", "BA", "AR", "AG"];
 
 /// Words in the names of selections and identifiers, which are neither heights nor components.
@@ -35,9 +35,9 @@ const ASIDE: [&str; 8] = ["mask", "matte", "crypto", "id", "index", "debris", "w
 pub(super) enum Choice {
     /// These, under these names.
     Clear(Vec<(usize, String)>),
-    /// None: coverage, masks and identifiers alone.
+    /// None: only coverage, masks and identifiers.
     Nothing,
-    /// Several, and the names do not say which.
+    /// Several, and the names are ambiguous.
     Open,
 }
 
@@ -49,7 +49,7 @@ pub(super) fn choose(names: &[&str]) -> Choice {
     };
     for (set, vector) in VECTORS.iter().enumerate() {
         if let Some(places) = all_of(vector, place) {
-            // OpenImageIO calls them R, G and B as well.
+            // OpenImageIO names them R, G and B too.
             let called: &[&str; 3] = if set == 1 { &VECTORS[0] } else { vector };
             let mut chosen: Vec<_> =
                 places.into_iter().zip(called.iter().map(|&name| name.to_owned())).collect();
@@ -64,7 +64,7 @@ pub(super) fn choose(names: &[&str]) -> Choice {
     let heights: Vec<usize> = HEIGHTS.iter().filter_map(|name| place(name)).collect();
     let pairs = VECTORS.iter().map(|[a, b, _]| [*a, *b]).chain(PAIRS);
     let pairs: Vec<[usize; 2]> = pairs.filter_map(|[a, b]| Some([place(a)?, place(b)?])).collect();
-    // A Y beside an X is no luminance.
+    // A Y beside an X is not a luminance.
     let heights: Vec<usize> =
         heights.into_iter().filter(|height| !pairs.iter().any(|pair| pair.contains(height))).collect();
     let keep = |places: &[usize]| Choice::Clear(places.iter().map(|&i| (i, names[i].to_owned())).collect());
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn what_names_leave_open_is_left_open() {
+    fn ambiguous_names_stay_ambiguous() {
         for names in [
             &["foo", "bar"][..],
             &["U", "V", "height"],

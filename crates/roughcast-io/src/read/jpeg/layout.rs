@@ -1,4 +1,4 @@
-//! What a JPEG's headers say, read before anything is decoded: sizes, sampling factors, scans.
+//! A JPEG's headers, read before anything is decoded: sizes, sampling factors, scans.
 
 use super::{FORMAT, SAVE_PLAIN};
 use crate::ReadError;
@@ -34,8 +34,8 @@ impl Layout {
     /// Reads all segments.
     ///
     /// # Errors
-    /// [`ReadError::Malformed`] where there is no frame or no scan, a segment is cut or the image is not ended,
-    /// [`ReadError::Unsupported`] for coding processes that are not read.
+    /// [`ReadError::Malformed`] if there is no frame or no scan, a segment is cut or the image is not ended,
+    /// [`ReadError::Unsupported`] for coding processes that are not supported.
     pub(super) fn of(bytes: &[u8]) -> Result<Self, ReadError> {
         let mut layout = Self::default();
         let mut segments = Segments { bytes, at: 2, in_scan: false };
@@ -104,7 +104,7 @@ impl Layout {
         Ok(())
     }
 
-    /// Refuses what the decoder would get wrong: a scan of one component whose sampling factor lies between one and the
+    /// Refuses files that the decoder would misread: a scan of one component whose sampling factor lies between one and the
     /// largest of the image, where the component has fewer blocks than its share of the whole units of all components. The
     /// decoder expects the larger number.
     pub(super) fn check(&self) -> Result<(), ReadError> {
@@ -131,7 +131,7 @@ impl Layout {
         Ok(())
     }
 
-    /// The colours as they are stored. Without Adobe's segment, components called R, G and B are what they say (libjpeg).
+    /// The colours as they are stored. Without Adobe's segment, components named R, G and B are RGB (as in libjpeg).
     pub(super) fn colour_words(&self) -> &'static str {
         let named_rgb = self.components.iter().map(|component| component.id).eq(*b"RGB");
         match self.transform {
@@ -142,7 +142,7 @@ impl Layout {
     }
 }
 
-/// The segments of a file, one after the other; entropy-coded data is passed over.
+/// The segments of a file, one after the other; entropy-coded data is skipped.
 struct Segments<'a> {
     bytes: &'a [u8],
     at: usize,

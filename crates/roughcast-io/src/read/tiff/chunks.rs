@@ -21,17 +21,17 @@ pub(super) struct Chunks<'a> {
     /// Rows of a strip or tile; for the last strip there may be fewer in the file.
     chunk_height: usize,
     is_tiled: bool,
-    /// 1 where the samples of a pixel stand together, else one plane for each.
+    /// 1 if the samples of a pixel are interleaved, otherwise one plane for each.
     planes: usize,
     offsets: Values<'a>,
     byte_counts: Option<Values<'a>>,
     compression: Compression,
     predictor: Predictor,
-    /// Whether the bits of each byte are stored the other way round.
+    /// Whether the bits of each byte are stored in reverse order.
     is_bit_reversed: bool,
 }
 
-/// Buffers that one chunk after the other uses.
+/// Buffers that are reused for each chunk.
 #[derive(Default)]
 struct Scratch {
     bit_reversed: Vec<u8>,
@@ -88,7 +88,7 @@ impl<'a> Chunks<'a> {
                 either(tag::STRIP_BYTE_COUNTS, tag::TILE_BYTE_COUNTS)?,
             )
         };
-        let offsets = offsets.ok_or_else(|| malformed(FORMAT, "it does not say where its pixels are"))?;
+        let offsets = offsets.ok_or_else(|| malformed(FORMAT, "it does not state where its pixels are"))?;
         let compression = Compression::of(directory.unsigned_or(tag::COMPRESSION, 1)?)?;
         let chunks = Self {
             file,
@@ -120,7 +120,7 @@ impl<'a> Chunks<'a> {
         let samples = layout.samples / self.planes;
         match self.compression {
             Compression::CcittGroup4 if (layout.bits, samples) != (1, 1) => {
-                Err(malformed(FORMAT, "CCITT compression is for one bit a pixel"))
+                Err(malformed(FORMAT, "CCITT compression is for one bit per pixel"))
             }
             Compression::WebP if layout.bits != 8 || !matches!(samples, 3 | 4) => {
                 Err(malformed(FORMAT, "WebP compression is for RGB of 8 bits"))
@@ -151,7 +151,7 @@ impl<'a> Chunks<'a> {
             && self.byte_counts.is_some_and(|c| c.unsigned(index) == Some(0))
     }
 
-    /// All samples that are read, interleaved. `convert` makes a sample of its bits; `nothing` fills what was left out.
+    /// All samples that are read, interleaved. `convert` makes a sample from its bits; `nothing` fills what was left out.
     pub fn decode<T>(
         &self,
         layout: &Layout,
@@ -162,7 +162,7 @@ impl<'a> Chunks<'a> {
         T: Copy + Send + Sync + bytemuck::Zeroable,
     {
         let row_len = self.width * layout.channels.len();
-        // Where the caller's limit is far above what memory there can be, the product may not fit; nor would the image.
+        // If the caller's limit is far above any memory, the product may not fit; nor would the image.
         let mut samples = zeros::<T>(row_len.saturating_mul(self.height))?;
         let bands = samples.par_chunks_mut(row_len * self.chunk_height).enumerate();
         let fault = bands

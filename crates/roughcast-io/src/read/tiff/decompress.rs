@@ -12,7 +12,7 @@ use roughcast::Samples;
 
 const SAVE_ANOTHER_WAY: &str = "save it with LZW, deflate or ZSTD compression, or without any";
 
-/// The compressions that are read.
+/// The supported compressions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Compression {
     None,
@@ -25,7 +25,7 @@ pub(super) enum Compression {
 }
 
 impl Compression {
-    /// The compression of this number, or why it is not read.
+    /// The compression of this number, or why it is not supported.
     pub fn of(number: u64) -> Result<Self, ReadError> {
         let name = match number {
             1 => return Ok(Self::None),
@@ -57,7 +57,7 @@ impl Compression {
         Err(unsupported(FORMAT, name, SAVE_ANOTHER_WAY))
     }
 
-    /// Whether libtiff applies predictors to it. Where it does not, the tag stands there for nothing.
+    /// Whether libtiff applies predictors to it. If not, the tag has no meaning.
     pub fn has_predictor(self) -> bool {
         matches!(self, Self::Lzw | Self::Deflate | Self::Zstd)
     }
@@ -105,8 +105,8 @@ fn copy(packed: &[u8], unpacked: &mut [u8]) -> usize {
     length
 }
 
-/// LZW, from the most significant bit with codes that grow early, as TIFF 6.0 has it; or, as the first writers understood it,
-/// from the least significant bit with codes that grow late. The first code, which clears the table, tells.
+/// LZW, from the most significant bit with codes that grow early, as in TIFF 6.0; or, as in the first writers,
+/// from the least significant bit with codes that grow late. The first code, which clears the table, distinguishes them.
 fn unpack_lzw(packed: &[u8], unpacked: &mut [u8]) -> Result<usize, ReadError> {
     let is_old = matches!(packed, [0, second, ..] if second & 1 == 1);
     let configuration = if is_old {
@@ -123,7 +123,7 @@ fn unpack_lzw(packed: &[u8], unpacked: &mut [u8]) -> Result<usize, ReadError> {
         match step.status {
             Ok(weezl::LzwStatus::Ok) if step.consumed_in > 0 || step.consumed_out > 0 => {}
             Ok(_) => break,
-            Err(_) => return Err(malformed(FORMAT, "its LZW data are damaged")),
+            Err(_) => return Err(malformed(FORMAT, "its LZW data is damaged")),
         }
     }
     Ok(to)
@@ -132,20 +132,20 @@ fn unpack_lzw(packed: &[u8], unpacked: &mut [u8]) -> Result<usize, ReadError> {
 fn inflate(packed: &[u8], unpacked: &mut [u8]) -> Result<usize, ReadError> {
     use libdeflater::DecompressionError;
     libdeflater::Decompressor::new().zlib_decompress(packed, unpacked).map_err(|error| match error {
-        DecompressionError::BadData => malformed(FORMAT, "its deflate data are damaged or end too early"),
+        DecompressionError::BadData => malformed(FORMAT, "its deflate data is damaged or ends too early"),
         DecompressionError::InsufficientSpace => more_than_pixels(),
     })
 }
 
 fn more_than_pixels() -> ReadError {
-    malformed(FORMAT, "its strips or tiles hold more bytes than their pixels have")
+    malformed(FORMAT, "its strips or tiles contain more bytes than their pixels need")
 }
 
 fn unpack_zstd(packed: &[u8], unpacked: &mut [u8]) -> Result<usize, ReadError> {
     let mut decompressor = zstd::bulk::Decompressor::new().map_err(ReadError::Io)?;
     decompressor
         .decompress_to_buffer(packed, unpacked)
-        .map_err(|_| malformed(FORMAT, "its ZSTD data are damaged or end too early"))
+        .map_err(|_| malformed(FORMAT, "its ZSTD data is damaged or ends too early"))
 }
 
 /// PackBits: TIFF 6.0, section 9.
@@ -176,12 +176,12 @@ fn unpack_bits(mut packed: &[u8], unpacked: &mut [u8]) -> usize {
     to
 }
 
-/// CCITT Group 4 (T.6): one bit a pixel, 1 for black.
+/// CCITT Group 4 (T.6): one bit per pixel, 1 for black.
 fn unpack_group4(packed: &[u8], unpacked: &mut [u8], shape: Shape) -> Result<usize, ReadError> {
     use fax::decoder::{DecodeStatus, Group4Decoder, pels};
-    let damaged = || malformed(FORMAT, "its CCITT Group 4 data are damaged or end too early");
+    let damaged = || malformed(FORMAT, "its CCITT Group 4 data is damaged or ends too early");
     let width = u32::try_from(shape.width)
-        .map_err(|_| unsupported(FORMAT, "CCITT compression of so wide an image", SAVE_ANOTHER_WAY))?;
+        .map_err(|_| unsupported(FORMAT, "CCITT compression of an image this wide", SAVE_ANOTHER_WAY))?;
     let input = packed.iter().map(|&byte| Ok::<u8, std::convert::Infallible>(byte));
     let Ok(mut decoder) = Group4Decoder::new(input, width);
     for row in unpacked.chunks_exact_mut(shape.row_bytes).take(shape.rows) {

@@ -40,7 +40,7 @@ pub(super) mod tag {
 /// Directories that are followed. Files with more exist (one image for each moment of a recording), but hold no map.
 const MAX_DIRECTORIES: usize = 1024;
 
-/// Entries that are looked at in all directories together, so that many directories that share their bytes cost no time.
+/// The most entries read in all directories together, so that many directories that share their bytes cost little time.
 const MAX_ENTRIES: u64 = 1 << 20;
 
 /// The bytes of a file, and how numbers are stored in it.
@@ -88,7 +88,7 @@ impl<'a> File<'a> {
         let mut starts = Vec::new();
         let mut directories = Vec::new();
         let mut entries = 0;
-        // A chain that leads back into itself has come to its end.
+        // A circular chain ends here.
         while next != 0 && !starts.contains(&next) && starts.len() < MAX_DIRECTORIES && entries < MAX_ENTRIES
         {
             starts.push(next);
@@ -98,7 +98,7 @@ impl<'a> File<'a> {
                     entries += count;
                     next = following;
                 }
-                // The image that is wanted may be whole.
+                // The wanted image may be complete.
                 Err(_) if !directories.is_empty() => break,
                 Err(error) => return Err(error),
             }
@@ -129,7 +129,7 @@ impl<'a> File<'a> {
         Ok((Directory { file: self, entries }, count, next))
     }
 
-    /// The unsigned number of so many bytes at a place.
+    /// The unsigned number of this many bytes at an offset.
     fn number(self, start: u64, length: u64) -> Result<u64, ReadError> {
         self.slice(start, length).map(|bytes| number_of(bytes, self.is_big_endian)).ok_or_else(ends_too_early)
     }
@@ -139,7 +139,7 @@ impl<'a> File<'a> {
         self.bytes.get(start..start.checked_add(usize::try_from(length).ok()?)?)
     }
 
-    /// The bytes from a place on, as many as there are up to `length`.
+    /// The bytes from an offset on, as many as exist up to `length`.
     pub fn slice_up_to(self, start: u64, length: u64) -> &'a [u8] {
         let from = usize::try_from(start).ok().and_then(|start| self.bytes.get(start..)).unwrap_or_default();
         &from[..from.len().min(usize::try_from(length).unwrap_or(usize::MAX))]
@@ -147,7 +147,7 @@ impl<'a> File<'a> {
 }
 
 impl<'a> Directory<'a> {
-    /// The values of a tag. `None` where the tag is absent.
+    /// The values of a tag. `None` if the tag is absent.
     pub fn values(&self, tag: u16) -> Result<Option<Values<'a>>, ReadError> {
         let Some(&Entry { field_type, count, start }) = self.entries.get(&tag) else { return Ok(None) };
         let length = count.saturating_mul(bytes_of_type(field_type));
@@ -189,7 +189,7 @@ impl Values<'_> {
         self.bytes.chunks_exact(bytes_of_type(self.field_type) as usize).nth(index)
     }
 
-    /// A value as an unsigned integer; `None` where it is none, or where there are not so many values.
+    /// A value as an unsigned integer; `None` if it is not one, or if there are fewer values.
     pub fn unsigned(&self, index: usize) -> Option<u64> {
         const UNSIGNED: [u64; 6] = [1, 3, 4, 13, 16, 18];
         const SIGNED: [u64; 4] = [6, 8, 9, 17];
@@ -201,7 +201,7 @@ impl Values<'_> {
         is_unsigned.then_some(number)
     }
 
-    /// A value as a double; `None` where it is none, or where there are not so many values.
+    /// A value as a double; `None` if it is not one, or if there are fewer values.
     pub fn double(&self, index: usize) -> Option<f64> {
         const DOUBLE: u64 = 12;
         let number = number_of(self.get(index)?, self.file.is_big_endian);
@@ -209,7 +209,7 @@ impl Values<'_> {
     }
 }
 
-/// Bytes of a value. Types that are not known count as bytes, which no value is shorter than.
+/// Bytes of a value. Unknown types count as bytes, the shortest values.
 fn bytes_of_type(field_type: u64) -> u64 {
     match field_type {
         3 | 8 => 2,
@@ -233,7 +233,7 @@ pub(super) fn ends_too_early() -> ReadError {
 mod tests {
     use super::*;
 
-    /// A file of one directory with one entry: a text of so many characters.
+    /// A file of one directory with one entry: a text of this many characters.
     fn with_text(characters: u32, big_endian: bool) -> Vec<u8> {
         let two = |n: u16| if big_endian { n.to_be_bytes() } else { n.to_le_bytes() };
         let four = |n: u32| if big_endian { n.to_be_bytes() } else { n.to_le_bytes() };
@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn a_chain_that_leads_back_ends() {
+    fn a_circular_chain_ends() {
         let mut file = with_text(1, false);
         let end = file.len() - 4;
         file[end..].copy_from_slice(&8u32.to_le_bytes());

@@ -8,7 +8,7 @@ const GT_MODEL_TYPE: u64 = 1024;
 /// The key of the unit of projected coordinates.
 const PROJ_LINEAR_UNITS: u64 = 3076;
 
-/// What the file says of the width of a pixel; `None` where it says nothing, or nothing usable.
+/// The width of a pixel that the file states; `None` if there is none, or none that can be used.
 pub(super) fn pixel_size(directory: &Directory<'_>) -> Option<PixelSize> {
     let width = width_of(directory)?;
     if !(width.is_finite() && width > 0.0) {
@@ -38,7 +38,7 @@ fn width_of(directory: &Directory<'_>) -> Option<f64> {
     Some(matrix.double(0)?.hypot(matrix.double(4)?))
 }
 
-/// The value of a key that stands in the directory of keys itself.
+/// The value of a key that is stored in the directory of keys itself.
 fn key(directory: &Directory<'_>, wanted: u64) -> Option<u64> {
     let keys = directory.values(tag::GEO_KEY_DIRECTORY).ok()??;
     // Four numbers each: key, place of the value (0 for "here"), count, value. The first four are a header.

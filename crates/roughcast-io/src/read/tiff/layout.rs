@@ -1,11 +1,11 @@
-//! What the samples of a pixel are: their type, and which of them are read under which names.
+//! The samples of a pixel: their type, and which of them are read under which names.
 
 use super::directory::{Directory, tag};
 use super::{FORMAT, SAVE_PLAIN};
 use crate::ReadError;
 use crate::read::memory::{malformed, unsupported};
 
-/// More samples of a pixel exist in recordings of many wavelengths, which are no maps.
+/// Recordings of many wavelengths have more samples per pixel, but are not maps.
 const MAX_SAMPLES: u64 = 1024;
 
 /// The type of all samples as they are stored.
@@ -16,11 +16,11 @@ pub(super) enum Numbers {
     Float,
 }
 
-/// What the numbers stand for.
+/// What the numbers mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Colours {
     Grey,
-    /// Grey, of which 0 is white.
+    /// Grey where 0 is white.
     GreyInverted,
     Rgb,
     /// Indices into a table of colours.
@@ -33,11 +33,11 @@ pub(super) struct Channel {
     /// Which sample of the pixel it is.
     pub sample: usize,
     pub name: String,
-    /// Whether the file says that it is an alpha.
+    /// Whether the file marks it as alpha.
     pub is_alpha: bool,
 }
 
-/// What a pixel holds.
+/// What a pixel contains.
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
     pub numbers: Numbers,
@@ -47,18 +47,18 @@ pub(super) struct Layout {
     pub colours: Colours,
     /// The samples that are read. For a palette this is the index.
     pub channels: Vec<Channel>,
-    /// Colours that were multiplied by their alpha.
+    /// Whether the colours were multiplied by their alpha.
     pub is_premultiplied: bool,
-    /// What the user should hear about.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
 impl Layout {
-    /// The layout of a directory's image, with the channels of these names; with no names, those that leave no doubt.
+    /// The layout of a directory's image, with the channels of these names; without names, the unambiguous ones.
     pub fn of(directory: &Directory<'_>, wanted: &[String]) -> Result<Self, ReadError> {
         let samples = directory.unsigned_or(tag::SAMPLES_PER_PIXEL, 1)?;
         if samples == 0 {
-            return Err(malformed(FORMAT, "it states 0 samples a pixel"));
+            return Err(malformed(FORMAT, "it states 0 samples per pixel"));
         }
         if samples > MAX_SAMPLES {
             return Err(unsupported(FORMAT, format_args!("{samples} samples a pixel"), SAVE_PLAIN));
@@ -99,10 +99,10 @@ impl Layout {
         }))
     }
 
-    /// Names of all samples: those of the colours first. Samples beside them, of which the file does not say what they
-    /// are, are called by their number, as in OpenImageIO.
+    /// Names of all samples: those of the colours first. Further samples, whose meaning the file does not state,
+    /// are named by their number, as in OpenImageIO.
     fn names(&self, alphas: &[Alpha]) -> Vec<String> {
-        // Several samples, none of which is said to be an alpha, are vectors, or colours of a writer who knows only grey.
+        // Several samples, none of them marked as alpha, are vectors, or colours of a writer that knows only grey.
         let is_stated = alphas.iter().any(|alpha| *alpha != Alpha::No);
         let colours: &[&str] = match self.colours {
             Colours::Rgb => &["R", "G", "B"],
@@ -121,7 +121,7 @@ impl Layout {
         let names = self.names(alphas);
         if self.colours == Colours::Palette {
             if self.samples > 1 {
-                return Err(unsupported(FORMAT, "a palette with samples beside it", SAVE_PLAIN));
+                return Err(unsupported(FORMAT, "a palette with extra samples", SAVE_PLAIN));
             }
             self.channels = vec![Channel { sample: 0, name: "index".to_owned(), is_alpha: false }];
             return Ok(());
@@ -133,7 +133,7 @@ impl Layout {
         };
         if !wanted.is_empty() {
             let find = |name: &String| names.iter().position(|known| known.eq_ignore_ascii_case(name));
-            // Whoever names a channel means its values, also those of an alpha.
+            // A channel chosen by name is read for its values, even an alpha.
             let called = |sample: usize| {
                 let name = if names[sample] == "A" { "alpha" } else { &names[sample] };
                 Channel { sample, name: name.to_owned(), is_alpha: false }
@@ -145,7 +145,7 @@ impl Layout {
             return Ok(());
         }
         if self.colours == Colours::GreyInverted && alphas.iter().any(|alpha| *alpha != Alpha::No) {
-            return Err(unsupported(FORMAT, "an alpha beside grey of which 0 is white", SAVE_PLAIN));
+            return Err(unsupported(FORMAT, "an alpha with grey where 0 is white", SAVE_PLAIN));
         }
         let colours = if names[0] == "Y" { 1 } else { self.samples.min(3) };
         let alpha = (colours..self.samples).find(|&sample| alphas[sample] != Alpha::No);
@@ -155,7 +155,7 @@ impl Layout {
         }
         self.channels = (0..colours).chain(alpha.or(fourth)).map(channel).collect();
         if let Some(last) = self.channels.get_mut(3) {
-            // A fourth sample of no stated meaning plays the part of an alpha: it counts only where the pixels say so.
+            // A fourth sample without a stated meaning is treated as alpha: it counts only if the pixels show that it matters.
             last.name = "A".to_owned();
         }
         self.is_premultiplied = alpha.is_some_and(|sample| alphas[sample] == Alpha::Associated);
@@ -168,7 +168,7 @@ impl Layout {
             let rest =
                 if unread.len() > 1 { format!(" to {}", unread[unread.len() - 1]) } else { String::new() };
             self.warnings
-                .push(format!("of its {} samples a pixel, {first}{rest} are not read", self.samples));
+                .push(format!("of its {} samples per pixel, {first}{rest} are not read", self.samples));
         }
         Ok(())
     }
@@ -218,7 +218,7 @@ fn list_of(names: &[String]) -> String {
     }
 }
 
-/// What a sample beside the colours is.
+/// What a sample after the colours is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Alpha {
     No,
@@ -227,7 +227,7 @@ enum Alpha {
     Unassociated,
 }
 
-/// For each sample of a pixel whether it is an alpha.
+/// For each sample of a pixel, whether it is an alpha.
 fn alphas_of(directory: &Directory<'_>, samples: usize, colours: Colours) -> Result<Vec<Alpha>, ReadError> {
     let mut alphas = vec![Alpha::No; samples];
     let Some(extra) = directory.values(tag::EXTRA_SAMPLES)? else { return Ok(alphas) };
@@ -259,7 +259,7 @@ fn numbers_of(directory: &Directory<'_>, samples: usize) -> Result<(Numbers, u32
     };
     let bits = all_same(tag::BITS_PER_SAMPLE, 1, "sizes")?;
     let numbers = match all_same(tag::SAMPLE_FORMAT, 1, "types")? {
-        // 4 is "undefined", which libtiff takes for unsigned.
+        // 4 is "undefined", which libtiff treats as unsigned.
         1 | 4 => Numbers::Unsigned,
         2 => Numbers::Signed,
         3 => Numbers::Float,
@@ -291,7 +291,7 @@ fn colours_of(directory: &Directory<'_>, samples: usize) -> Result<Colours, Read
     match directory.unsigned(tag::PHOTOMETRIC_INTERPRETATION)? {
         Some(0) => Ok(Colours::GreyInverted),
         Some(2) if samples < 3 => {
-            Err(malformed(FORMAT, format_args!("it states RGB of {samples} samples a pixel")))
+            Err(malformed(FORMAT, format_args!("it states RGB of {samples} samples per pixel")))
         }
         Some(2) => Ok(Colours::Rgb),
         Some(3) => Ok(Colours::Palette),

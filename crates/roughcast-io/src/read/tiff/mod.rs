@@ -1,11 +1,11 @@
 //! TIFF and BigTIFF: strips and tiles, interleaved and planar, integers and floats.
 //!
-//! Tags and the arrangement of pixels are read here, and the pixels unpacked by other crates (`weezl`, `libdeflater`, `zstd`,
-//! `fax`, and the reader of WebP). The `tiff` crate (0.11) takes valid LZW tiles, and tiles with the tags of strips, for
-//! broken files, panics on planar tiles, and undoes predictors wrongly where there are extra samples.
+//! This module reads tags and the arrangement of pixels; other crates unpack the pixels (`weezl`, `libdeflater`, `zstd`,
+//! `fax`, and the reader of WebP). The `tiff` crate (0.11) rejects valid LZW tiles and tiles with the tags of strips as
+//! broken files, panics on planar tiles, and undoes predictors wrongly if there are extra samples.
 //!
-//! After TIFF 6.0 (<https://www.itu.int/itudoc/itu-t/com16/tiff-fx/docs/tiff6.pdf>). Where files in use leave the specification,
-//! or the specification leaves something open, libtiff decides.
+//! Follows TIFF 6.0 (<https://www.itu.int/itudoc/itu-t/com16/tiff-fx/docs/tiff6.pdf>). Where files in use deviate from it,
+//! or it leaves something undefined, libtiff decides.
 
 mod chunks;
 mod decompress;
@@ -34,14 +34,14 @@ const SAVE_PLAIN: &str = "save it as grey or RGB of 8 or 16 bits or of floats";
 /// Reads an image of a TIFF: the first of full size, or that of the number that [`ReadOptions::layer`] gives, from 1.
 ///
 /// - Unsigned integers of 1, 2, 4 and 8 bits give 8 bits, those of up to 16 give 16 bits, both of full range.
-/// - Unsigned integers of more bits give floats: of 0 ..= 1 for colours, and for grey where the largest needs one of the
-///   highest 8 bits; else the numbers themselves, heights in some unit.
-/// - Signed integers of one channel give the numbers themselves as floats, heights in some unit. Those of more channels are
+/// - Unsigned integers of more bits give floats: of 0 ..= 1 for colours, and for grey if the largest needs one of the
+///   highest 8 bits; otherwise the numbers themselves, heights in some unit.
+/// - Signed integers of one channel give the numbers themselves as floats, heights in some unit. With more channels they are
 ///   signed normalised, -1 ..= 1.
 /// - Floats of 16 bits give half floats, those of 24, 32 and 64 bits floats.
 /// - Where 0 is white (photometric interpretation 0), unsigned integers are inverted. libtiff does so for its RGBA images;
 ///   OpenImageIO for up to 8 bits; tifffile does not.
-/// - Grey with a second sample is grey and alpha only where the file says that it is alpha.
+/// - Grey with a second sample is grey and alpha only if the file marks that sample as alpha.
 /// - Texels that have the value of GDAL's tag for "no data", and those outside of its mask, are NaN.
 /// - Palettes give RGB. Orientation is ignored, as are gamma and colour profiles.
 pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<Decoded, ReadError> {
@@ -58,12 +58,11 @@ pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<Decoded, ReadE
     let Stored { samples, range, warnings: of_samples } = samples::read(directory, &chunks, &layout, mask)?;
     warnings.extend(of_samples);
     if layout.bits == 24 && layout.is_bit_stream() && !file.is_big_endian {
-        warnings.push("the byte order of its integers of 24 bits is not defined: the first byte is taken for the highest".to_owned());
+        warnings.push("the byte order of its integers of 24 bits is not defined: the first byte is taken as the highest".to_owned());
     }
     let left_out = chunks.left_out();
     if left_out > 0 {
-        warnings
-            .push(format!("{left_out} of its strips or tiles were left out by the program that wrote it"));
+        warnings.push(format!("the program that wrote it left out {left_out} of its strips or tiles"));
     }
 
     let channels: Vec<&str> = match layout.colours {
@@ -79,7 +78,7 @@ pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<Decoded, ReadE
     };
     let decoded = Decoded { image, info };
     match layout.colours {
-        // Its channels are those of its colours, which have only now come to be.
+        // Its channels are those of its colours, which are known only now.
         Colours::Palette => chosen(decoded, &ReadOptions { layer: None, ..options.clone() }),
         _ => Ok(decoded),
     }
@@ -93,7 +92,7 @@ fn subfile_type(directory: &Directory<'_>) -> u64 {
     directory.unsigned(tag::NEW_SUBFILE_TYPE).ok().flatten().unwrap_or(0)
 }
 
-/// The mask of the only image of a file, where there is one: 0 for each pixel without data.
+/// The mask of the only image of a file, if there is one: 0 for each pixel without data.
 fn read_mask(
     file: File<'_>,
     directories: &[Directory<'_>],
@@ -114,7 +113,7 @@ fn read_mask(
     chunks.decode(&layout, 0, |word| word as u8).map(Some)
 }
 
-/// The directory of the image that is wanted, with a warning where there are others.
+/// The directory of the wanted image, with a warning if there are others.
 fn choose<'d, 'a>(
     directories: &'d [Directory<'a>],
     layer: Option<&str>,

@@ -10,13 +10,13 @@ use super::samples::Stored;
 use crate::ReadError;
 use crate::read::memory::zeros;
 
-/// Relative difference up to which a float is the one that the text means. Writers shorten the digits (`-3.40282e+38`); GDAL
+/// Relative difference up to which a float is the one written in the tag. Writers shorten the digits (`-3.40282e+38`); GDAL
 /// allows for 10 steps of a float, each 2^-23.
 const SAME: f32 = 10.0 / (1 << 23) as f32;
 
 /// How a file marks texels without data.
 pub(super) struct Nodata {
-    /// The value that stands for it, as text and as it is stored, where the samples can have it.
+    /// The value that marks it, as text and as stored, if the samples can have it.
     text: String,
     word: Option<u64>,
     /// For each texel 0 where it has no data.
@@ -30,12 +30,12 @@ impl Nodata {
         Self { text, word, mask }
     }
 
-    /// The value as it is stored; `None` where there is none, or none that the samples can have.
+    /// The value as stored; `None` if there is none, or none that the samples can have.
     pub fn word(&self) -> Option<u64> {
         self.word
     }
 
-    /// Makes texels without data NaN. The samples become floats if there are any. `value` is what the word has become among
+    /// Makes texels without data NaN. The samples become floats if there are any. `value` is the marker's value among
     /// the samples.
     pub fn apply(&self, stored: &mut Stored, value: f32, layout: &Layout) -> Result<(), ReadError> {
         if self.word.is_none() && self.mask.is_none() {
@@ -87,7 +87,7 @@ impl Nodata {
     }
 }
 
-/// A number as the samples store it; `None` where they cannot.
+/// A number as the samples store it; `None` if they cannot.
 fn word_of(value: f64, layout: &Layout) -> Option<u64> {
     let bits = layout.bits;
     let is_integer = value.fract() == 0.0;

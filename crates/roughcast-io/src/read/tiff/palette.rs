@@ -9,7 +9,7 @@ use super::{FORMAT, SAVE_PLAIN};
 use crate::ReadError;
 use crate::read::memory::{malformed, unsupported};
 
-/// By what a colour of 8 bits is multiplied: so that the largest becomes the largest, or by many writers shifted.
+/// The factor for a colour of 8 bits: 257 maps the largest to the largest; many writers shift by 8 bits instead.
 const EIGHT_BITS: [u16; 2] = [257, 256];
 
 /// Reads the colours of an image of indices: 8 bits where that is exact, else 16.
@@ -22,11 +22,11 @@ pub(super) fn read(
         return Err(unsupported(FORMAT, format_args!("a palette with {}", layout.words()), SAVE_PLAIN));
     }
     let mut table = table_of(directory, 1 << layout.bits)?;
-    // Some writers stored 8 bits; libtiff, too, tells them by their being small.
+    // Some writers stored 8 bits; like libtiff, we recognise them by their small values.
     if table.iter().flatten().all(|&value| value <= 255) {
         table.iter_mut().flatten().for_each(|value| *value <<= 8);
     }
-    // Every word of so many bits has its entry.
+    // Every word of this many bits has its entry.
     let are_multiples = |factor: &u16| table.iter().flatten().all(|value| value.is_multiple_of(*factor));
     if EIGHT_BITS.iter().any(are_multiples) {
         let table: Vec<[u8; 3]> = table.iter().map(|color| color.map(|value| (value >> 8) as u8)).collect();

@@ -57,7 +57,7 @@ pub(super) fn undo(predictor: Predictor, row: &mut [u8], layout: RowLayout, scra
     }
 }
 
-/// Whether a predictor is defined for samples of so many bits.
+/// Whether a predictor is defined for samples of this many bits.
 pub(super) fn is_defined(predictor: Predictor, bits: u32, is_float: bool) -> bool {
     match predictor {
         Predictor::None => true,
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn sorted_bytes_of_floats_come_together_again() {
+    fn sorted_bytes_of_floats_are_reassembled() {
         let floats = [1.5f32, -2.25, 1e-20];
         let sorted: Vec<u8> = (0..4).flat_map(|i| floats.map(|v| v.to_be_bytes()[i])).collect();
         let mut row = sorted.clone();

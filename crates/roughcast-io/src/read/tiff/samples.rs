@@ -1,4 +1,4 @@
-//! From stored samples to those of an image, and what their numbers mean.
+//! Converts stored samples to those of an image, and decides what their numbers mean.
 
 use half::f16;
 use roughcast::Samples;
@@ -40,7 +40,7 @@ pub(super) fn read(
         stored.warnings.push("its signed integers are read as -1 to 1".to_owned());
     }
     if layout.is_premultiplied && has_transparency(&stored.samples, &layout.channels) {
-        stored.warnings.push("its colours are multiplied by its alpha, and are read as they are".to_owned());
+        stored.warnings.push("its colours are multiplied by its alpha, and are read unchanged".to_owned());
     }
     nodata.apply(&mut stored, nothing, layout)?;
     if meaning == Meaning::Undecided {
@@ -58,7 +58,7 @@ enum Meaning {
     SignedNormalised,
     /// The numbers themselves.
     Plain,
-    /// Unsigned integers that are the one or the other.
+    /// Unsigned integers that are either.
     Undecided,
 }
 
@@ -83,7 +83,7 @@ impl Meaning {
     }
 }
 
-/// What is to be said of an image of which 0 is white. All programs agree on 8 bits.
+/// The warning for an image where 0 is white. All programs agree on 8 bits.
 fn inversion_warning(layout: &Layout, meaning: Meaning) -> Option<&'static str> {
     match meaning {
         _ if layout.colours != Colours::GreyInverted => None,
@@ -97,7 +97,7 @@ fn inversion_warning(layout: &Layout, meaning: Meaning) -> Option<&'static str> 
     }
 }
 
-/// Decodes the samples. `nothing` is how texels without data are stored; what becomes of it is returned beside the samples.
+/// Decodes the samples. `nothing` is the stored value of texels without data; its decoded value is returned with the samples.
 fn decode(
     chunks: &Chunks<'_>,
     layout: &Layout,
@@ -139,7 +139,7 @@ fn decode(
     })
 }
 
-/// Grey of more than 16 bits: a picture uses their range, and heights in any unit leave the highest bits unused.
+/// Grey of more than 16 bits: a picture uses the whole range, while heights in any unit leave the highest bits unused.
 fn normalise_if_full_range(stored: &mut Stored, bits: u32) {
     /// Highest bits of which a picture uses one.
     const HIGH_BITS: u32 = 8;

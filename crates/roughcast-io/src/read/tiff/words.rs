@@ -1,4 +1,4 @@
-//! Rows of packed samples as one word a sample.
+//! Unpacks rows of samples to one word per sample.
 
 use super::predictor::RowLayout;
 
@@ -52,7 +52,7 @@ pub(super) fn f32_from_f24(word: u64) -> f32 {
     }
 }
 
-/// The signed integer in so many bits.
+/// The signed integer in this many bits.
 pub(super) fn signed(word: u64, bits: u32) -> i64 {
     let unused = 64 - bits;
     (word << unused) as i64 >> unused
