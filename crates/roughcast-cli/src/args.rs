@@ -8,7 +8,7 @@ use roughcast::{
 use roughcast_io::{Limits, ReadOptions};
 use roughcast_pipeline::{MapOptions, SPECULAR_POWERS};
 
-/// Words that users of other tools type, and what they are called here.
+/// Words from other tools, and this program's words for them.
 const OTHER_WORDS: &[(&str, &str)] = &[
     ("float16", "half"),
     ("half-float", "half"),
@@ -39,28 +39,28 @@ const OTHER_WORDS: &[(&str, &str)] = &[
     ("arm", "orm"),
 ];
 
-/// A parser that takes the names of an enum's variants.
+/// A parser for the names of an enum's variants.
 pub fn one_of<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T> {
     one_of_or_advice(OTHER_WORDS)
 }
 
-/// A parser that takes the names of an enum's variants, and for other words has the advice of a [`WordParser`].
+/// A parser for the names of an enum's variants that advises about other words, see [`WordParser`].
 pub fn one_of_or_advice<T: Named + Send + Sync>(
     others: &'static [(&'static str, &'static str)],
 ) -> impl TypedValueParser<Value = T> {
     let words = T::all().iter().map(|variant| variant.name()).collect();
     WordParser { words, others }.map(|name| {
         let named = T::all().iter().copied().find(|variant| variant.name() == name);
-        named.expect("the parser lets only names through")
+        named.expect("the parser accepts only names")
     })
 }
 
-/// Takes some words, and says what other words are called here.
+/// Accepts some words, and suggests the right one for others.
 #[derive(Clone)]
 pub struct WordParser {
     /// The words.
     pub words: Vec<&'static str>,
-    /// Other words, each with the one that is meant, or with a sentence that says why there is none.
+    /// Other words, each with the right one, or with a sentence that explains why there is none.
     pub others: &'static [(&'static str, &'static str)],
 }
 
@@ -97,7 +97,7 @@ impl WordParser {
             .others
             .iter()
             .find(|(other, meant)| *other == lower && (meant.contains(' ') || self.words.contains(meant)))?;
-        Some(if meant.contains(' ') { (*meant).to_owned() } else { format!("say '{meant}'") })
+        Some(if meant.contains(' ') { (*meant).to_owned() } else { format!("use '{meant}'") })
     }
 }
 
@@ -140,25 +140,25 @@ fn max_slope(text: &str) -> Result<MaxSlope, String> {
 pub const READING: &str = "Reading the map";
 pub const REPORT: &str = "Report";
 
-/// How the input is to be read.
+/// How to read the input.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = READING)]
 pub struct SourceArgs {
-    /// What the picture is [default: decided from its pixels; an error where they leave it open]
+    /// What the picture contains [default: decided from its pixels; an error if they are ambiguous]
     #[arg(long, value_name = "KIND", value_parser = one_of::<Kind>())]
     pub kind: Option<Kind>,
 
-    /// Channels to read, by name and in the order x, y, z; one for a height [default: those whose names leave no doubt]
+    /// Channels to read, by name and in the order x, y, z; one for a height [default: the unambiguous ones]
     #[arg(long, value_name = "NAME[,NAME...]", value_delimiter = ',')]
     pub channels: Vec<String>,
 
-    /// Layer or part of an EXR to read, by name: ViewLayer.Normal, N; image of a TIFF, by number [default: the one that leaves no
-    /// doubt; of a TIFF the first]
+    /// Layer or part of an EXR to read, by name: ViewLayer.Normal, N; image of a TIFF, by number [default: the unambiguous one;
+    /// for a TIFF the first]
     #[arg(long, value_name = "NAME")]
     pub layer: Option<String>,
 
-    /// Which way green points in a normal map: up is OpenGL and glTF, down is DirectX [default: up; in a folder, what the
-    /// name of the file says]
+    /// Which way green points in a normal map: up is OpenGL and glTF, down is DirectX [default: up; in a folder,
+    /// according to the file's name]
     #[arg(long, value_parser = one_of::<Green>())]
     pub green: Option<Green>,
 
@@ -166,7 +166,7 @@ pub struct SourceArgs {
     #[arg(long, default_value = "right", value_parser = one_of::<Red>())]
     pub red: Red,
 
-    /// Strength of a normal map: x and y are multiplied by it, as by glTF's normalTexture.scale
+    /// Strength of a normal map: a factor for x and y, as glTF's normalTexture.scale
     #[arg(long, value_name = "X", value_parser = finite, allow_negative_numbers = true)]
     pub normal_scale: Option<f32>,
 
@@ -175,17 +175,17 @@ pub struct SourceArgs {
     #[arg(long, value_parser = one_of::<NormalRange>())]
     pub range: Option<NormalRange>,
 
-    /// Channels that contain the normal: xyz; xy or yx, the first two (z is worked out); ag, x in alpha and y in green
+    /// Channels that contain the normal: xyz; xy or yx, the first two (z is computed); ag, x in alpha and y in green
     /// ("DXT5nm", BC3n, RXGB); or ra, x in red, y in alpha (KTX's normal mode) [default: decided from the file and its pixels]
     #[arg(long, value_name = "CHANNELS", value_parser = one_of::<NormalChannels>())]
     pub normal_channels: Option<NormalChannels>,
 
-    /// Height of a value of 1 (white), as a part of the map's width: 0.02 is 20 texels on a map of 1000. For heights in metres
-    /// 1 / (width in pixels x metres a pixel) [default: 0.02]
+    /// Height of a value of 1 (white), as a fraction of the map's width: 0.02 is 20 texels on a map 1000 texels wide. For heights in metres
+    /// 1 / (width in pixels x metres per pixel) [default: 0.02]
     #[arg(long, value_name = "X", value_parser = finite, allow_negative_numbers = true)]
     pub height_scale: Option<f32>,
 
-    /// White is deep, not high: the map holds depths
+    /// Treat white as deep: the map contains depths
     #[arg(long)]
     pub invert_height: bool,
 
@@ -193,16 +193,16 @@ pub struct SourceArgs {
     #[arg(long, default_value = "sobel", value_parser = one_of::<Gradient>())]
     pub gradient: Gradient,
 
-    /// What lies beyond the edge of the map: itself again, its edge, or its mirror image
+    /// What lies beyond the edge of the map: the map again, its edge texels, or its mirror image
     #[arg(long, default_value = "repeat", value_parser = one_of::<Wrap>())]
     pub wrap: Wrap,
 
-    /// Maximum slope (tangent of the angle; 1 is 45 degrees); steeper texels are scaled back to it and counted. auto: 128, or, for
-    /// 8 and 16 bits, less where the steepest 0.1 % of the texels cost much precision
+    /// Maximum slope (tangent of the angle; 1 is 45 degrees); steeper texels are clamped to it and counted. auto: 128, or less for
+    /// 8 and 16 bits if the steepest 0.1 % of the texels cost much precision
     #[arg(long, value_name = "auto|X", default_value = "auto", value_parser = max_slope)]
     pub max_slope: MaxSlope,
 
-    /// Most pixels that a file may have
+    /// Maximum number of pixels in a file
     #[arg(long, value_name = "N", default_value_t = Limits::default().max_pixels, value_hint = ValueHint::Other)]
     pub max_pixels: u64,
 }
@@ -218,7 +218,7 @@ impl SourceArgs {
         ReadOptions { limits: self.limits(), layer: self.layer.clone(), channels: self.channels.clone() }
     }
 
-    /// How the map is read, as the library takes it.
+    /// The library's options for reading the map.
     pub fn map_options(&self) -> MapOptions {
         let mut options = MapOptions::default();
         options.read = self.read_options();

@@ -15,21 +15,20 @@ use roughcast::{
 use roughcast_io::Container;
 use roughcast_pipeline::{BakeJob, Target};
 
-use crate::advice::{filter_refusal, with_options};
 use crate::args::{READING, REPORT, SourceArgs, one_of, positive};
 use crate::batch;
 use crate::fault::guarded;
 use crate::progress::StageBar;
-use crate::refusals;
+use crate::refusals::{self, filter_refusal, with_options};
 use crate::report::FileReport;
 use crate::roughness::RoughnessArgs;
 use crate::{UsageError, usage};
 
 /// Turn a normal or height map into textures whose mip levels keep the bumps as roughness.
 ///
-/// The extension of the output says the format: .ktx2 or .dds, both ready for a GPU; .exr or .tx, a tiled EXR, half or float; or .png,
+/// The extension of the output selects the format: .ktx2 or .dds, both ready for a GPU; .exr or .tx, a tiled EXR, half or float; or .png,
 /// one picture per level (NAME.L0.png, NAME.L1.png ...). A layout of several files writes NAME.PART.ext. With a folder as
-/// input, every map in it is baked into the output folder, and a bad file does not stop the others.
+/// input, every map in it is baked into the output folder; a bad file does not stop the others.
 #[derive(clap::Args, Clone)]
 #[command(after_help = layout_help())]
 pub struct Args {
@@ -37,7 +36,7 @@ pub struct Args {
     #[arg(value_hint = ValueHint::AnyPath)]
     pub input: PathBuf,
 
-    /// The file to write; the folder, where the input is one
+    /// The file to write, or the folder if the input is a folder
     #[arg(short, long, value_name = "PATH", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
 
@@ -45,22 +44,22 @@ pub struct Args {
     #[arg(long = "as", value_name = "LAYOUT", default_value = "lean", value_parser = one_of::<Layout>())]
     pub layout: Layout,
 
-    /// Bits of each number stored [default: half for .exr, but float for moments; 8 for pbr, toksvig and --compress bc;
+    /// Bits per stored value [default: half for .exr, but float for moments; 8 for pbr, toksvig and --compress bc;
     /// else 16]
     #[arg(long, value_parser = one_of::<SampleType>())]
     pub bits: Option<SampleType>,
 
-    /// Steepest slope that 8 and 16 bits can hold: auto (the smallest that is safe) or a number, to which steeper texels
-    /// are scaled back and counted
+    /// Maximum slope that 8- and 16-bit texels represent: auto (the smallest that is safe) or a number; steeper texels
+    /// are clamped to it and counted
     #[arg(long, default_value = "auto", value_name = "auto|X", value_parser = scale)]
     pub scale: ScaleChoice,
 
-    /// Filter that makes each level from the one before: box, triangle or gaussian
+    /// Filter that makes each level from the previous one: box, triangle or gaussian
     #[arg(long, default_value = "box", value_parser = filter)]
     pub filter: PyramidFilter,
 
-    /// For pbr: also write in which direction the roughness is larger. khr, or nothing behind it: direction and strength, as
-    /// KHR_materials_anisotropy has them; alpha: the widths along x and y, in two files
+    /// For pbr: also write the direction of larger roughness. khr (the default): direction and strength, as
+    /// in KHR_materials_anisotropy; alpha: the widths along x and y, in two files
     #[arg(
         long,
         value_name = "FORM",
@@ -72,7 +71,7 @@ pub struct Args {
     pub anisotropy: Option<AnisotropyOutput>,
 
     /// For pbr: the channels of roughness. r: one channel; g: green, as glTF reads it, with an occlusion of 1 and a metalness
-    /// of 0; orm: the same with occlusion and metalness of the picture [default: orm where the picture has them, else g; in
+    /// of 0; orm: the same with the picture's occlusion and metalness [default: orm if the picture has them, otherwise g; in
     /// .exr r]
     #[arg(long, value_name = "CHANNELS", value_parser = one_of::<RoughnessTexture>())]
     pub roughness_layout: Option<RoughnessTexture>,
@@ -81,20 +80,20 @@ pub struct Args {
     #[arg(long, value_name = "RANGE", value_parser = one_of::<NormalRange>())]
     pub normal_range: Option<NormalRange>,
 
-    /// Where the textures are used: desktop; web, for WebGPU and WebGL, which take no 16-bit integers, and loaders without
-    /// array textures; or any, which excludes block compression as well. Chooses --bits and --split
+    /// Where the textures are used: desktop; web, for WebGPU and WebGL, which do not support 16-bit integers, and loaders without
+    /// array textures; or any, which also excludes block compression. Chooses --bits and --split
     #[arg(long, default_value = "desktop", value_parser = one_of::<Target>())]
     pub target: Target,
 
-    /// Write each layer of a layout to a file of its own, NAME.LAYER.ext, for loaders that take no array textures
+    /// Write each layer of a layout to a file of its own, NAME.LAYER.ext, for loaders without array textures
     #[arg(long)]
     pub split: bool,
 
-    /// Also write NAME.json with all that a shader needs to know, for loaders that drop the file's own metadata
+    /// Also write NAME.json with everything that a shader needs, for loaders that drop the file's own metadata
     #[arg(long)]
     pub sidecar: bool,
 
-    /// Block compression for pbr, variance and toksvig: BC5, BC4 and BC7. The report says what it costs
+    /// Block compression for pbr, variance and toksvig: BC5, BC4 and BC7. The report states the error
     #[arg(long, default_value = "none", value_parser = one_of::<Blocks>())]
     pub compress: Blocks,
 
@@ -116,7 +115,7 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256), help_heading = FOLDERS)]
     pub jobs: Option<u16>,
 
-    /// Bake only files whose names match, such as '*_normal*': * stands for any letters, ? for one; may be repeated
+    /// Bake only files whose names match, such as '*_normal*': * matches any characters, ? one; may be repeated
     #[arg(long = "match", value_name = "PATTERN", help_heading = FOLDERS)]
     pub matching: Vec<String>,
 
@@ -135,10 +134,10 @@ pub struct Args {
 
 const FOLDERS: &str = "With a folder as input";
 
-/// Characters of a line of [`layout_help`], so that a terminal of 80 columns keeps the columns.
+/// Characters per line of [`layout_help`], so that it fits a terminal of 80 columns.
 const HELP_WIDTH: usize = 80;
 
-/// The column at which [`layout_help`] says what a layout is.
+/// The column at which [`layout_help`] describes a layout.
 const HELP_COLUMN: usize = 23;
 
 /// The table of layouts, and examples.
@@ -164,7 +163,7 @@ fn layout_help() -> String {
     help
 }
 
-/// What the program adds to the library's summary of a layout: options that matter for it, and the format that can hold it.
+/// What the program adds to the library's summary of a layout: its options, and the format that can store it.
 fn note_of(layout: Layout) -> &'static str {
     match layout.base_role() {
         BaseRole::Apart => "; for --specular-power S",
@@ -192,7 +191,7 @@ Examples:
 /// The library's [`Supercompression`], as the command line names it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Supercompress {
-    /// As they are
+    /// No supercompression
     None,
     /// Zstandard
     Zstd,
@@ -216,7 +215,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if args.output.is_dir() {
         return Err(usage(
             &args.output,
-            "it is a folder; name the file to write, with .ktx2, .dds, .exr, .tx or .png at its end",
+            "it is a folder; name a file that ends in .ktx2, .dds, .exr, .tx or .png",
         ));
     }
     if args.format.is_some() || args.jobs.is_some() || !args.matching.is_empty() {
@@ -232,7 +231,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Options that contradict each other are a fault of the command line, not of the map.
+/// Contradictory options are an error of the command line, not of the map.
 pub fn usage_where_options(error: BakeError) -> anyhow::Error {
     match error {
         BakeError::Source(_) => error.into(),

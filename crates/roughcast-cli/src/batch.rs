@@ -1,4 +1,4 @@
-//! A folder of maps, in words: a line for each, and how many are baked.
+//! Reports on a folder of maps: a line for each, and how many are baked.
 
 use std::num::NonZeroUsize;
 use std::path::Path;
@@ -14,10 +14,10 @@ use crate::progress::FolderBar;
 use crate::report::FileReport;
 use crate::{complain, one_line, refusals, say_json};
 
-/// What became of a file.
+/// The outcome for a file.
 enum Row {
     Baked(FileReport),
-    /// It is no map of bumps, for this reason.
+    /// It is not a map of bumps, for this reason.
     Skipped(String),
     Failed(Error),
 }

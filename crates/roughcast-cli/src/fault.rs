@@ -1,4 +1,4 @@
-//! Faults of the program itself: a panic ends the work on one file, not the run, and is reported in one line.
+//! Faults of the program itself: a panic ends the work on one file but not the run, and is reported in one line.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -8,10 +8,10 @@ use anyhow::{Context, Result, anyhow};
 
 use crate::complain;
 
-/// How many jobs are guarded at the moment: while there are any, a panic is told as their error.
+/// How many jobs are guarded at the moment: while there are any, a panic is reported as their error.
 static GUARDED: Mutex<usize> = Mutex::new(0);
 
-/// Lets a panic print one line instead of a backtrace, or nothing where [`guarded`] or a caller of [`silenced`] reports it.
+/// Makes a panic print one line instead of a backtrace, or nothing if [`guarded`] or a caller of [`silenced`] reports it.
 pub fn install_hook() {
     std::panic::set_hook(Box::new(|info| {
         if GUARDED.lock().is_ok_and(|jobs| *jobs == 0) {
@@ -21,7 +21,7 @@ pub fn install_hook() {
     }));
 }
 
-/// Runs work whose panics are told as errors by whoever catches them, so that the hook stays silent.
+/// Runs work whose panics the caller catches and reports as errors, so that the hook stays silent.
 pub fn silenced<T>(work: impl FnOnce() -> T) -> T {
     let count = |change: isize| {
         if let Ok(mut jobs) = GUARDED.lock() {
@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn a_panic_on_another_thread_is_caught_as_well() {
+    fn a_panic_on_another_thread_is_caught_too() {
         install_hook();
         let result = guarded(Path::new("a.png"), || -> Result<()> {
             rayon::join(|| panic!("in a worker"), || ());

@@ -1,4 +1,4 @@
-//! What the library found out about a map or a job, in words, with the options that answer it.
+//! Words for the library's findings about a map or a job, with the options that resolve them.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use roughcast_pipeline::{Finding, Map, ReaderLimit, RoughnessForm, SkipReason, T
 
 use crate::warn;
 
-/// Prints what was found out about a map.
+/// Prints the findings about a map.
 pub fn warn_of(path: &Path, map: &Map) {
     map.findings.iter().for_each(|finding| warn(path, &words_of(finding)));
 }
@@ -19,12 +19,12 @@ pub fn words_of(finding: &Finding) -> String {
     match finding {
         Finding::File(clause) => clause.clone(),
         Finding::OrderOfNormalOpen { format } => format!(
-            "writers of {format} disagree about which channel comes first, and the pixels do not tell: the first is read as \
-             x; say --normal-channels xy or yx"
+            "writers of {format} disagree about which channel comes first, and the pixels do not show it: the first is read as \
+             x; use --normal-channels xy or yx"
         ),
         Finding::GreenProbablyWrong { read, correlation, heights } => {
             let how = match heights {
-                None => "the map's slopes are not those of a surface".to_owned(),
+                None => "the map's slopes do not belong to a surface".to_owned(),
                 Some(path) => format!("the map contradicts the height map {}", path.display()),
             };
             let other = match read {
@@ -32,19 +32,19 @@ pub fn words_of(finding: &Finding) -> String {
                 Green::Down => Green::Up,
             };
             format!(
-                "read with green {read}, {how} (correlation {correlation:.2}): green probably points {other}; say --green \
+                "with green {read}, {how} (correlation {correlation:.2}): green probably points {other}; use --green \
                  {other}"
             )
         }
         Finding::GreenNotAsNamed { named } => {
-            format!("its name says green {named}, but its slopes say the opposite, and are believed")
+            format!("its name says green {named}, but its slopes show the opposite: the slopes decide")
         }
         Finding::HeightsHaveUnits { range, width, pixel_size } => words_on_units(*range, *width, *pixel_size),
         Finding::SpecularPowerAssumed { power } => {
-            format!("the gloss factor is for a specular power of {power}: say --specular-power for another")
+            format!("the gloss factor is for a specular power of {power}: use --specular-power for another")
         }
         Finding::RoughnessAssumedZero => {
-            "the material's own roughness is taken as 0, a mirror: say --roughness or --specular-power"
+            "no roughness was given, so the material is treated as a mirror: use --roughness or --specular-power"
                 .to_owned()
         }
         Finding::RoughnessNotStored { layout, given } => {
@@ -53,8 +53,8 @@ pub fn words_of(finding: &Finding) -> String {
                 RoughnessForm::SpecularPower => "--specular-power",
             };
             format!(
-                "{option} is only noted in the file, since the layout '{layout}' leaves the material's roughness to the \
-                 shader: say --base baked to fold it in, or leave {option} out"
+                "{option} is only recorded in the file, because the layout '{layout}' leaves the material's roughness to the \
+                 shader: use --base baked to fold it in, or leave {option} out"
             )
         }
         Finding::LeftFromEarlierBake { path } => format!(
@@ -67,16 +67,16 @@ pub fn words_of(finding: &Finding) -> String {
         ),
         Finding::Target { finding, container } => words_on_target(*finding, *container),
         Finding::NamedOtherwise { what } => format!(
-            "its name says that it is {what}, and it is read as a map of bumps: say --kind if that is what it is"
+            "its name suggests {what}, but it is read as a map of bumps: use --kind to confirm"
         ),
         Finding::NormalsNamedOtherwise { what } => {
-            format!("its name says that it is {what}, but its pixels are normals")
+            format!("its name suggests {what}, but its pixels are normals")
         }
         Finding::HeightsNamedNormals => {
-            "its name says normals, but its pixels are grey: it is baked as heights".to_owned()
+            "its name suggests normals, but its pixels are grey: it is baked as heights".to_owned()
         }
         Finding::NormalsNamedHeights => {
-            "its name says heights, but its pixels are normals: it is baked as these".to_owned()
+            "its name suggests heights, but its pixels are normals: it is baked as normals".to_owned()
         }
         // The enum may grow.
         other => format!("{other:?}"),
@@ -94,18 +94,18 @@ fn words_on_target(finding: TargetFinding, container: Container) -> String {
              EXT_texture_compression_rgtc and EXT_texture_compression_bptc, which phones lack: --target any excludes them"
             .to_owned(),
         TargetFinding::OneLevel => format!(
-            "loaders of .{container} take one level and make the others anew, which loses the roughness: write .ktx2"
+            "loaders of .{container} read one level and regenerate the others, which loses the roughness: write .ktx2"
         ),
         // The enum may grow.
         other => format!("{other:?}"),
     }
 }
 
-/// What common readers refuse: one line, or none.
+/// What common readers refuse: one line, or `None`.
 pub fn words_on_readers(limits: &[ReaderLimit]) -> Option<String> {
     let words = |limit: &ReaderLimit| match limit {
         ReaderLimit::Arrays => {
-            "three.js, Babylon.js and Godot read no array textures (--split writes a file for each layer)"
+            "three.js, Babylon.js and Godot do not read array textures (--split writes a file for each layer)"
                 .to_owned()
         }
         ReaderLimit::SixteenBits => {
@@ -119,7 +119,7 @@ pub fn words_on_readers(limits: &[ReaderLimit]) -> Option<String> {
     (!limits.is_empty()).then(|| limits.iter().map(words).collect::<Vec<_>>().join("; "))
 }
 
-/// Why a file of a folder is no map of bumps.
+/// Why a file of a folder is not a map of bumps.
 pub fn words_on_skip(reason: &SkipReason) -> String {
     match reason {
         SkipReason::Named { what } => format!("{what}, by its name"),
@@ -132,14 +132,17 @@ pub fn words_on_skip(reason: &SkipReason) -> String {
     }
 }
 
-/// What to do about heights that are not from 0 to 1.
+/// Advice about heights that are not from 0 to 1.
 fn words_on_units(range: HeightRange, width: usize, pixel_size: Option<PixelSize>) -> String {
     let scale_for = |pixel: f64| four_digits(height_scale_for_units(pixel, width));
     let formula =
         format!("--height-scale 1/({width} x P), with P the width of a pixel in the unit of the heights");
     let advice = match pixel_size {
         Some(PixelSize { width: pixel, unit: LengthUnit::Degree }) => {
-            format!("give {formula}, which its {} degrees do not tell", four_digits(pixel))
+            format!(
+                "Use {formula}; its pixels are {} degrees wide, which is not a length",
+                four_digits(pixel)
+            )
         }
         Some(PixelSize { width: pixel, unit }) => {
             let unit = match unit {
@@ -148,16 +151,16 @@ fn words_on_units(range: HeightRange, width: usize, pixel_size: Option<PixelSize
                 _ => "units",
             };
             format!(
-                "its pixels are {} {unit} wide: give --height-scale {} if the heights are in the same unit",
+                "Its pixels are {} {unit} wide: use --height-scale {} if the heights are in the same unit",
                 four_digits(pixel),
                 scale_for(pixel)
             )
         }
-        None => format!("give {formula} ({} for P = 1)", scale_for(1.0)),
+        None => format!("Use {formula} ({} for P = 1)", scale_for(1.0)),
     };
     format!(
         "its heights run from {} to {}, not from 0 to 1, so they are probably in metres or another unit, and the default \
-         scale makes each unit {} of the map's width: {advice}",
+         scale makes each unit {} of the map's width. {advice}",
         range.min,
         range.max,
         SourceOptions::DEFAULT_HEIGHT_SCALE

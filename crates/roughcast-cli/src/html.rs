@@ -1,4 +1,4 @@
-//! Reports as one HTML file: styles, tables and pictures all inside, so that the file can be sent on alone.
+//! Reports as one HTML file that contains its styles, tables and pictures, so that it can be sent alone.
 
 use std::fmt::{Display, Write};
 
@@ -6,7 +6,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use roughcast_io::picture::{Srgb8Picture, write_compact_png, write_jpeg};
 
-/// A page that is being written.
+/// A page under construction.
 pub struct Page {
     html: String,
 }
@@ -51,7 +51,7 @@ impl Page {
         self.push(format_args!("<p>{} <b class=\"{class}\">{word}</b></p>\n", escaped(text)));
     }
 
-    /// A list of names and what they stand for.
+    /// A list of names and their values.
     pub fn list(&mut self, entries: &[(&str, String)]) {
         let entry = |(name, text): &(&str, String)| {
             format!("<tr><th>{}</th><td class=\"text\">{}</td></tr>\n", escaped(name), escaped(text))
@@ -82,17 +82,17 @@ impl Page {
         self.html.push_str("</div>\n");
     }
 
-    /// A picture with a caption, exactly as it is.
+    /// A picture with a caption, without loss.
     pub fn picture(&mut self, picture: &Srgb8Picture, caption: &str) {
         self.figure(picture.width, caption, &image("png", picture, &png(picture), caption));
     }
 
-    /// A picture with a caption, as a JPEG in which no loss is seen: a fraction of the bytes where much is in the picture.
+    /// A picture with a caption, as a JPEG without visible loss: a fraction of the bytes for a detailed picture.
     pub fn photograph(&mut self, picture: &Srgb8Picture, caption: &str) {
         self.figure(picture.width, caption, &image("jpeg", picture, &jpeg(picture, STILL), caption));
     }
 
-    /// Pictures of equal size, one after the other, for ever.
+    /// Pictures of equal size, one after the other, in a loop.
     pub fn film(&mut self, frames: &[Srgb8Picture], frames_per_second: u16, caption: &str) {
         let count = frames.len();
         let seconds = count as f64 / f64::from(frames_per_second);
@@ -132,12 +132,12 @@ impl Page {
     }
 }
 
-/// Least quality of a JPEG that is looked at for long, and of one that is seen for a moment.
+/// Least quality of a still JPEG, and of one that is visible for a moment.
 const STILL: u8 = 80;
 const MOVING: u8 = 70;
 /// The quality that shows no steps in smooth pictures.
 const SMOOTH: u8 = 95;
-/// Pictures have the best quality that takes no more bytes per pixel: smooth ones, in which losses are seen first, take few.
+/// Pictures have the best quality that takes no more bytes per pixel: smooth ones, which show losses first, take few.
 const CHEAP: f64 = 0.15;
 
 fn png(picture: &Srgb8Picture) -> Vec<u8> {

@@ -1,4 +1,4 @@
-//! `roughcast info`: what a file holds.
+//! `roughcast info`: what a file contains.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -16,10 +16,10 @@ use crate::args::{REPORT, SourceArgs};
 use crate::findings::warn_of;
 use crate::{refusals, say, say_json, textures, warn};
 
-/// Show what a file holds: size, format, levels, layout, scale, value ranges, and the slopes of each level.
+/// Show what a file contains: size, format, levels, layout, scale, value ranges, and the slopes of each level.
 ///
-/// For a map the slopes are those that `bake` would see; for a file that `bake` wrote they are decoded from it, level by
-/// level. A picture that is no map is described without slopes.
+/// For a map, the slopes are those that `bake` would see; for a file that `bake` wrote, they are decoded from it, level by
+/// level. For a picture that is not a map, the slopes are omitted.
 #[derive(clap::Args)]
 pub struct Args {
     /// An image, or a file that `bake` wrote
@@ -34,7 +34,7 @@ pub struct Args {
     source: SourceArgs,
 }
 
-/// What there is to say, in both forms.
+/// The output, in both forms.
 struct Findings {
     lines: Vec<String>,
     json: JsonMap<String, Value>,
@@ -56,11 +56,11 @@ fn look_at(args: &Args) -> Result<Findings> {
     let picture = read_image_of(&args.file, &bytes, &args.source.read_options());
     let mut findings = Findings { lines: Vec::new(), json: JsonMap::new() };
     findings.put("file", json!(args.file.display().to_string()), args.file.display().to_string());
-    // A PNG is decoded level by level, which is worth while only for our own.
+    // A PNG is decoded level by level, which is worthwhile only for baked files.
     let is_ours = |decoded: &Decoded| layout_named_in(&decoded.info).is_some();
     let foreign = picture.as_ref().is_ok_and(|decoded| decoded.info.container == "PNG" && !is_ours(decoded));
     let textures = if foreign {
-        Err(anyhow::anyhow!("it holds no roughcast metadata"))
+        Err(anyhow::anyhow!("it has no roughcast metadata"))
     } else {
         textures::read_bytes(&args.file, &bytes, &limits)
     };
@@ -78,7 +78,7 @@ fn look_at(args: &Args) -> Result<Findings> {
             if layout_named_in(&picture.info).is_some() {
                 warn(
                     &args.file,
-                    &format!("described as a picture, since its textures cannot be read: {fault:#}"),
+                    &format!("described as a picture, because its textures cannot be read: {fault:#}"),
                 );
             }
             findings.describe(&picture.info);
@@ -121,7 +121,7 @@ impl Findings {
         self.put("ranges", Value::Object(rows), shown.join(", "));
     }
 
-    /// A file that `bake` wrote: what its texels mean, and the slopes that they decode to.
+    /// A file that `bake` wrote: the meaning of its texels, and the slopes that they decode to.
     fn textures(&mut self, args: &Args, array: TextureArray) {
         self.layout(&array.info, array.layers[0].sample_type());
         let named = |(texture, channel): (&Texture, usize)| {
@@ -158,8 +158,8 @@ impl Findings {
         warn_of(&args.file, &map);
         let options = BakeOptions { layout: Layout::Moments, bits: SampleType::F32, ..Default::default() };
         let baked = bake(&map.image, &map.options, None, &options)?;
-        let mended = baked.report.counts.total();
-        self.put("mended", json!(mended), format!("{mended} texels"));
+        let repaired = baked.report.counts.total();
+        self.put("repaired", json!(repaired), format!("{repaired} texels"));
         self.slopes(&decode(&baked.arrays)?);
         Ok(())
     }
@@ -199,7 +199,7 @@ impl Findings {
         let mut rows = Vec::new();
         self.lines.push(format!(
             "{:>5} {:>11} {:>10} {:>10} {:>10} {:>10} {:>12} {:>12}",
-            "level", "size", "mean x", "mean y", "rms", "steepest", "variance x", "variance y"
+            "level", "size", "mean x", "mean y", "rms", "maximum", "variance x", "variance y"
         ));
         for (number, level) in levels.iter().enumerate() {
             let stats = LevelSlopes::of(level);
@@ -209,7 +209,7 @@ impl Findings {
                 stats.mean[0],
                 stats.mean[1],
                 stats.rms,
-                stats.steepest,
+                stats.maximum,
                 stats.variance[0],
                 stats.variance[1],
             ));
@@ -218,7 +218,7 @@ impl Findings {
                 "width": level.width,
                 "height": level.height,
                 "mean_slope": stats.mean,
-                "steepest_slope": stats.steepest,
+                "steepest_slope": stats.maximum,
                 "rms_slope": stats.rms,
                 "variance": stats.variance,
             }));
@@ -230,20 +230,20 @@ impl Findings {
 /// A level's slopes in a few numbers.
 struct LevelSlopes {
     mean: [f64; 2],
-    steepest: f64,
+    maximum: f64,
     rms: f64,
     variance: [f64; 2],
 }
 
 impl LevelSlopes {
     fn of(level: &MomentLevel) -> Self {
-        let mut sums = Self { mean: [0.0; 2], steepest: 0.0, rms: 0.0, variance: [0.0; 2] };
+        let mut sums = Self { mean: [0.0; 2], maximum: 0.0, rms: 0.0, variance: [0.0; 2] };
         for moments in &level.moments {
             let (x, y) = (f64::from(moments.mean.x), f64::from(moments.mean.y));
             let covariance = moments.covariance();
             sums.mean[0] += x;
             sums.mean[1] += y;
-            sums.steepest = sums.steepest.max(x.hypot(y));
+            sums.maximum = sums.maximum.max(x.hypot(y));
             sums.rms += x * x + y * y;
             sums.variance[0] += f64::from(covariance.xx);
             sums.variance[1] += f64::from(covariance.yy);
@@ -251,7 +251,7 @@ impl LevelSlopes {
         let texels = level.moments.len() as f64;
         Self {
             mean: sums.mean.map(|sum| sum / texels),
-            steepest: sums.steepest,
+            maximum: sums.maximum,
             rms: (sums.rms / texels).sqrt(),
             variance: sums.variance.map(|sum| sum / texels),
         }

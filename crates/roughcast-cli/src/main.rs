@@ -1,10 +1,10 @@
 //! The `roughcast` program: one file per subcommand.
 //!
 //! Results go to stdout, everything else to stderr. Exit codes: 0 done, 1 an input or a file failed, 2 the command
-//! line makes no sense.
+//! line is invalid.
 
-mod advice;
 mod args;
+mod backend;
 mod bake;
 mod batch;
 mod bench;
@@ -16,7 +16,6 @@ mod findings;
 mod html;
 mod info;
 mod input;
-mod painter;
 mod precision;
 mod progress;
 mod refusals;
@@ -84,14 +83,14 @@ fn main() -> ExitCode {
     }
 }
 
-/// Says what is wrong with the command line, in one line, or shows the help that was asked for.
+/// Reports what is wrong with the command line, in one line, or shows the requested help.
 fn explain(error: &clap::Error) -> ExitCode {
     let asked_for_help = !error.use_stderr()
         || error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
     if asked_for_help {
         let _ = error.print();
     } else {
-        // clap adds a usage and a pointer to --help, each after an empty line, which scripts' logs can do without.
+        // clap adds a usage and a pointer to --help, each after an empty line, which logs of scripts do not need.
         let text = error.render().to_string();
         let said = text
             .split("\n\n")
@@ -102,7 +101,7 @@ fn explain(error: &clap::Error) -> ExitCode {
     ExitCode::from(error.exit_code() as u8)
 }
 
-/// A command line that makes no sense, whatever the files hold.
+/// A command line that is invalid for any files.
 #[derive(Debug)]
 struct UsageError(String);
 
@@ -114,21 +113,21 @@ impl std::fmt::Display for UsageError {
 
 impl std::error::Error for UsageError {}
 
-/// A command line that makes no sense because of this path.
+/// A command line that is invalid because of this path.
 fn usage(path: &Path, line: &str) -> anyhow::Error {
     UsageError(format!("{}: {line}", path.display())).into()
 }
 
-/// An error with its causes on one line. Decoders' messages may hold line breaks or control characters, of which a
-/// terminal should see none.
+/// An error with its causes on one line. Decoders' messages may contain line breaks or control characters, which a
+/// terminal must not receive.
 fn one_line(error: &anyhow::Error) -> String {
-    let text = error.chain().map(advice::with_options).collect::<Vec<_>>().join(": ");
-    // Spaces stay as they are, since they may be part of a file's name.
+    let text = error.chain().map(refusals::with_options).collect::<Vec<_>>().join(": ");
+    // Spaces are kept, since they may be part of a file's name.
     let pieces = text.split(char::is_control).map(str::trim).filter(|piece| !piece.is_empty());
     pieces.collect::<Vec<_>>().join(" ")
 }
 
-/// Prints a line to stdout. A reader that has gone away, such as `head`, is no error of ours; a full disk is.
+/// Prints a line to stdout. A closed pipe, for example by `head`, is not an error; a full disk is.
 fn say(text: &str) -> anyhow::Result<()> {
     match writeln!(std::io::stdout(), "{text}") {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error).context("stdout"),
@@ -141,7 +140,7 @@ fn say_json(value: &serde_json::Value) -> anyhow::Result<()> {
     say(&serde_json::to_string_pretty(value).expect("a report is plain data"))
 }
 
-/// Prints a line to stderr. Where that is closed, nobody is left to be told.
+/// Prints a line to stderr. If that is closed, nobody reads it.
 fn complain(text: &str) {
     let _ = writeln!(std::io::stderr(), "{text}");
 }

@@ -15,11 +15,11 @@ use crate::findings::warn_of;
 use crate::input::read_map;
 use crate::{say, say_json};
 
-/// Show how precise a map's variance is in 8 bits, 16 bits, half and float, and which of them will do.
+/// Show how precise a map's variance is in 8 bits, 16 bits, half and float, and which type is sufficient.
 ///
-/// LEAN's variance is a small difference of large numbers; a highlight of specular power S is safe while 1/S is larger
-/// than the error. The table gives the largest possible error, the error measured on this map, the specular powers that
-/// they allow, and the steepest slope that each type can hold for the power that you want.
+/// LEAN's variance is a small difference of large numbers; a highlight of specular power S is safe if 1/S is larger
+/// than the error. The table shows the largest possible error, the error measured on this map, the specular powers that
+/// they allow, and the maximum slope that each type represents at the specular power that you need.
 #[derive(clap::Args)]
 pub struct Args {
     /// A normal or height map
@@ -57,7 +57,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }
     say(&format!(
         "{:<6} {:>9} {:>12} {:>12} {:>12} {:>12} {:>14}",
-        "bits", "scale", "error <=", "measured", "usable S", "on this map", "steepest slope"
+        "bits", "scale", "error <=", "measured", "usable S", "on this map", "maximum slope"
     ))?;
     for row in &rows {
         say(&format!(
@@ -72,13 +72,13 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         ))?;
     }
     if let Some(limit) = lowered(&rows) {
-        say(&format!("For 8 and 16 bits slopes are limited to {limit:.3} (--max-slope auto)"))?;
+        say(&format!("For 8 and 16 bits, slopes are limited to {limit:.3} (--max-slope auto)"))?;
     }
     say(&advice(best, args.specular_power))?;
     Ok(ExitCode::SUCCESS)
 }
 
-/// The largest slope that unsigned types allow, where it is lower than that of floats.
+/// The maximum slope of unsigned types, if it is lower than that of floats.
 fn lowered(rows: &[Precision]) -> Option<f32> {
     let limit = |bits| rows.iter().find(|row| row.bits == bits).map(|row| row.max_slope);
     limit(SampleType::U16)
@@ -89,7 +89,7 @@ fn advice(best: Option<SampleType>, power: f32) -> String {
     match best {
         Some(bits) => format!("For a specular power of {power}: --bits {bits}"),
         None => format!(
-            "No type carries a specular power of {power} with this map: lower --max-slope to the steepest slope above, or \
+            "No type represents a specular power of {power} with this map: lower --max-slope to the maximum slope above, or \
              store the variance itself with --as variance"
         ),
     }

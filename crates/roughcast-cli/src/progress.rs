@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use roughcast_pipeline::{Progress, Stage, Watch};
 
-/// Work on shorter jobs would only flicker.
+/// Bars of shorter jobs would only flicker.
 const QUIET_FOR: Duration = Duration::from_millis(400);
 
 /// A bar over `steps` steps; it shows nothing unless stderr is a terminal.
@@ -19,7 +19,7 @@ pub fn bar(steps: u64) -> ProgressBar {
     bar
 }
 
-/// A bar over long work, which tells the time that is left.
+/// A bar over long work, which shows the remaining time.
 pub fn timed_bar(steps: u64) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr());
     let style = ProgressStyle::with_template("{bar:24} {percent}% {wide_msg} {eta} left")

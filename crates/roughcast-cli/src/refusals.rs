@@ -1,5 +1,7 @@
-//! Errors of the libraries, in one line with the options that answer them, and sorted into faults of the command line and faults of
+//! Errors of the libraries in one line, with the options to change, and sorted into faults of the command line and faults of
 //! files.
+
+mod bake_options;
 
 use std::path::Path;
 
@@ -13,6 +15,7 @@ use roughcast_pipeline::{
     TargetError,
 };
 
+pub use self::bake_options::{filter_refusal, with_options};
 use crate::bake::usage_where_options;
 use crate::{UsageError, usage};
 
@@ -28,7 +31,7 @@ fn usage_line(line: String) -> Error {
 pub fn of_read(error: ReadError) -> Error {
     match error {
         ReadError::OpenChannels { .. } | ReadError::NoSuchChannel { .. } => {
-            anyhow!("{error}: say --layer NAME or --channels NAME[,NAME...]")
+            anyhow!("{error}: use --layer NAME or --channels NAME[,NAME...]")
         }
         error => of_size(error),
     }
@@ -41,25 +44,25 @@ fn of_size(error: ReadError) -> Error {
     }
 }
 
-/// Why an image is no map.
+/// Why an image is not a map.
 pub fn of_map(error: MapError) -> Error {
     match error {
         MapError::Baked { layout } => anyhow!(
-            "it is baked already (layout '{layout}'), and its values are no longer those of a map: give the map that it was \
-             made from; `roughcast info` and `roughcast unpack` read baked files"
+            "it is already baked (layout '{layout}'), so its values are no longer those of a map: give the map that it was \
+             baked from; `roughcast info` and `roughcast unpack` read baked files"
         ),
         MapError::Undecided { reason, has_alpha } => {
             let channels = if has_alpha { ", and for normals --normal-channels" } else { "" };
             anyhow!(
-                "it looks like neither a normal nor a height map ({reason}): say --kind normal or --kind \
+                "it looks like neither a normal nor a height map ({reason}): use --kind normal or --kind \
                  height{channels}"
             )
         }
         MapError::NotSigned { format } => {
-            usage_line(format!("--range signed is for signed numbers, and {format} holds none: leave it out"))
+            usage_line(format!("--range signed is for signed numbers, but {format} has none: leave it out"))
         }
         MapError::NormalScaleOfHeights => usage_line(
-            "--normal-scale is for normal maps, and this is a height map: say --height-scale".to_owned(),
+            "--normal-scale is for normal maps, and this is a height map: use --height-scale".to_owned(),
         ),
         error => error.into(),
     }
@@ -89,7 +92,7 @@ pub fn of_read_files(error: ReadFilesError) -> Error {
         }
         ReadFilesError::Level { path, level, source } => {
             let needed = if level == 0 {
-                "the level 0 of its texture is needed"
+                "level 0 of its texture is needed"
             } else {
                 "all levels of a texture are needed"
             };
@@ -102,7 +105,7 @@ pub fn of_read_files(error: ReadFilesError) -> Error {
         ),
         ReadFilesError::OtherChannels { .. } => anyhow!("{error}: bake the map again"),
         ReadFilesError::OtherBake { path, first } => anyhow!(
-            "{}: it does not belong to the same bake as {}: bake the map again, or remove the file that is left from \
+            "{}: it does not belong to the same bake as {}: bake the map again, or remove the file left from \
              another bake",
             path.display(),
             first.display()
@@ -112,9 +115,12 @@ pub fn of_read_files(error: ReadFilesError) -> Error {
     }
 }
 
-/// An output whose extension names no container.
+/// An output with an unknown extension.
 pub fn unknown_extension(path: &Path) -> Error {
-    usage(path, "the extension of the output says the format: end its name in .ktx2, .dds, .exr, .tx or .png")
+    usage(
+        path,
+        "the extension of the output selects the format: end its name in .ktx2, .dds, .exr, .tx or .png",
+    )
 }
 
 /// Why the files of a texture cannot be written.
@@ -125,7 +131,7 @@ pub fn of_write_files(error: WriteFilesError) -> Error {
             usage(&path, "it is an input, which would be lost: give the output another name")
         }
         WriteFilesError::File { path, source } => at(&path, source),
-        // Its message starts with the path.
+        // The message starts with the path.
         WriteFilesError::Commit(source) => source.into(),
         error => error.into(),
     }
@@ -147,7 +153,7 @@ pub fn of_choices(error: ChoiceError) -> Error {
             format!("{option} is for --as pbr, and the layout is '{layout}': leave it out")
         }
         ChoiceError::NormalRangeOfIntegers { bits } => format!(
-            "--normal-range is for floats, and {bits} bits always hold n/2 + 1/2: leave it out, or say --bits half"
+            "--normal-range is for floats, and {bits} bits always store n/2 + 1/2: leave it out, or use --bits half"
         ),
         ChoiceError::Supercompression { container } => {
             format!("--supercompress is for .ktx2, not for .{container}: leave it out")
@@ -159,16 +165,18 @@ pub fn of_choices(error: ChoiceError) -> Error {
 fn container_line(error: ContainerError) -> String {
     match error {
         ContainerError::Blocks { container } => {
-            format!("{container} cannot hold compressed blocks: write .ktx2 or .dds, or leave --compress out")
+            format!(
+                "{container} cannot store compressed blocks: write .ktx2 or .dds, or leave --compress out"
+            )
         }
         ContainerError::IntegersInExr { bits } => {
-            format!("exr holds floats, not {bits} bits: say --bits half or --bits float")
+            format!("exr stores floats, not {bits} bits: use --bits half or --bits float")
         }
         ContainerError::FloatLayoutInPng { layout } => {
-            format!("png holds no floats, which the layout '{layout}' needs: write .exr")
+            format!("png cannot store floats, which the layout '{layout}' needs: write .exr")
         }
         ContainerError::FloatsInPng { bits } => {
-            format!("png holds 8 or 16 bits, not {bits}: say --bits 8 or --bits 16, or write .exr")
+            format!("png stores 8 or 16 bits, not {bits}: use --bits 8 or --bits 16, or write .exr")
         }
         ContainerError::TooManyChannels { container, layout } => format!(
             "a texel of {container} has at most four channels, fewer than the layout '{layout}': write .exr"
@@ -180,15 +188,15 @@ fn container_line(error: ContainerError) -> String {
 fn target_line(error: TargetError) -> String {
     match error {
         TargetError::SixteenBitPng { layout } => format!(
-            "browsers decode a PNG to 8 bits, too few for the layout '{layout}': write .ktx2, or say --as variance --bits 8"
+            "browsers decode a PNG to 8 bits, too few for the layout '{layout}': write .ktx2, or use --as variance --bits 8"
         ),
         TargetError::SixteenBits => {
             "textures of 16-bit integers need WebGPU's feature texture-formats-tier1 or WebGL's \
-             EXT_texture_norm16, which many devices lack: leave --bits out, or say --bits half"
+             EXT_texture_norm16, which many devices lack: leave --bits out, or use --bits half"
                 .to_owned()
         }
         TargetError::Blocks => {
-            "phones lack the blocks of --compress bc: leave it out, or say --target web or --target desktop"
+            "phones lack the blocks of --compress bc: leave it out, or use --target web or --target desktop"
                 .to_owned()
         }
         error => error.to_string(),
@@ -228,7 +236,7 @@ pub fn of_job(error: JobError) -> Error {
     }
 }
 
-/// What is wrong with a map that is not to be repaired.
+/// What is wrong with a map that must not be repaired.
 fn broken_texels(counts: SourceCounts, texels: u64) -> Error {
     let kinds = [
         (counts.behind, "point into the surface"),
@@ -248,7 +256,7 @@ pub fn of_folder(error: FolderError) -> Error {
         }
         FolderError::OutputIsInput { path } => usage(
             &path,
-            "it is the folder of the maps, and the next run would take the outputs for maps: name another",
+            "it is the folder of the maps, and the next run would treat the outputs as maps: name another",
         ),
         FolderError::Choices(error) => of_choices(error),
         FolderError::NoMaps { path, patterns } => {

@@ -21,22 +21,22 @@ use roughcast_scene::{
 };
 
 use crate::args::{SourceArgs, one_of, positive};
+use crate::backend::{Backend, GpuBackend, GroundTruthBackend, MethodBackend};
 use crate::display::{exposure_of, shown};
 use crate::input::read_map;
-use crate::painter::{GpuPainter, MethodPainter, Painter, TruthPainter};
 use crate::scene_args::{CameraArgs, SHADING, SceneArgs, ShadingArgs, Size, size};
 use crate::{UsageError, findings, progress, say, scene_args, textures, usage};
 
-/// Render a map on a shape: what it looks like with LEAN, with the old ways, or in truth.
+/// Render a map on a shape with LEAN, with conventional methods, or as ground truth.
 ///
-/// Writes a PNG as a screen shows it, or an EXR of linear radiance with the highlights apart (specular.R ...) and
-/// the part of each pixel that is covered (A). With --frames the camera moves slowly, and the output is a folder.
+/// Writes a PNG for display, or an EXR of linear radiance with separate highlights (specular.R ...) and
+/// the coverage of each pixel (A). With --frames the camera moves slowly, and the output is a folder.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   LEAN mapping, filtered as graphics hardware does it:
     roughcast render bricks_normal.png -o bricks.png
-  The ordinary way, which shimmers, and the truth with 256 rays a pixel:
+  The conventional method, which shimmers, and the ground truth with 256 rays per pixel:
     roughcast render bricks_normal.png -o before.png --shading blinn-phong
     roughcast render bricks_normal.png -o truth.png --filter truth:256
   On a model, by the graphics card:
@@ -50,20 +50,20 @@ pub struct Args {
     #[arg(short, long, value_name = "PATH", value_hint = ValueHint::AnyPath)]
     output: PathBuf,
 
-    /// The shading model [default: lean; of a file that `bake` wrote the one that samples its layout]
+    /// The shading model [default: lean; for a file that `bake` wrote, the one that samples its layout]
     #[arg(long, value_name = "MODEL", value_parser = one_of::<Shading>(), help_heading = SHADING)]
     shading: Option<Shading>,
 
-    /// Texture filter: nearest, trilinear, anisotropic (16 taps), ewa or summed-area; or truth:N, which shades N rays a
-    /// pixel with the model's own lobe at the finest level
+    /// Texture filter: nearest, trilinear, anisotropic (16 taps), ewa or summed-area; or truth:N, the ground truth:
+    /// N rays per pixel at the finest level, shaded with the lobe of the model itself
     #[arg(long, value_name = "FILTER", default_value = "anisotropic", value_parser = filter, help_heading = SHADING)]
     filter: FilterChoice,
 
-    /// Sample this level of the textures, 0 being the finest, whatever the distance
+    /// Always sample this level of the textures; 0 is the finest
     #[arg(long, value_name = "L", value_parser = level, help_heading = SHADING)]
     level: Option<f64>,
 
-    /// Sample so many levels coarser than the distance asks for
+    /// Sample this many levels coarser than the distance requires
     #[arg(long, value_name = "B", default_value_t = 0.0, value_parser = bias, allow_negative_numbers = true, help_heading = SHADING)]
     mip_bias: f64,
 
@@ -107,12 +107,12 @@ pub struct Args {
 /// Frames are numbered with four digits.
 const MOST_FRAMES: i64 = 10_000;
 
-/// What a pixel averages.
+/// The samples that a pixel averages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum FilterChoice {
     /// One sample of filtered textures.
     Textures(Filter),
-    /// So many samples of the finest level.
+    /// This many samples of the finest level.
     Truth(u32),
 }
 
@@ -181,29 +181,29 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let subject = args.subject()?;
     let material = args.shading_options.material();
     let scene = args.camera.scene(&args.scene, subject.texels(), args.size, material)?;
-    let mut painter = args.painter(&subject, &scene)?;
+    let mut backend = args.backend(&subject, &scene)?;
     match args.frames {
         None => {
             let format = PictureFormat::of(&args.output)?;
             let bar = progress::bar(1);
-            let picture = painter.paint(&scene, &bar)?;
+            let picture = backend.render(&scene, &bar)?;
             bar.finish_and_clear();
             let mut set = AtomicSet::new();
             let exposure = args.exposure_of(&picture);
             add(&mut set, &args.output, format, &picture, exposure)?;
             set.commit()?;
             if format == PictureFormat::Png {
-                // So that another picture can be shown as brightly.
+                // So that another picture can have the same exposure.
                 say(&format!("{}: white is a radiance of {}", args.output.display(), 1.0 / exposure))?;
             }
         }
-        Some(frames) => render_frames(args, &scene, &mut painter, frames)?,
+        Some(frames) => render_frames(args, &scene, &mut backend, frames)?,
     }
     Ok(ExitCode::SUCCESS)
 }
 
 impl Args {
-    /// Refuses what makes no sense before anything is read.
+    /// Refuses invalid arguments before anything is read.
     fn check(&self) -> Result<()> {
         if self.frames.is_none() {
             PictureFormat::of(&self.output)?;
@@ -228,7 +228,7 @@ impl Args {
         Ok(())
     }
 
-    /// The exposure of a picture. Frames all take the first one's, or they would flicker by themselves.
+    /// The exposure of a picture. All frames use the first one's; otherwise they would flicker.
     fn exposure_of(&self, first: &Picture) -> f32 {
         self.white.map_or_else(|| exposure_of(first), |white| 1.0 / white)
     }
@@ -244,8 +244,8 @@ impl Args {
         Ok(Subject::Map(Box::new(map)))
     }
 
-    /// What renders, with the textures that it needs.
-    fn painter(&self, subject: &Subject, scene: &Scene) -> Result<Painter> {
+    /// The renderer, with the textures that it needs.
+    fn backend(&self, subject: &Subject, scene: &Scene) -> Result<Backend> {
         let named = || self.map.display().to_string();
         let size = (self.size.width, self.size.height);
         let mut options = self.shading_options.lobe_options();
@@ -255,10 +255,16 @@ impl Args {
                 let slopes = SlopeMap::of(&map.image, &map.options).with_context(named)?;
                 let (reconstruction, wrap) = (Reconstruction::Linear, map.options.wrap);
                 let detail = SlopeDetail { slopes, reconstruction, wrap };
-                return Ok(Painter::Truth(TruthPainter { detail, shading, options, samples, size }));
+                return Ok(Backend::GroundTruth(GroundTruthBackend {
+                    detail,
+                    shading,
+                    options,
+                    samples,
+                    size,
+                }));
             }
             (FilterChoice::Truth(_), Subject::Baked(_)) => {
-                let line = "--filter truth needs the map, of which a baked file holds averages: give the map that it was \
+                let line = "--filter truth needs the original map, because a baked file contains averages: give the map that it was \
                             made from";
                 return Err(usage(&self.map, line));
             }
@@ -272,18 +278,18 @@ impl Args {
             }
             Subject::Baked(arrays) => (Cow::Borrowed(arrays), arrays[0].info.wrap),
         };
-        // Toksvig's factor goes with the exponent that it was made for and with no other.
+        // Toksvig's factor is valid only for the exponent that it was baked for.
         if let (Shading::Toksvig, Some(power)) = (shading, arrays[0].info.specular_power()) {
             options.specular_power = power;
         }
         let sampler = Sampler { filter, level: self.level, mip_bias: self.mip_bias, wrap };
         if self.gpu {
             let draw_options = DrawOptions { sampler, lobe: options };
-            let painter = GpuPainter::new(shading, &arrays, &draw_options, scene, size)?;
-            return Ok(Painter::Gpu(Box::new(painter)));
+            let backend = GpuBackend::new(shading, &arrays, &draw_options, scene, size)?;
+            return Ok(Backend::Gpu(Box::new(backend)));
         }
         let textures = BakedTextures::of_model(shading, &arrays).with_context(named)?;
-        Ok(Painter::Method(MethodPainter { shading, textures, sampler, options, size }))
+        Ok(Backend::Method(MethodBackend { shading, textures, sampler, options, size }))
     }
 
     /// The model: the one that was named, else LEAN's for a map, and for a baked file the one that samples its layout.
@@ -300,7 +306,7 @@ impl Args {
                     shading.layout()
                 ),
             )),
-            // The last of several is the one of the layout's own name.
+            // The last of several is the one named after the layout.
             None => Shading::ALL.iter().rev().copied().find(|shading| shading.layout() == layout).ok_or_else(
                 || {
                     usage(
@@ -331,7 +337,7 @@ impl Subject {
 }
 
 /// All frames, or none.
-fn render_frames(args: &Args, scene: &Scene, painter: &mut Painter, frames: u32) -> Result<()> {
+fn render_frames(args: &Args, scene: &Scene, backend: &mut Backend, frames: u32) -> Result<()> {
     let folder = || args.output.display().to_string();
     fs::create_dir_all(&args.output).with_context(folder)?;
     let bar = progress::bar(1);
@@ -339,7 +345,7 @@ fn render_frames(args: &Args, scene: &Scene, painter: &mut Painter, frames: u32)
     let mut exposure = None;
     for (frame, scene) in roughcast_scene::slow_move(scene, frames).into_iter().enumerate() {
         bar.set_message(format!("frame {} of {frames}", frame + 1));
-        let picture = painter.paint(&scene, &bar)?;
+        let picture = backend.render(&scene, &bar)?;
         let exposure = *exposure.get_or_insert_with(|| args.exposure_of(&picture));
         let path = args.output.join(format!("{frame:04}.{}", roughcast::Named::name(args.frame_format)));
         add(&mut set, &path, args.frame_format, &picture, exposure)?;
@@ -348,7 +354,7 @@ fn render_frames(args: &Args, scene: &Scene, painter: &mut Painter, frames: u32)
     set.commit().with_context(folder)
 }
 
-/// Writes a picture to a file that appears with the set.
+/// Writes a picture to a file of the set.
 fn add(
     set: &mut AtomicSet,
     path: &Path,
@@ -367,7 +373,7 @@ fn add(
     set.push(file).with_context(named)
 }
 
-/// The channels of a picture in EXR. Radiance is premultiplied by coverage, as EXR has it, where the background is black.
+/// The channels of a picture in EXR. Radiance is premultiplied by coverage, as usual in EXR, and the background is black.
 fn planes(picture: &Picture) -> Vec<Plane> {
     let channel = |pixels: &[[f32; 3]], i: usize| pixels.iter().map(|pixel| pixel[i]).collect();
     let mut planes = vec![Plane { name: "A", values: picture.coverage.clone() }];

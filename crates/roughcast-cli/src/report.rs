@@ -1,4 +1,4 @@
-//! What a bake says of itself: lines for people, JSON for scripts.
+//! The report of a bake: lines for people, JSON for scripts.
 
 use std::time::Duration;
 
@@ -10,10 +10,10 @@ use serde_json::{Value, json};
 use crate::findings::{words_of, words_on_readers};
 use crate::{complain, say, say_json, warn};
 
-/// A map's report, with what is to be shown of it.
+/// A map's report, and which parts of it are shown.
 pub struct FileReport {
     job: Box<JobReport>,
-    /// Which common readers refuse such a file.
+    /// The common readers that refuse such a file.
     reader_note: Option<String>,
     warnings: Vec<String>,
     times: Times,
@@ -33,7 +33,7 @@ impl FileReport {
         Self { job, reader_note, warnings, times }
     }
 
-    /// The stages with their times, where they are to be shown.
+    /// The stages with their times, if they are shown.
     fn times(&self) -> &[(Stage, Duration)] {
         match self.times {
             Times::Hidden => &[],
@@ -82,7 +82,7 @@ impl FileReport {
                 texels_in_words(self.job.options.bits),
             ),
             format!(
-                "  slopes: rms {:.4}{}, steepest {:.3}{}; specular power up to {:.0} ({:.0} in any direction){}",
+                "  slopes: rms {:.4}{}, maximum {:.3}{}; specular power up to {:.0} ({:.0} in any direction){}",
                 report.rms_slope,
                 self.with_base_in_words(),
                 report.steepest,
@@ -101,22 +101,22 @@ impl FileReport {
         let counts = report.counts;
         if counts.total() > 0 {
             lines.push(format!(
-                "  mended of {} texels: {} too steep, {} pointing into the surface, {} without a direction, {} NaN or \
+                "  repaired {} of {} texels: {} too steep, {} pointing into the surface, {} without a direction, {} NaN or \
                  infinite",
-                report.texels, counts.clamped, counts.behind, counts.invalid, counts.non_finite
+                counts.total(), report.texels, counts.clamped, counts.behind, counts.invalid, counts.non_finite
             ));
         }
         if let Some(limit) = report.limit {
             lines.push(format!(
-                "  slopes are limited to {:.3}, which {} texels exceed: that wins a factor of {:.1} in specular power \
+                "  slopes are limited to {:.3} ({} texels clamped): this gains a factor of {:.1} in specular power \
                  (--max-slope auto)",
                 limit.max_slope, limit.texels, limit.factor
             ));
         }
         if let Some(advice) = report.advice {
             lines.push(format!(
-                "  the steepest 0.1 % of the texels cost a factor of {:.1} in specular power: --max-slope {:.3} wins it \
-                 back",
+                "  the steepest 0.1 % of the texels cost a factor of {:.1} in specular power: --max-slope {:.3} recovers \
+                 it",
                 advice.factor, advice.max_slope
             ));
         }
@@ -132,7 +132,7 @@ impl FileReport {
         lines
     }
 
-    /// The specular power without the steepest texels, where it is clearly another.
+    /// The specular power without the steepest texels, if it is clearly different.
     fn power_of_most_in_words(&self) -> String {
         const CLEARLY: f32 = 1.5;
         let power = self.job.bounds_of_most().usable_specular_power();
@@ -143,7 +143,7 @@ impl FileReport {
         }
     }
 
-    /// The root mean square with the base roughness, where it is another.
+    /// The root mean square with the base roughness, if it is different.
     fn with_base_in_words(&self) -> String {
         let BakeReport { rms_slope, rms_slope_with_base, .. } = self.job.report;
         if rms_slope_with_base > rms_slope {

@@ -16,7 +16,7 @@ pub struct RoughnessArgs {
     #[arg(long, value_name = "S", value_parser = specular_power, conflicts_with = "roughness")]
     pub specular_power: Option<f32>,
 
-    /// The material's roughness: a number, or a picture, which is resampled where its size is not the map's. Of a colour picture it is green, as glTF packs
+    /// The material's roughness: a number, or a picture, which is resampled if its size is not the map's. In a colour picture it is green, as glTF packs
     /// occlusion, roughness and metalness; pbr keeps the other two
     #[arg(long, value_name = "FILE|VALUE")]
     pub roughness: Option<String>,
@@ -26,7 +26,7 @@ pub struct RoughnessArgs {
     #[arg(long, value_name = "CHANNEL", requires = "roughness")]
     pub roughness_channel: Option<String>,
 
-    /// How the roughness that is given is stored: perceptual is what glTF and most tools paint, alpha its square, the width of
+    /// What the values of --roughness mean: perceptual is what glTF and most tools paint, alpha its square, the width of
     /// the highlight; gloss is 1 minus perceptual
     #[arg(long, value_name = "HOW", default_value = "perceptual", value_parser = one_of::<RoughnessStored>())]
     pub roughness_stored: RoughnessStored,
@@ -35,12 +35,12 @@ pub struct RoughnessArgs {
     #[arg(long, value_name = "HOW", value_parser = one_of::<RoughnessStored>())]
     pub roughness_output: Option<RoughnessStored>,
 
-    /// The highlight's shape for which the roughness is meant
+    /// The shading model that the roughness is meant for
     #[arg(long, default_value = "ggx", value_parser = one_of::<Brdf>())]
     pub brdf: Brdf,
 
-    /// Whether this roughness is folded into the stored moments: none (the shader adds it) or baked (it is in, and the
-    /// shader must not). pbr and toksvig always hold it
+    /// Whether this roughness is folded into the stored moments: none (the shader adds it) or baked (already
+    /// included, so the shader must not add it). pbr and toksvig always contain it
     #[arg(long, default_value = "none", value_parser = one_of::<Base>())]
     pub base: Base,
 }

@@ -1,4 +1,4 @@
-//! Arguments that say what a picture shows and how it is shaded, shared by the subcommands that render.
+//! Arguments for what a picture shows and how it is shaded, shared by the subcommands that render.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -20,7 +20,7 @@ use crate::{UsageError, usage};
 const SCENE: &str = "Scene";
 pub const SHADING: &str = "Shading";
 
-/// What the map lies on.
+/// The surface.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SceneChoice {
     Plane,
@@ -62,7 +62,7 @@ impl SceneChoice {
                 if !mesh.has_texture_coordinates() {
                     return Err(usage(
                         path,
-                        "the mesh has no texture coordinates, which a map needs to lie on it: unwrap it in a modelling program \
+                        "the mesh has no texture coordinates, which a map needs: unwrap it in a modelling program \
                          and export it with texture coordinates",
                     ));
                 }
@@ -72,7 +72,7 @@ impl SceneChoice {
     }
 }
 
-/// Where the camera stands.
+/// The camera position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CameraChoice {
     View(View),
@@ -145,7 +145,7 @@ pub fn size(text: &str) -> Result<Size, String> {
     }
 }
 
-/// Samples of a pixel that a truth can have.
+/// Parses the number of samples per pixel of a ground truth.
 pub fn samples(text: &str) -> Result<u32, String> {
     match text.parse::<u32>() {
         Ok(samples) if (1..=MAX_SAMPLES).contains(&samples) && samples.isqrt().pow(2) == samples => {
@@ -155,15 +155,15 @@ pub fn samples(text: &str) -> Result<u32, String> {
     }
 }
 
-/// What there is to be seen.
+/// What the picture shows.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = SCENE)]
 pub struct SceneArgs {
-    /// What the map lies on: plane, sphere, torus, or a mesh file (.obj, .gltf, .glb) with texture coordinates
+    /// The surface: plane, sphere, torus, or a mesh file (.obj, .gltf, .glb) with texture coordinates
     #[arg(long, value_name = "SCENE", default_value = "plane", value_parser = SceneChoice::parse)]
     pub scene: SceneChoice,
 
-    /// A light: the direction towards it as X,Y,Z, or point:X,Y,Z; behind that its colour as ,R,G,B (irradiance; pi is white).
+    /// A light: the direction towards it as X,Y,Z, or point:X,Y,Z; followed by its colour as ,R,G,B (irradiance; pi is white).
     /// May be given more than once [default: one whose highlight is in the picture]
     #[arg(long = "light", value_name = "LIGHT", value_parser = light, allow_hyphen_values = true)]
     pub lights: Vec<Light>,
@@ -187,11 +187,11 @@ impl SceneArgs {
     }
 }
 
-/// What of it a single picture shows.
+/// How a single picture shows the scene.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = SCENE)]
 pub struct CameraArgs {
-    /// Where the camera stands: near, mid, far or grazing, or the position of the eye as X,Y,Z (y is up)
+    /// Camera position: near, mid, far or grazing, or the position of the eye as X,Y,Z (y is up)
     #[arg(long, value_name = "VIEW|X,Y,Z", default_value = "mid", value_parser = camera, allow_hyphen_values = true)]
     pub camera: CameraChoice,
 
@@ -199,7 +199,7 @@ pub struct CameraArgs {
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub look_at: Option<DVec3>,
 
-    /// The direction that is up in the picture, with --camera X,Y,Z [default: 0,1,0; where the camera looks along it 0,0,-1]
+    /// The direction that is up in the picture, with --camera X,Y,Z [default: 0,1,0; if the camera looks along it, 0,0,-1]
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub up: Option<DVec3>,
 
@@ -247,7 +247,7 @@ impl CameraArgs {
         Ok(seen)
     }
 
-    /// A camera that looks straight down or up has the far side of the scene, -z, at the top of its picture.
+    /// A camera that looks straight down or up shows the far side of the scene, -z, at the top of its picture.
     fn camera_at(&self, eye: DVec3, target: DVec3) -> Result<Camera, UsageError> {
         let with = |up| Camera::new(eye, target, up, self.fov.to_radians());
         let camera = match (with(self.up.unwrap_or(DVec3::Y)), self.up) {
@@ -284,26 +284,26 @@ pub struct ShadingArgs {
     #[arg(long, value_name = "S", default_value_t = 256.0, value_parser = specular_power)]
     pub specular_power: f32,
 
-    /// The terms around the lobe: a microfacet BRDF with shadowing and masking, or without them, normalised or as the LEAN paper
-    /// has it
+    /// The terms around the lobe: a microfacet BRDF with shadowing and masking, or none of these terms: normalised, or as in the LEAN
+    /// paper
     #[arg(long, default_value = "physical", value_parser = one_of::<Form>())]
     pub form: Form,
 
-    /// Whose slopes shadow and mask in the physical form: the base roughness', as bump mapping shows it, or base and bumps', as
-    /// displaced geometry does
+    /// Which slopes shadow and mask in the physical form: those of the base roughness, as in bump mapping, or those of base and bumps,
+    /// as in displaced geometry
     #[arg(long, default_value = "base", value_parser = one_of::<Masking>())]
     pub masking: Masking,
 
-    /// The variance that counts as roughness: what is under the pixel, or all that is under the texture filter, as the papers
-    /// have it
+    /// Which variance counts as roughness: that under the pixel, or all under the texture filter, as in the
+    /// papers
     #[arg(long, default_value = "corrected", value_parser = one_of::<FootprintModel>())]
     pub footprint: FootprintModel,
 
-    /// The base roughness in the plane of the surface: round, as LEAN has it, or as the facet's own lobe looks there
+    /// The base roughness in the plane of the surface: round, as in LEAN, or the lobe of the tilted facet as seen in that plane
     #[arg(long = "base-lobe", value_name = "BASE", default_value = "plane", value_parser = one_of::<BaseLobe>())]
     pub base: BaseLobe,
 
-    /// What becomes of covariances that rounding has made impossible: mended, or the texts' own rules
+    /// What to do with covariances that rounding made invalid: clamp them, or follow the papers' rules
     #[arg(long, default_value = "clamp", value_parser = one_of::<Repair>())]
     pub repair: Repair,
 
@@ -341,7 +341,7 @@ impl ShadingArgs {
         }
     }
 
-    /// How the textures that a model samples are made.
+    /// How the textures of a model are baked.
     pub fn texture_options(&self) -> TextureOptions {
         TextureOptions { bits: self.bits, lobe: self.lobe, specular_power: self.specular_power }
     }

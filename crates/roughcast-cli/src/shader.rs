@@ -27,11 +27,11 @@ use prefix::Prefix;
 
 /// Export the shading models as shader code, or list them.
 ///
-/// The code has no entry points and no resources (SPIR-V, which has no libraries, has a fragment shader a model). Names have a
-/// prefix, and in GLSL, HLSL and Metal's language each module has an include guard. Each text starts with its source, its conventions and how to call it; docs/shaders.md has examples for every language.
+/// The code has no entry points and no resources (SPIR-V, which has no libraries, has one fragment shader per model). Names have a
+/// prefix, and in GLSL, HLSL and Metal's language each module has an include guard. Each export starts with its source, its conventions and how to call it; docs/shaders.md has examples for every language.
 #[derive(clap::Args)]
 pub struct Args {
-    /// What to export, or all; without a name, what there is
+    /// What to export, or all; without a name, lists the exports
     #[arg(value_name = "NAME", value_parser = names_parser())]
     names: Vec<String>,
 
@@ -39,7 +39,7 @@ pub struct Args {
     #[arg(long, value_name = "LANGUAGE", default_value = "wgsl", value_parser = one_of_or_advice::<Language>(OTHER_LANGUAGES))]
     lang: Language,
 
-    /// What the names of functions and structs start with, so that they meet no others; constants have it in capitals
+    /// Prefix of functions and structs, which avoids clashes with other names; constants have it in capitals
     #[arg(long, value_name = "WORD", default_value = "rc_")]
     prefix: Prefix,
 
@@ -52,7 +52,7 @@ pub struct Args {
     json: bool,
 }
 
-/// The name that stands for every export.
+/// The name that selects every export.
 const ALL: &str = "all";
 
 /// What can be exported.
@@ -60,7 +60,7 @@ fn exports() -> impl Iterator<Item = &'static Module> {
     MODULES.iter().filter(|module| matches!(module.role, Role::Model | Role::Companion))
 }
 
-/// What users of the layouts may ask for.
+/// Names of layouts and other words that users may try.
 const OTHER_NAMES: &[(&str, &str)] = &[
     ("pbr", "the model for the layout 'pbr' is called 'ggx'"),
     ("gltf", "the model for glTF's textures is called 'ggx'"),
@@ -78,7 +78,7 @@ const OTHER_NAMES: &[(&str, &str)] = &[
     ("blinn", "blinn-phong"),
 ];
 
-/// What users may call a language.
+/// Other names of the languages.
 const OTHER_LANGUAGES: &[(&str, &str)] = &[
     ("essl", "glsl-es300"),
     ("webgl", "glsl-es300"),
@@ -93,7 +93,7 @@ const OTHER_LANGUAGES: &[(&str, &str)] = &[
 ];
 
 fn names_parser() -> impl TypedValueParser<Value = String> {
-    // A model that exists takes its own name, whatever it was called before.
+    // The name of an existing model takes precedence.
     WordParser { words: exports().map(|module| module.name).chain([ALL]).collect(), others: OTHER_NAMES }
 }
 
@@ -121,7 +121,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             write_to(file, bytes).with_context(|| path.display().to_string())?;
         }
         None if matches!(export, Export::Binary(_)) && std::io::stdout().is_terminal() => {
-            let line = "SPIR-V is binary: name a file with --output, or send it down a pipe";
+            let line = "SPIR-V is binary: name a file with --output, or redirect it to a pipe";
             return Err(UsageError(line.to_owned()).into());
         }
         None => to_stdout(bytes)?,
@@ -134,7 +134,7 @@ fn write_to(mut file: AtomicFile, bytes: &[u8]) -> Result<()> {
     Ok(file.commit()?)
 }
 
-/// A reader that has gone away is no error of ours.
+/// A closed pipe is not an error.
 fn to_stdout(bytes: &[u8]) -> Result<()> {
     match std::io::stdout().write_all(bytes) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error).context("stdout"),

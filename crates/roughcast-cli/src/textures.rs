@@ -1,4 +1,4 @@
-//! Reading files that roughcast wrote, with errors that say what to do.
+//! Reads files written by roughcast, with errors that name the remedy.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ pub use roughcast_io::texture_files::is_baked;
 
 use crate::refusals;
 
-/// Reads one file of which these are the bytes; of PNG any level, with the others beside it. The error names the path.
+/// Reads one file, given its bytes; for PNG any level, with the others beside it. The error names the path.
 pub fn read_bytes(path: &Path, bytes: &[u8], limits: &Limits) -> Result<TextureArray> {
     texture_files::read_texture_bytes(path, bytes, limits).map_err(refusals::of_read_files)
 }

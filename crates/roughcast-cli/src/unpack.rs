@@ -16,7 +16,7 @@ use crate::{refusals, textures, usage};
 
 /// Decode a file that `bake` wrote back to float moments, every level.
 ///
-/// The result is a tiled EXR with the channels B.x, B.y (mean slope) and M.xx, M.yy, M.xy (raw second moments). Where a
+/// The result is a tiled EXR with the channels B.x, B.y (mean slope) and M.xx, M.yy, M.xy (raw second moments). If a
 /// layout consists of several files (parts, layers, levels of PNG), name any of them: the others are found beside it.
 #[derive(clap::Args)]
 pub struct Args {
@@ -28,7 +28,7 @@ pub struct Args {
     #[arg(short, long, value_name = "MOMENTS.exr", value_hint = ValueHint::FilePath)]
     output: PathBuf,
 
-    /// Most pixels that a file may have
+    /// Maximum number of pixels in a file
     #[arg(long, value_name = "N", default_value_t = Limits::default().max_pixels)]
     max_pixels: u64,
 }
@@ -54,7 +54,7 @@ fn write(args: &Args, moments: &Stored) -> Result<(), WriteFilesError> {
     files.commit().map(drop)
 }
 
-/// The same moments in the layout of that name, with what is known of the base.
+/// The same moments in the layout of that name, with what is known about the base.
 fn moments_of(arrays: &[TextureArray]) -> Result<TextureArray> {
     let levels = decode(arrays)?;
     let first = &arrays[0].info;

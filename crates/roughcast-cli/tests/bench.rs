@@ -1,4 +1,4 @@
-//! `bench gpu`: the report, and what is said where nothing can be measured.
+//! `bench gpu`: the report, and its error messages.
 
 mod common;
 
@@ -97,7 +97,7 @@ fn without_a_driver_there_is_one_line() {
 }
 
 #[test]
-fn what_makes_no_sense_is_refused() {
+fn invalid_command_lines_are_refused() {
     run(["bench", "gpu", "--size", "0x5"]).expect_usage_error("no pixels");
     run(["bench", "gpu", "--frames", "0"]).expect_usage_error("--frames");
     run(["bench", "cpu"]).expect_usage_error("cpu");

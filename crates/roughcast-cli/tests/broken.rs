@@ -19,7 +19,7 @@ const MEMORY_KIB: u64 = 2 * 1024 * 1024;
 /// Refusals take milliseconds; a busy machine may take a thousand times longer.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// What the table says of a file.
+/// The table's expectation for a file.
 #[derive(Debug, PartialEq)]
 enum Expected {
     /// Odd, but whole: it is baked.
@@ -111,11 +111,11 @@ fn check(outcome: &Outcome, succeeds: bool, words: &str, input: &Path) -> Result
         return Err(format!("exit code {:?} instead of a refusal", outcome.code));
     }
     let line = outcome.expect_refusal(outcome.code.unwrap_or_default(), input);
-    if line.contains(words) { Ok(()) } else { Err(format!("the line does not say '{words}'")) }
+    if line.contains(words) { Ok(()) } else { Err(format!("the line does not contain '{words}'")) }
 }
 
 #[test]
-fn every_cut_of_real_files_is_refused() {
+fn truncated_files_are_refused() {
     let files = [
         "materials/surfgrad_ocean16/normals_64crop_16bit_derived.png",
         "heights/t3d_mountain1.exr",

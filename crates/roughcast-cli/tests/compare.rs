@@ -1,4 +1,4 @@
-//! `compare`: rows, page, and what is said where there can be none.
+//! `compare`: rows, page, and its error messages.
 
 mod common;
 
@@ -54,7 +54,7 @@ fn every_method_filter_and_view_has_its_row_and_lean_wins_from_afar() {
     let report = folder.path().join("deep/report");
     let outcome = compare(&report, &["--frames", "3"]).expect_success();
     assert!(outcome.stderr.is_empty(), "{}", outcome.stderr);
-    assert!(outcome.stdout.contains("rock_normal.png, far: ordinary bump mapping"), "{}", outcome.stdout);
+    assert!(outcome.stdout.contains("rock_normal.png, far: conventional bump mapping"), "{}", outcome.stdout);
     assert_eq!(names(&report), ["index.html", "results.json"]);
 
     let rows = rows(&report);
@@ -90,7 +90,7 @@ fn every_method_filter_and_view_has_its_row_and_lean_wins_from_afar() {
 }
 
 #[test]
-fn lean_misses_grooves_by_more_than_it_misses_stone_and_the_page_says_so() {
+fn lean_has_larger_errors_on_grooves_than_on_stone_and_the_page_shows_it() {
     let folder = scratch();
     let outcome = compare(folder.path(), &["--views", "far", "--filters", "ewa", "--frames", "0", "--json"]);
     let printed = outcome.expect_success().json();
@@ -126,8 +126,8 @@ fn the_page_needs_no_other_file_and_has_every_picture() {
     // For each view the truths and a picture of every method; of the given map two moving ones, too.
     assert_eq!(jpeg, (1 + LIMIT_VIEWS) * (BASE_LOBES + METHODS.len()) + 2);
     assert_eq!(page.matches("src=").count(), png + jpeg);
-    for setting in ["16 bits", "256", "physical", "corrected", "64x48", "16 samples a pixel", "towards "] {
-        assert!(page.contains(setting), "the page does not say {setting}");
+    for setting in ["16 bits", "256", "physical", "corrected", "64x48", "16 samples per pixel", "towards "] {
+        assert!(page.contains(setting), "the page does not contain {setting}");
     }
 }
 
@@ -162,7 +162,7 @@ fn the_same_command_gives_the_same_results() {
 }
 
 #[test]
-fn what_cannot_be_compared_is_refused_in_one_line_and_leaves_nothing() {
+fn invalid_comparisons_are_refused_in_one_line_and_leave_no_files() {
     let folder = scratch();
     let output = folder.path().join("report");
     let colour = data("models/BoomBox/BoomBox_emissive.png");
@@ -186,7 +186,7 @@ fn what_cannot_be_compared_is_refused_in_one_line_and_leaves_nothing() {
 }
 
 #[test]
-fn command_lines_that_make_no_sense_are_refused() {
+fn invalid_command_lines_are_refused() {
     let folder = scratch();
     let output = folder.path().join("report");
     let refused = |arguments: &[&str], words: &str| {

@@ -73,7 +73,7 @@ fn every_choice_of_channels_has_the_slopes_of_the_surface() {
 }
 
 #[test]
-fn files_of_the_bug_reports_are_read_as_what_they_are() {
+fn files_of_the_bug_reports_are_read_correctly() {
     let plain = float_moments(&data(PLAIN), &[]);
     let gggr = float_moments(&data("cases/png-grey-rgb-x-in-alpha/gggr.png"), &[]);
     assert!(difference(&plain, &gggr) < EIGHT_BITS);
@@ -95,7 +95,7 @@ fn files_of_the_bug_reports_are_read_as_what_they_are() {
 }
 
 #[test]
-fn the_order_of_ati2_is_told_by_its_pixels() {
+fn the_pixels_determine_the_order_of_ati2() {
     let folder = scratch();
     let output = folder.path().join("out.ktx2");
     let rock = float_moments(&data("cases/dds-ati2-x-first/rock_bc5u.dds"), &[]);
@@ -115,7 +115,7 @@ fn the_order_of_ati2_is_told_by_its_pixels() {
 }
 
 #[test]
-fn where_the_pixels_do_not_tell_the_order_x_is_first_with_a_warning() {
+fn undetermined_order_reads_x_first_with_a_warning() {
     let folder = scratch();
     // Blocks of ATI2 without any slope.
     let mut flat = std::fs::read(data("cases/dds-ati2-x-first/rock_ati2_plain.dds")).expect("the file");
@@ -128,7 +128,7 @@ fn where_the_pixels_do_not_tell_the_order_x_is_first_with_a_warning() {
 }
 
 #[test]
-fn strength_and_directions_are_those_of_the_options() {
+fn options_set_strength_and_directions() {
     let plain = float_moments(&data(PLAIN), &[]);
     let [halved, left, down, twice] = [
         &["--normal-scale", "0.5"][..],

@@ -14,7 +14,7 @@ fn map() -> PathBuf {
 }
 
 #[test]
-fn a_roughness_of_one_number_is_no_mirror_in_three_js() {
+fn constant_roughness_is_in_green() {
     // Rounding to 8 bits.
     const HALF_A_STEP: f32 = 0.5 / 255.0 + 1e-6;
     for container in ["ktx2", "dds"] {
@@ -72,7 +72,7 @@ fn roughness_is_read_one_way_and_written_another() {
 }
 
 #[test]
-fn floats_hold_normals_as_other_tools_read_them() {
+fn floats_store_normals_as_other_tools_read_them() {
     let folder = scratch();
     for container in ["exr", "dds"] {
         let output = folder.path().join("n").with_extension(container);
@@ -174,7 +174,7 @@ fn the_power_of_compressed_files_counts_the_blocks() {
 }
 
 #[test]
-fn the_target_chooses_what_is_read_there() {
+fn the_target_selects_supported_formats() {
     let folder = scratch();
     let output = folder.path().join("map.ktx2");
     let file = |name: &str| folder.path().join(name);
@@ -193,7 +193,7 @@ fn the_target_chooses_what_is_read_there() {
         let told = bake(&map(), &output, &["--target", target, "--bits", "float"]).expect_success();
         assert!(told.stderr.contains("float32-filterable"), "{}", told.stderr);
         let told = bake(&map(), &file("map.exr"), &["--target", target]).expect_success();
-        assert!(told.stderr.contains("take one level"), "{}", told.stderr);
+        assert!(told.stderr.contains("read one level"), "{}", told.stderr);
     }
     let blocks = ["--as", "variance", "--compress", "bc"];
     let told = bake(&map(), &output, &[&["--target", "web"], &blocks[..]].concat()).expect_success();
@@ -202,7 +202,7 @@ fn the_target_chooses_what_is_read_there() {
 }
 
 #[test]
-fn a_roughness_that_nothing_holds_is_warned_of() {
+fn unused_roughness_gets_a_warning() {
     let folder = scratch();
     let output = folder.path().join("map.ktx2");
     for (options, warned) in [
@@ -228,12 +228,12 @@ fn powers_out_of_range_and_words_of_other_tools_are_refused_with_the_right_one()
     bake(&map(), &output, &["--roughness", "0.5", "--roughness-stored", "specular-power"])
         .expect_usage_error("from 1 to 1000000");
     for (options, words) in [
-        (["--bits", "float16"], "say 'half'"),
-        (["--bits", "fp32"], "say 'float'"),
-        (["--green", "directx"], "say 'down'"),
-        (["--target", "webgpu"], "say 'web'"),
-        (["--compress", "BC7"], "say 'bc'"),
-        (["--wrap", "periodic"], "say 'repeat'"),
+        (["--bits", "float16"], "use 'half'"),
+        (["--bits", "fp32"], "use 'float'"),
+        (["--green", "directx"], "use 'down'"),
+        (["--target", "webgpu"], "use 'web'"),
+        (["--compress", "BC7"], "use 'bc'"),
+        (["--wrap", "periodic"], "use 'repeat'"),
         (["--bits", "12"], "possible values: 8, 16, half, float"),
     ] {
         bake(&map(), &output, &options).expect_usage_error(words);
@@ -243,14 +243,14 @@ fn powers_out_of_range_and_words_of_other_tools_are_refused_with_the_right_one()
 
 #[test]
 fn shaders_of_layouts_are_named() {
-    for (name, words) in [("pbr", "'ggx'"), ("schilling", "no shading model"), ("blinn", "say 'blinn-phong'")]
+    for (name, words) in [("pbr", "'ggx'"), ("schilling", "no shading model"), ("blinn", "use 'blinn-phong'")]
     {
         run(["shader", name]).expect_usage_error(words);
     }
 }
 
 #[test]
-fn the_report_says_which_readers_refuse_a_file() {
+fn the_report_names_readers_that_refuse_a_file() {
     let folder = scratch();
     let note = |output: &str, options: &[&str]| {
         let outcome = bake(&map(), &folder.path().join(output), &[options, &["--json"]].concat());
@@ -271,7 +271,7 @@ fn the_report_says_which_readers_refuse_a_file() {
 }
 
 #[test]
-fn scales_and_lengths_are_said_where_they_mean_something() {
+fn scales_are_reported_only_if_used() {
     let folder = scratch();
     let output = folder.path().join("map.ktx2");
     let both = |options: &[&str]| {

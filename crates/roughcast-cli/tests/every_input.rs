@@ -16,7 +16,7 @@ const FOLDERS: [&str; 4] = ["materials", "heights", "formats", "hdri"];
 /// parts of the slopes' mean square, beside the storage's own error, are rounding.
 const ROUNDING: f64 = 1e-5;
 
-/// What the table says of a file.
+/// The table's expectation for a file.
 #[derive(Debug)]
 enum Expected {
     /// Baked as this kind of map, decided from the pixels.
@@ -70,7 +70,7 @@ fn refused(words: &str, outcome: &Outcome, input: &Path, folder: &Path) -> Resul
     }
     let line = outcome.expect_refusal(1, input);
     if !line.contains(words) {
-        return Err(format!("the line does not say '{words}'"));
+        return Err(format!("the line does not contain '{words}'"));
     }
     let left = names(folder);
     if left.is_empty() { Ok(()) } else { Err(format!("it left {left:?}")) }

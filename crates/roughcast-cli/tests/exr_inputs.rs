@@ -60,7 +60,7 @@ fn heights_beside_coverage_and_masks_have_their_slopes() {
 }
 
 #[test]
-fn a_file_of_several_layers_is_asked_about_with_the_options_that_choose() {
+fn several_layers_are_refused_with_the_options_that_choose() {
     let folder = scratch();
     let output = folder.path().join("out.ktx2");
     let blender = data("cases/missing-exr-layer-choice/e_Blender.exr");
@@ -91,7 +91,7 @@ fn a_crop_is_baked_at_the_size_of_its_display_window_with_a_warning() {
 }
 
 #[test]
-fn a_roughness_channel_goes_by_its_name() {
+fn a_roughness_channel_is_found_by_name() {
     let folder = scratch();
     let output = folder.path().join("out.ktx2");
     let plain = data(PLAIN);
@@ -104,7 +104,7 @@ fn a_roughness_channel_goes_by_its_name() {
         let baked = common::moments(&output);
         let bare = float_moments(&plain, &[]);
         let added = baked[0].moments[0].covariance().xx - bare[0].moments[0].covariance().xx;
-        // Slope variance of a perceptual roughness: r^4 / 2. The scale of 16 bits is that of the steepest slope.
+        // Slope variance of a perceptual roughness: r^4 / 2. The scale of 16 bits is that of the maximum slope.
         let expected = stored.powi(4) / 2.0;
         assert!((added - expected).abs() < 1e-3, "{name}: {added}, not {expected}");
     }

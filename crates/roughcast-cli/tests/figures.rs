@@ -43,7 +43,7 @@ fn every_figure_is_made_with_its_claim_and_holds() {
 }
 
 #[test]
-fn what_is_no_figure_or_no_folder_is_refused() {
+fn unknown_figures_and_bad_folders_are_refused() {
     let folder = scratch();
     run(["figures", "lean-99", "-o", text(folder.path())]).expect_usage_error("lean-14");
     let file = folder.path().join("file");

@@ -124,7 +124,7 @@ fn png_levels_are_read_as_one_texture_from_any_of_them() {
 }
 
 #[test]
-fn the_sidecar_says_what_a_shader_needs() {
+fn the_sidecar_has_what_a_shader_needs() {
     let folder = scratch();
     let output = folder.path().join("map.ktx2");
     let options = ["--split", "--sidecar", "--base", "baked", "--specular-power", "50", "--wrap", "mirror"];

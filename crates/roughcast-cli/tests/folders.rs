@@ -32,7 +32,7 @@ fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
 }
 
 #[test]
-fn bad_files_are_named_and_the_others_baked() {
+fn bad_files_are_reported_and_the_others_baked() {
     let folder = scratch();
     let maps = maps(folder.path());
     let baked = folder.path().join("new/baked");
@@ -51,7 +51,7 @@ fn bad_files_are_named_and_the_others_baked() {
 }
 
 #[test]
-fn all_is_well_where_every_map_is() {
+fn a_folder_of_good_maps_succeeds() {
     let folder = scratch();
     let maps = maps(folder.path());
     fs::remove_file(maps.join("truncated.png")).expect("it is there");
@@ -90,7 +90,7 @@ fn the_number_of_jobs_changes_no_byte() {
 }
 
 #[test]
-fn folders_that_make_no_sense_are_refused() {
+fn invalid_folders_are_refused() {
     let folder = scratch();
     let maps = maps(folder.path());
     let before = names(&maps);

@@ -29,7 +29,7 @@ fn heights_in_metres_get_a_warning_that_names_their_range_and_the_scale() {
     let warnings = warnings_of(&map, &[]);
     let [warning] = &warnings[..] else { panic!("not one warning: {warnings:?}") };
     for words in ["from 550 to 1450", "in metres", "--height-scale 1/(64 x P)", "0.01562 for P = 1"] {
-        assert!(warning.contains(words), "'{warning}' does not say '{words}'");
+        assert!(warning.contains(words), "'{warning}' does not contain '{words}'");
     }
     assert_eq!(warnings_of(&map, &["--height-scale", "0.02"]), [""; 0]);
 }
@@ -44,17 +44,17 @@ fn the_report_has_the_warning_too() {
 }
 
 #[test]
-fn a_geotiff_gets_the_very_scale() {
+fn a_geotiff_gets_the_exact_scale() {
     let map = data("generated/tiff/nodata_int16_projected.tif");
     let warnings = warnings_of(&map, &[]);
     // 1 / (30 m x 37 pixels).
     let words =
-        "its pixels are 30 metres wide: give --height-scale 0.0009009 if the heights are in the same unit";
+        "Its pixels are 30 metres wide: use --height-scale 0.0009009 if the heights are in the same unit";
     assert!(warnings.iter().any(|warning| warning.ends_with(words)), "{warnings:?}");
     // Degrees are no length.
     let warnings = warnings_of(&data("generated/tiff/heights_geographic.tif"), &[]);
-    let words = "give --height-scale 1/(37 x P), with P the width of a pixel in the unit of the heights, which its \
-                 0.0002778 degrees do not tell";
+    let words = "Use --height-scale 1/(37 x P), with P the width of a pixel in the unit of the heights; its pixels are \
+                 0.0002778 degrees wide, which is not a length";
     assert!(warnings.iter().any(|warning| warning.ends_with(words)), "{warnings:?}");
 }
 
@@ -90,7 +90,7 @@ fn heights_from_0_to_1_get_no_warning_in_any_format() {
 }
 
 #[test]
-fn texels_without_data_are_flat_counted_and_no_cliff() {
+fn nodata_texels_are_flat_and_counted() {
     let whole = data("cases/missing-height-units-nodata/dem_m.tif");
     let holed = data("cases/missing-height-units-nodata/dem_nodata.tif");
     let options = ["--height-scale", "0.0005"];

@@ -105,7 +105,7 @@ fn the_version_is_the_crates() {
 }
 
 #[test]
-fn nothing_at_all_shows_the_help_as_a_usage_error() {
+fn no_arguments_show_the_help_as_a_usage_error() {
     let outcome = run::<&str>([]);
     assert_eq!(outcome.code, Some(2));
     assert!(outcome.stdout.is_empty() && outcome.stderr.contains("Usage: roughcast"), "{}", outcome.stderr);

@@ -78,13 +78,13 @@ fn wrong(page: &str, listed: &[Pixel]) -> Vec<String> {
 }
 
 #[test]
-fn the_pages_pixels_are_what_its_commands_render() {
+fn the_pixels_of_the_page_match_its_commands() {
     let page = page();
     let listed = pixels(&page);
     assert_eq!(listed.len(), 9, "{listed:?}");
     let wrong = wrong(&page, &listed);
     assert!(wrong.is_empty(), "docs/integration.md should have\n{}", wrong.join("\n"));
-    // Pixels that would all be the same would tell nothing, nor would two columns alike.
+    // Equal pixels or equal columns would prove nothing.
     let brightest = listed.iter().map(|pixel| pixel.published).fold(0.0, f32::max);
     let darkest = listed.iter().map(|pixel| pixel.published).fold(f32::MAX, f32::min);
     assert!(brightest > 3.0 * darkest, "{darkest} to {brightest}");

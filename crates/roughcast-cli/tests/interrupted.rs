@@ -92,7 +92,7 @@ fn a_kill_while_writing_leaves_the_old_output_and_nothing_else() {
 }
 
 #[test]
-fn a_kill_at_any_time_leaves_a_whole_output() {
+fn a_kill_at_any_time_leaves_a_complete_output() {
     let folder = scratch();
     let map = big_map(folder.path());
     for extension in ["exr", "ktx2"] {

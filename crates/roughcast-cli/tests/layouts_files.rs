@@ -1,4 +1,4 @@
-//! Every layout in every container: written, read back and unpacked within the stated bounds, or refused with the mend.
+//! Every layout in every container: written, read back and unpacked within the stated bounds, or refused with advice.
 
 mod common;
 
@@ -26,9 +26,9 @@ fn refusal(layout: Layout, container: &str, bits: &str) -> Option<&'static str> 
     let wide = matches!(layout, Layout::Moments | Layout::BumpSlopes);
     let float = matches!(bits, "half" | "float");
     match container {
-        "exr" if !float => Some("say --bits half or --bits float"),
+        "exr" if !float => Some("use --bits half or --bits float"),
         "png" if wide => Some("write .exr"),
-        "png" if float => Some("say --bits 8 or --bits 16"),
+        "png" if float => Some("use --bits 8 or --bits 16"),
         "ktx2" | "dds" if wide => Some("write .exr"),
         _ => None,
     }
@@ -86,7 +86,7 @@ fn check_unpacked(
     let off = match layout {
         // One variance for both axes, the mean of them.
         Layout::Clean | Layout::Pbr => found.trace,
-        // One deviation for every direction, the largest.
+        // One standard deviation for every direction, the largest.
         Layout::SchillingIsotropic => larger_eigenvalue_difference(&levels, reference),
         _ => found.variance,
     };
@@ -156,7 +156,7 @@ fn layouts_of_several_files_name_their_parts_and_find_each_other() {
 }
 
 #[test]
-fn files_say_what_they_hold() {
+fn files_describe_their_contents() {
     let folder = scratch();
     let power = ["--specular-power", "100"];
     for (name, options, base, variance) in [
@@ -209,7 +209,7 @@ fn exr_channels_have_the_names_of_their_meaning() {
 }
 
 #[test]
-fn zstandard_changes_the_file_and_not_its_texels() {
+fn zstandard_changes_the_file_but_not_its_texels() {
     let folder = scratch();
     let [plain, packed] = ["plain.ktx2", "packed.ktx2"].map(|name| folder.path().join(name));
     bake(&map(), &plain, &[]).expect_success();

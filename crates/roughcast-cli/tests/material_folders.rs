@@ -130,7 +130,7 @@ fn materials_of_every_library_have_their_maps_baked_and_the_rest_skipped() {
 }
 
 #[test]
-fn what_the_pixels_contradict_is_said_and_the_pixels_are_believed() {
+fn pixels_overrule_names_with_a_warning() {
     let scratch = scratch();
     let material = scratch.path().join("material");
     fs::create_dir(&material).expect("space");
@@ -142,10 +142,10 @@ fn what_the_pixels_contradict_is_said_and_the_pixels_are_believed() {
     let output = scratch.path().join("baked");
     let outcome = bake(&material, &output, &[]).expect_success();
     for words in [
-        "odd_roughness.png: its name says that it is roughness, but its pixels are normals",
-        "odd_height.png: its name says heights, but its pixels are normals",
-        "odd_normal.png: its name says normals, but its pixels are grey",
-        "odd_NormalDX.png: its name says green down, but its slopes say the opposite",
+        "odd_roughness.png: its name suggests roughness, but its pixels are normals",
+        "odd_height.png: its name suggests heights, but its pixels are normals",
+        "odd_normal.png: its name suggests normals, but its pixels are grey",
+        "odd_NormalDX.png: its name says green down, but its slopes show the opposite",
     ] {
         assert!(outcome.stderr.contains(words), "{words}: {}", outcome.stderr);
     }
@@ -158,7 +158,7 @@ fn what_the_pixels_contradict_is_said_and_the_pixels_are_believed() {
 }
 
 #[test]
-fn a_picture_whose_name_says_normals_but_which_is_neither_is_a_failure() {
+fn a_normal_map_by_name_that_is_neither_kind_is_a_failure() {
     let scratch = scratch();
     let material = scratch.path().join("material");
     fs::create_dir(&material).expect("space");
@@ -208,13 +208,13 @@ fn a_baked_file_in_a_folder_is_skipped() {
 }
 
 #[test]
-fn a_single_file_whose_name_says_that_it_is_no_map_gets_a_warning() {
+fn a_single_file_with_the_name_of_another_kind_gets_a_warning() {
     let scratch = scratch();
     let material = folder(scratch.path(), &["Rock_Roughness.png", "Rock_Height.png"]);
     let output = scratch.path().join("out.ktx2");
     let warned = |name: &str, options: &[&str]| {
         let told = bake(&material.join(name), &output, options).expect_success();
-        told.stderr.contains("its name says that it is roughness")
+        told.stderr.contains("its name suggests roughness")
     };
     assert!(warned("Rock_Roughness.png", &[]));
     assert!(!warned("Rock_Roughness.png", &["--kind", "height"]));
@@ -223,7 +223,7 @@ fn a_single_file_whose_name_says_that_it_is_no_map_gets_a_warning() {
 
 /// A map whose red channel JPEG has destroyed: its curl does not tell, the height map beside it does.
 #[test]
-fn a_height_map_beside_it_tells_the_direction_of_green() {
+fn a_height_map_beside_it_determines_the_direction_of_green() {
     let scratch = scratch();
     let output = scratch.path().join("out.ktx2");
     let alone = scratch.path().join("WoodFloor043_1K_Normal.jpg");

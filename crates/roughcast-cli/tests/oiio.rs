@@ -20,7 +20,7 @@ const CHANNELS: [&str; 6] = ["b0_h", "b1_dhds", "b2_dhdt", "b3_dhds2", "b4_dhdt2
 const HALF_STEP: f32 = 1.0 / 1024.0;
 /// Differences of heights up to 1 in f32, summed in another order.
 const FLOAT_SLOPE: f32 = 4e-6;
-/// Squares of such slopes, up to 113: twice the slope's error times the steepest slope, 10.6, and f32 steps of 113.
+/// Squares of such slopes, up to 113: twice the slope's error times the maximum slope, 10.6, and f32 steps of 113.
 const FLOAT_SQUARE: f32 = 1e-4;
 
 fn reference(name: &str) -> PathBuf {

@@ -32,7 +32,7 @@ fn sigmas(levels: &[MomentLevel]) -> impl Iterator<Item = f64> {
 }
 
 #[test]
-fn block_compression_costs_what_the_report_says() {
+fn the_report_states_the_cost_of_block_compression() {
     for container in ["ktx2", "dds"] {
         for (layout, parts) in [
             ("variance", vec![("map", "BC5_UNORM")]),
@@ -114,7 +114,7 @@ fn packed_occlusion_roughness_and_metalness_become_bc7() {
 }
 
 #[test]
-fn layouts_that_blocks_would_ruin_are_refused_with_the_reason() {
+fn layouts_unfit_for_blocks_are_refused_with_the_reason() {
     let folder = scratch();
     let output = folder.path().join("map.ktx2");
     for layout in ["lean", "clean"] {
@@ -198,7 +198,7 @@ fn conventions_of_normal_maps_give_the_same_moments() {
 const HALF_CODE: f32 = 2.0 / 2048.0 * 2.1;
 
 #[test]
-fn floats_may_hold_either_range_and_pictures_hold_one() {
+fn floats_have_either_range_and_pictures_one() {
     let floats = data("crops/ocean_128_half.exr");
     let picture = data("crops/ocean_128.png");
     let [guessed, unorm, signed] = [vec![], vec!["--range", "unorm"], vec!["--range", "signed"]]
@@ -214,7 +214,7 @@ fn floats_may_hold_either_range_and_pictures_hold_one() {
 }
 
 #[test]
-fn a_map_with_green_down_is_warned_of() {
+fn a_map_with_green_down_gets_a_warning() {
     let folder = scratch();
     let output = folder.path().join("map.ktx2");
     let directx = data("crops/rock020_normal_256.jpg");

@@ -78,15 +78,15 @@ fn a_baked_file_is_refused_as_a_map_and_as_a_roughness() {
             let further: &[&str] =
                 if command == "bake" { &["-o", text(&output)] } else { &["--specular-power", "64"] };
             let refusal = run([command, text(file)].iter().chain(further)).expect_refusal(1, file);
-            assert!(refusal.contains("it is baked already (layout '"), "{refusal}");
+            assert!(refusal.contains("it is already baked (layout '"), "{refusal}");
         }
         let kind = bake(file, &output, &["--kind", "height"]).expect_refusal(1, file);
-        assert!(kind.contains("baked already"), "saying the kind does not make it a map: {kind}");
+        assert!(kind.contains("already baked"), "saying the kind does not make it a map: {kind}");
     }
     let roughness = folder.path().join("material.roughness.ktx2");
     let refusal = bake(&map(), &output, &["--as", "pbr", "--roughness", text(&roughness)])
         .expect_refusal(1, &roughness);
-    assert!(refusal.contains("baked already"), "{refusal}");
+    assert!(refusal.contains("already baked"), "{refusal}");
     assert!(!output.exists());
 }
 

@@ -1,4 +1,4 @@
-//! The first page and the manual stay true: their commands run and print what is shown, their links lead somewhere, and they cover every
+//! Keeps the first page and the manual correct: their commands run and print what is shown, their links work, and they cover every
 //! layout and report key.
 
 mod common;
@@ -200,7 +200,7 @@ fn every_command_of_the_program_is_marked() {
 }
 
 #[test]
-fn output_that_differs_is_seen() {
+fn differing_output_is_detected() {
     let lines = |text: &str| text.lines().map(str::to_owned).collect::<Vec<_>>();
     assert!(shows(&lines("a\n  …\nd"), "a\nb\nc\nd\n").is_ok());
     for (shown, printed) in [("a\nb", "a\nc"), ("a", "a\nb"), ("a\nb", "a"), ("a\n…\nx", "a\nb")] {

@@ -1,4 +1,4 @@
-//! `render`: pictures of maps, and what is said where there can be none.
+//! `render`: pictures of maps, and its error messages.
 
 mod common;
 
@@ -109,7 +109,7 @@ fn the_same_command_makes_the_same_bytes() {
 }
 
 #[test]
-fn what_cannot_be_rendered_is_refused_in_one_line_and_leaves_nothing() {
+fn invalid_renders_are_refused_in_one_line_and_leave_no_files() {
     let folder = scratch();
     let output = folder.path().join("picture.png");
     let missing = folder.path().join("missing.obj");
@@ -132,7 +132,7 @@ fn what_cannot_be_rendered_is_refused_in_one_line_and_leaves_nothing() {
 }
 
 #[test]
-fn command_lines_that_make_no_sense_are_refused() {
+fn invalid_command_lines_are_refused() {
     let folder = scratch();
     let output = folder.path().join("picture.png");
     // One that gives no warnings beside the refusal.

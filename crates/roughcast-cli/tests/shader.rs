@@ -99,7 +99,7 @@ fn the_list_has_a_line_for_every_export() {
 }
 
 #[test]
-fn every_text_starts_with_source_conventions_and_calls() {
+fn every_export_starts_with_source_conventions_and_calls() {
     for name in names() {
         for language in TEXTS {
             let text = exported(&[&name], language);
@@ -133,7 +133,7 @@ fn mangled(code: &str) -> Vec<&str> {
 }
 
 #[test]
-fn names_are_as_they_were_written() {
+fn names_keep_their_spelling() {
     for name in names().iter().map(String::as_str).chain(["all"]) {
         for language in TEXTS {
             let code = code_of(&exported(&[name], language));
@@ -283,7 +283,7 @@ fn as_guests(exports: [&str; 2], language: &str, prefix: &[&str]) -> String {
 }
 
 #[test]
-fn exports_are_good_guests() {
+fn exports_can_be_pasted_together() {
     assert!(library_names().contains(&"TWO_PI") && library_names().contains(&"lean_lobe"));
     for language in ["glsl", "glsl-es300", "hlsl"] {
         // The second of each pair needs parts that the first has left out, and others that it has.
@@ -300,7 +300,7 @@ fn exports_are_good_guests() {
 }
 
 #[test]
-fn no_constant_is_there_for_nothing() {
+fn exports_have_no_unused_constants() {
     const CHOICES: [&str; 7] = ["FORM_", "BASE_", "REPAIR_", "MAPS_", "STORED_", "MASKING_", "FOOTPRINT_"];
     for name in names() {
         for language in TEXTS {
@@ -339,7 +339,7 @@ fn every_models_spirv_is_valid_and_has_its_entry_point() {
 }
 
 #[test]
-fn the_compilers_refuse_what_is_wrong() {
+fn the_compilers_refuse_invalid_code() {
     let right = exported(&["lean"], "glsl");
     let wrong = right.replacen("return", "return undefined +", 1);
     let shader = |code: &str| format!("#version 450\n{code}\nvoid main() {{}}\n");
@@ -385,7 +385,7 @@ fn the_documents_examples_compile() {
 }
 
 #[test]
-fn what_makes_no_sense_is_refused_in_a_line() {
+fn invalid_command_lines_are_refused_in_one_line() {
     run(["shader", "loan"]).expect_usage_error("loan");
     run(["shader", "lean", "--lang", "cg"]).expect_usage_error("cg");
     run(["shader", "lean", "--lang", "essl"]).expect_usage_error("glsl-es300");

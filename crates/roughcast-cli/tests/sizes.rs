@@ -30,7 +30,7 @@ fn a_roughness_map_of_another_size_is_resampled_and_reported() {
 
 /// A flat map, so that what is stored is the resampled roughness alone.
 #[test]
-fn what_is_stored_is_the_resampled_variance() {
+fn the_stored_value_is_the_resampled_variance() {
     let folder = scratch();
     let flat = folder.path().join("flat.png");
     let write = |path: &std::path::Path, image: &Image| {

@@ -28,7 +28,7 @@ fn map_with_steep_texels(folder: &Path) -> PathBuf {
 const READ_AS: [&str; 4] = ["--kind", "normal", "--range", "signed"];
 
 #[test]
-fn the_report_states_what_was_limited_and_what_it_won() {
+fn the_report_states_the_limit_and_its_gain() {
     let folder = scratch();
     let (input, output) = (map_with_steep_texels(folder.path()), folder.path().join("out.ktx2"));
     let with = |options: &[&str]| bake(&input, &output, &[&READ_AS, options].concat()).expect_success();
@@ -41,7 +41,7 @@ fn the_report_states_what_was_limited_and_what_it_won() {
     let won = report["limit"]["specular_power_factor"].as_f64().expect("a number");
     assert!((won / (40.0 / limit).powi(2) - 1.0).abs() < 1e-3, "{won}");
     let lines = with(&[]).stdout;
-    assert!(lines.contains("which 2 texels exceed: that wins a factor of 6"), "{lines}");
+    assert!(lines.contains("(2 texels clamped): this gains a factor of 6"), "{lines}");
     for options in [&["--max-slope", "128"][..], &["--bits", "half"], &["--as", "pbr"], &["--scale", "50"]] {
         let report = with(&[options, &["--json"]].concat()).json();
         assert!(report["limit"].is_null(), "{options:?}: {report}");
@@ -57,7 +57,7 @@ fn the_report_states_what_was_limited_and_what_it_won() {
 }
 
 #[test]
-fn limits_that_no_slope_can_have_are_refused_in_one_line() {
+fn impossible_slope_limits_are_refused_in_one_line() {
     let folder = scratch();
     let (input, output) = (map_with_steep_texels(folder.path()), folder.path().join("out.ktx2"));
     for limit in ["0", "-1", "nan", "inf", "1.1e9", "2e19", "steep"] {

@@ -47,7 +47,7 @@ fn the_same_input_gives_the_same_bytes_for_any_number_of_threads() {
     }
 }
 
-/// A height map in floats, of which some texels are no numbers.
+/// A height map in floats with some NaN texels.
 fn map_with_nan(folder: &Path) -> PathBuf {
     let height = |index: usize| match index {
         3 => f32::NAN,
@@ -62,7 +62,7 @@ fn map_with_nan(folder: &Path) -> PathBuf {
 }
 
 #[test]
-fn texels_that_are_no_numbers_are_counted_and_flat_or_refused() {
+fn non_finite_texels_are_counted_and_flattened_or_refused() {
     let folder = scratch();
     let input = map_with_nan(folder.path());
     let output = folder.path().join("out.exr");
@@ -121,7 +121,7 @@ fn too_many_pixels_are_refused_before_they_are_decoded() {
 }
 
 #[test]
-fn bad_outputs_are_refused_with_the_mend() {
+fn bad_outputs_are_refused_with_advice() {
     let folder = scratch();
     let at = |name: &str| folder.path().join(name);
     let refusal = |code, output: &Path| bake(&map(), output, &[]).expect_refusal(code, output);
@@ -176,7 +176,7 @@ fn no_output_replaces_an_input() {
 }
 
 #[test]
-fn inputs_that_are_no_files_are_refused_in_one_line() {
+fn inputs_that_are_not_files_are_refused_in_one_line() {
     let folder = scratch();
     let (missing, empty) = (folder.path().join("missing.png"), folder.path().join("empty.png"));
     fs::write(&empty, "").expect("space");
@@ -252,7 +252,7 @@ fn results_go_to_stdout_and_the_rest_to_stderr() {
 }
 
 #[test]
-fn a_reader_that_goes_away_is_no_failure() {
+fn a_closed_pipe_is_not_an_error() {
     for stream in ["stdout", "stderr"] {
         let mut command = command(["info", text(&data("crops/rock020_normal_256.jpg"))]);
         let mut child = match stream {
@@ -278,7 +278,7 @@ fn a_report_that_cannot_be_written_is_a_failure() {
 }
 
 #[test]
-fn senseless_command_lines_have_exit_code_2() {
+fn invalid_command_lines_have_exit_code_2() {
     let folder = scratch();
     let output = folder.path().join("out.ktx2");
     for options in [

@@ -1,4 +1,4 @@
-//! What is stored and how; what is left open follows from the container and the target.
+//! What is stored and how; open choices follow from the container and the target.
 
 use roughcast::texture::{Base, Brdf, Layout, RoughnessStored, TextureInfo, split_infos};
 use roughcast::{
@@ -16,22 +16,22 @@ use crate::target::{Target, TargetError};
 pub struct BakeChoices {
     /// The layout.
     pub layout: Layout,
-    /// Bits of each number. Open: 8 for blocks, `pbr` and `toksvig`, half floats for EXR, but single floats for `moments`, half
-    /// floats for the web, else 16.
+    /// Bits per value. Open: 8 for blocks, `pbr` and `toksvig`, half floats for EXR, but single floats for `moments`, half
+    /// floats for the web, otherwise 16.
     pub bits: Option<SampleType>,
-    /// The largest slope that 8 and 16 bits hold.
+    /// The largest slope that 8- and 16-bit texels represent.
     pub scale: ScaleChoice,
-    /// The filter that makes each level of the one before.
+    /// The filter that makes each level from the previous one.
     pub filter: PyramidFilter,
     /// Whether the roughness of the material is folded into the moments.
     pub base: Base,
-    /// The reflectance function for which the roughness is meant.
+    /// The reflectance function that the roughness is meant for.
     pub brdf: Brdf,
     /// How `pbr` stores roughness. Open: perceptual, or in floats for Blinn-Phong a specular power.
     pub roughness_stored: Option<RoughnessStored>,
-    /// For `pbr`: in which form the direction of the roughness is stored; `None` stores none.
+    /// For `pbr`: how the direction of the roughness is stored; `None` stores none.
     pub anisotropy: Option<AnisotropyOutput>,
-    /// For `pbr`: the channels of the roughness texture. Open: packed where the picture of the roughness is, else green, in EXR one
+    /// For `pbr`: the channels of the roughness texture. Open: packed if the picture of the roughness is, otherwise green, in EXR one
     /// channel.
     pub roughness_texture: Option<RoughnessTexture>,
     /// For `pbr` in floats: how unit vectors are stored. Open: unorm.
@@ -40,23 +40,23 @@ pub struct BakeChoices {
     pub blocks: Blocks,
     /// Where the textures are used.
     pub target: Target,
-    /// How layers are spread over files.
+    /// How layers are distributed over files.
     pub layers: LayerFiles,
     /// How the levels of KTX2 are packed.
     pub supercompression: Supercompression,
 }
 
-/// How the layers of a layout are spread over files.
+/// How the layers of a layout are distributed over files.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum LayerFiles {
-    /// As array layers of one file, where container and target have such.
+    /// As array layers of one file, if container and target support them.
     #[default]
     Together,
     /// Each in a file of its own.
     Split,
 }
 
-/// A choice that only `pbr` has.
+/// A choice of `pbr` alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum PbrChoice {
@@ -70,14 +70,14 @@ pub enum PbrChoice {
     RoughnessStored,
 }
 
-/// Why choices do not go together.
+/// Why choices contradict each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ChoiceError {
-    /// The container cannot hold it.
+    /// The container cannot store it.
     #[error(transparent)]
     Container(#[from] ContainerError),
-    /// It cannot be sampled where it is going to be used.
+    /// The target cannot sample it.
     #[error(transparent)]
     Target(#[from] TargetError),
     /// Only `pbr` has this choice.
@@ -89,7 +89,7 @@ pub enum ChoiceError {
         layout: Layout,
     },
     /// Integers have one range of normals.
-    #[error("{bits} bits always hold a normal as n/2 + 1/2")]
+    #[error("{bits} bits always store a normal as n/2 + 1/2")]
     NormalRangeOfIntegers {
         /// The bits.
         bits: SampleType,
@@ -124,7 +124,7 @@ impl BakeChoices {
         }
     }
 
-    /// The options of the bake; what is open is chosen to suit the container, the target and the picture of the roughness.
+    /// The options of the bake; open choices are made for the container, the target and the picture of the roughness.
     pub fn options(&self, container: Container, roughness: Option<&Roughness>) -> BakeOptions {
         let bits = self.bits.unwrap_or(match (container, self.layout.default_sample_type(), self.blocks) {
             (_, _, Blocks::Bc) => SampleType::U8,
@@ -134,7 +134,7 @@ impl BakeChoices {
             }
             (_, suited, _) => suited,
         });
-        // Blinn-Phong renderers want exponents, which only floats hold.
+        // Blinn-Phong renderers need exponents, which only floats can store.
         let stored = match (self.roughness_stored, self.brdf) {
             (Some(stored), _) => stored,
             (None, Brdf::BlinnPhong) if bits.is_float() => RoughnessStored::SpecularPower,
@@ -157,8 +157,8 @@ impl BakeChoices {
         }
     }
 
-    /// The channels of `pbr`'s roughness: glTF's, with the occlusion and metalness of the picture where it has them. Renderers
-    /// that read EXR take a roughness of one channel.
+    /// The channels of `pbr`'s roughness: glTF's, with the occlusion and metalness of the picture if it has them. Renderers
+    /// that read EXR expect a roughness of one channel.
     fn roughness_channels(&self, container: Container, roughness: Option<&Roughness>) -> RoughnessTexture {
         self.roughness_texture.unwrap_or_else(|| match container {
             _ if roughness.is_some_and(Roughness::is_packed) => RoughnessTexture::Packed,
@@ -167,12 +167,12 @@ impl BakeChoices {
         })
     }
 
-    /// Whether each layer gets a file of its own. PNG has no layers, and the targets of the web have loaders that know none.
+    /// Whether each layer gets a file of its own. PNG has no layers, and loaders on the web do not support them.
     pub fn splits(&self, container: Container) -> bool {
         self.layers == LayerFiles::Split || container == Container::Png || self.target != Target::Desktop
     }
 
-    /// Refuses choices that do not go together, before any work is done.
+    /// Refuses contradictory choices, before any work is done.
     ///
     /// # Errors
     /// [`ChoiceError`].
@@ -212,7 +212,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_open_follows_from_the_container_and_the_target() {
+    fn open_choices_follow_from_the_container_and_the_target() {
         let bits = |container, layout, target| {
             let mut choices = BakeChoices::new(layout);
             choices.target = target;
@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn choices_that_do_not_go_together_are_refused() {
+    fn contradictory_choices_are_refused() {
         let mut choices = BakeChoices::new(Layout::Lean);
         assert_eq!(choices.check(Container::Ktx2), Ok(()));
         choices.normal_range = Some(NormalRange::Signed);

@@ -11,7 +11,7 @@ use crate::choices::ChoiceError;
 use crate::map::{MapError, ReadMapError};
 use crate::roughness::RoughnessError;
 
-/// Why a job ended without files: nothing that was there before has changed, but see
+/// Why a job ended without files: existing files have not changed, but see
 /// [`AtomicSet::commit`](roughcast_io::AtomicSet::commit).
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -19,7 +19,7 @@ pub enum JobError {
     /// The watch stopped it.
     #[error("the job was cancelled")]
     Cancelled,
-    /// The choices do not go together.
+    /// The choices contradict each other.
     #[error(transparent)]
     Choices(#[from] ChoiceError),
     /// The map cannot be read.
@@ -30,7 +30,7 @@ pub enum JobError {
         /// Why.
         source: ReadMapError,
     },
-    /// The roughness of the material cannot be had.
+    /// The roughness of the material cannot be loaded.
     #[error(transparent)]
     Roughness(#[from] RoughnessError),
     /// The map cannot be baked with these options.
@@ -41,7 +41,7 @@ pub enum JobError {
         /// Why.
         source: BakeError,
     },
-    /// The map has texels without a usable normal, and they are not to be repaired.
+    /// The map has texels without a usable normal, which must not be repaired.
     #[error("{}: {} of its {texels} texels are broken", path.display(), counts.broken())]
     BrokenTexels {
         /// The map.
@@ -73,7 +73,7 @@ pub enum JobError {
 }
 
 impl JobError {
-    /// Why the map is none, or may be none, where that is what ended the job.
+    /// Why the picture is not a map, or may not be one, if that ended the job.
     pub fn no_map(&self) -> Option<&MapError> {
         match self {
             JobError::Map { source: ReadMapError::Map(error), .. } => Some(error),
@@ -88,18 +88,18 @@ impl JobError {
 #[non_exhaustive]
 pub enum FolderError {
     /// The output is a file, or has the name of one.
-    #[error("{} is no folder to write to", path.display())]
+    #[error("{} is not a folder to write to", path.display())]
     OutputIsFile {
         /// The output.
         path: PathBuf,
     },
-    /// The outputs would lie among the maps, and the next run would take them for maps.
+    /// The outputs would lie among the maps, and the next run would treat them as maps.
     #[error("{} is the folder of the maps", path.display())]
     OutputIsInput {
         /// The output.
         path: PathBuf,
     },
-    /// The choices do not go together.
+    /// The choices contradict each other.
     #[error(transparent)]
     Choices(#[from] ChoiceError),
     /// There is nothing to bake.
@@ -107,7 +107,7 @@ pub enum FolderError {
     NoMaps {
         /// The folder.
         path: PathBuf,
-        /// The patterns that names had to match; none where all did.
+        /// The patterns that names had to match; empty if all names match.
         patterns: Vec<String>,
     },
     /// A folder cannot be listed or created.

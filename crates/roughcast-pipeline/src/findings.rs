@@ -1,4 +1,4 @@
-//! What a user should hear about a job, as data. A program puts it into words and says which of its options answers it.
+//! Findings about a job for the user, as data. A program puts them into words and names the option that resolves them.
 
 use std::path::PathBuf;
 
@@ -9,13 +9,13 @@ use roughcast_io::{Container, PixelSize};
 
 use crate::target::TargetFinding;
 
-/// One thing that a user should hear about; the work went on.
+/// One finding for the user; the work continued.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Finding {
     /// How the file was read, in one clause.
     File(String),
-    /// Writers of the format disagree about which channel of a normal comes first, and the pixels do not tell: the first is
+    /// Writers of the format disagree about which channel of a normal comes first, and the pixels do not show it: the first is
     /// read as x.
     OrderOfNormalOpen {
         /// The pixel format.
@@ -23,42 +23,42 @@ pub enum Finding {
     },
     /// Green probably points the other way.
     GreenProbablyWrong {
-        /// How it was read.
+        /// How green was read.
         read: Green,
-        /// What the test measured, -1 ..= 0.
+        /// The measured correlation, -1 ..= 0.
         correlation: f64,
-        /// The height map of the same material that says so; `None` if the slopes themselves are not those of a surface.
+        /// The height map of the same material that shows it; `None` if the slopes themselves do not belong to a surface.
         heights: Option<PathBuf>,
     },
-    /// The name of the file says which way green points, and the slopes say the opposite and are believed.
+    /// The name of the file specifies which way green points, but the slopes show the opposite; the slopes decide.
     GreenNotAsNamed {
-        /// What the name says.
+        /// The direction in the name.
         named: Green,
     },
-    /// The heights are probably in metres or another unit, and the default height scale is made for 0 to 1.
+    /// The heights are probably in metres or another unit, but the default height scale is made for 0 to 1.
     HeightsHaveUnits {
         /// The range of the heights.
         range: HeightRange,
         /// Pixels in a row of the map.
         width: usize,
-        /// How wide a pixel is, where the file says so.
+        /// The width of a pixel, if the file states it.
         pixel_size: Option<PixelSize>,
     },
-    /// Nobody named the specular power that the gloss factor is made for.
+    /// The specular power for the gloss factor was not given.
     SpecularPowerAssumed {
-        /// The one that was taken.
+        /// The assumed one.
         power: f32,
     },
-    /// Nobody named the roughness of the material, and it is taken as 0, a mirror.
+    /// The roughness of the material was not given, and is assumed to be 0, a mirror.
     RoughnessAssumedZero,
-    /// The roughness of the material is only noted in the file, since the layout leaves it to the shader.
+    /// The roughness of the material is only recorded in the file, because the layout leaves it to the shader.
     RoughnessNotStored {
         /// The layout.
         layout: Layout,
         /// How the roughness was given.
         given: RoughnessForm,
     },
-    /// A file is left from an earlier bake and would be taken for a part of this one.
+    /// A file is left from an earlier bake and would be mistaken for a part of this one.
     LeftFromEarlierBake {
         /// The file.
         path: PathBuf,
@@ -70,26 +70,26 @@ pub enum Finding {
         /// Height of the texture.
         height: usize,
     },
-    /// Something works only with restrictions where the textures are going to be used.
+    /// Something works only with restrictions on the target.
     Target {
         /// What.
         finding: TargetFinding,
         /// The container.
         container: Container,
     },
-    /// The name of the file says that it is no map of bumps, and it was read as one.
+    /// The name of the file suggests that it is not a map of bumps, but it was read as one.
     NamedOtherwise {
-        /// What its name says it is: `roughness`.
+        /// What its name suggests: `roughness`.
         what: &'static str,
     },
-    /// The name of the file says that it is no map of bumps, but its pixels are normals.
+    /// The name of the file suggests that it is not a map of bumps, but its pixels are normals.
     NormalsNamedOtherwise {
-        /// What its name says it is.
+        /// What its name suggests.
         what: &'static str,
     },
-    /// The name of the file says normals, but its pixels are grey: it is baked as heights.
+    /// The name of the file suggests normals, but its pixels are grey: it is baked as heights.
     HeightsNamedNormals,
-    /// The name of the file says heights, but its pixels are normals: it is baked as these.
+    /// The name of the file suggests heights, but its pixels are normals: it is baked as normals.
     NormalsNamedHeights,
 }
 

@@ -23,13 +23,13 @@ use crate::map::{MapError, kind_by_pixels};
 use crate::report::JobReport;
 use crate::watch::{Progress, Stage, Watch, Watched};
 
-/// Extensions of the files that are tried, in lower case.
+/// Extensions of the files that are considered, in lower case.
 pub const EXTENSIONS: [&str; 15] = [
     "png", "jpg", "jpeg", "tga", "bmp", "webp", "tif", "tiff", "hdr", "exr", "ktx2", "dds", "rgbe", "pic",
     "tx",
 ];
 
-/// Most jobs at the same time that nobody asked for: each holds a whole map in memory.
+/// The default limit of simultaneous jobs: each has a whole map in memory.
 pub const DEFAULT_JOBS: usize = 4;
 
 /// Every map of a folder, and the folder to write to.
@@ -38,11 +38,11 @@ pub const DEFAULT_JOBS: usize = 4;
 pub struct FolderJob<'a> {
     /// The folder of the maps.
     pub input: PathBuf,
-    /// The folder to write to; it is created where it is missing.
+    /// The folder to write to; it is created if missing.
     pub output: PathBuf,
     /// The container of the outputs.
     pub container: Container,
-    /// Patterns of names, `*` for any letters and `?` for one, without regard to case: files that match one are baked. Without patterns
+    /// Patterns of names, `*` for any characters and `?` for one, ignoring case: files that match one are baked. Without patterns
     /// all are.
     pub patterns: Vec<String>,
     /// Maps baked at the same time; `None` for the number of the pool's threads, but at most [`DEFAULT_JOBS`].
@@ -50,45 +50,45 @@ pub struct FolderJob<'a> {
     /// The pool whose threads share the work; `None` for rayon's global one. [`FolderJob::run`] waits for it, so it must not be called on a
     /// thread of that pool.
     pub pool: Option<&'a ThreadPool>,
-    /// How the maps are read and what is made of them.
+    /// How the maps are read and baked.
     pub settings: BakeSettings,
 }
 
-/// What became of a file of a folder.
+/// The outcome for a file of a folder.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum FileOutcome {
     /// It was baked.
     Baked(Box<JobReport>),
-    /// It is no map of bumps.
+    /// It is not a map of bumps.
     Skipped(SkipReason),
 }
 
-/// Why a file of a folder is no map of bumps.
+/// Why a file of a folder is not a map of bumps.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SkipReason {
-    /// Its name says so.
+    /// By its name.
     Named {
-        /// What its name says it is: `roughness`.
+        /// What its name suggests: `roughness`.
         what: &'static str,
     },
     /// Roughcast wrote it.
     Baked,
-    /// Its pixels are neither normals nor heights for certain, and its name says nothing.
+    /// Its pixels are neither normals nor heights for certain, and its name names no role.
     Undecided {
-        /// What was seen.
+        /// What the pixels show.
         reason: String,
     },
 }
 
-/// A file of a folder, and what became of it.
+/// A file of a folder, and its outcome.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct FolderResult {
     /// The file.
     pub input: PathBuf,
-    /// What became of it.
+    /// Its outcome.
     pub outcome: Result<FileOutcome, JobError>,
 }
 
@@ -114,7 +114,7 @@ impl<'a> FolderJob<'a> {
     /// under way end at their next report, and the outcome of all these is [`JobError::Cancelled`].
     ///
     /// # Errors
-    /// [`FolderError`] if no map is tried at all.
+    /// [`FolderError`] if there is no map to bake.
     pub fn run(&self, watch: &dyn Watch) -> Result<Vec<FolderResult>, FolderError> {
         self.check_output()?;
         self.settings.choices.check(self.container)?;
@@ -128,7 +128,7 @@ impl<'a> FolderJob<'a> {
         Ok(rows.map(|(input, outcome)| FolderResult { input, outcome }).collect())
     }
 
-    /// A folder whose name ends like a file's is more likely a slip than a wish.
+    /// A folder whose name ends like a file's is probably a mistake.
     fn check_output(&self) -> Result<(), FolderError> {
         let is_file = self.output.exists() && !self.output.is_dir();
         if is_file || (!self.output.exists() && Container::of(&self.output).is_some()) {
@@ -165,7 +165,7 @@ impl<'a> FolderJob<'a> {
         Ok(maps)
     }
 
-    /// `NAME.ktx2` for `NAME.png`; where several inputs share a name, `NAME_png.ktx2` and so on, so that none is lost.
+    /// `NAME.ktx2` for `NAME.png`; if several inputs share a name, `NAME_png.ktx2` and so on, so that none is lost.
     fn outputs(&self, inputs: &[PathBuf]) -> Vec<PathBuf> {
         let stem = |path: &Path| path.file_stem().unwrap_or_default().to_owned();
         let mut uses: BTreeMap<OsString, usize> = BTreeMap::new();
@@ -179,7 +179,7 @@ impl<'a> FolderJob<'a> {
                 name.push("_");
                 name.push(input.extension().unwrap_or_default());
             }
-            // `a.png`, `a.jpg` and `a_png.png` would still meet.
+            // `a.png`, `a.jpg` and `a_png.png` would still clash.
             while !taken.insert(name.clone()) {
                 name.push("_");
             }
@@ -240,7 +240,7 @@ impl<'a> FolderJob<'a> {
     }
 }
 
-/// A file of a folder, and what its name says.
+/// A file of a folder, and the role in its name.
 struct File<'a> {
     input: &'a Path,
     output: PathBuf,
@@ -267,7 +267,7 @@ fn bake_guarded(
     outcome
 }
 
-/// The watch of all jobs of a folder: what it says to one counts for all.
+/// The watch of all jobs of a folder: its answer to one counts for all.
 struct Shared<'a> {
     watch: &'a dyn Watch,
     stopped: AtomicBool,
@@ -282,7 +282,7 @@ impl Watch for Shared<'_> {
     }
 }
 
-/// Bakes one file of a folder, or says why it is no map: by what its name says, if its pixels agree, or by its pixels alone.
+/// Bakes one file of a folder, or returns why it is not a map: by its name, if its pixels agree, or by its pixels alone.
 fn bake_by_role(
     file: &File<'_>,
     settings: &BakeSettings,
@@ -291,7 +291,7 @@ fn bake_by_role(
     let File { input, output, role } = file;
     let role = *role;
     let baked = |report| Ok(FileOutcome::Baked(Box::new(report)));
-    // Whoever names the kind knows better than names of files.
+    // An explicit kind takes precedence over names of files.
     let decided = settings.map.kind.is_some();
     if let Some(MaterialRole::Other(what)) = role.filter(|_| !decided) {
         watched.begin(Stage::Reading)?;
@@ -323,7 +323,7 @@ fn bake_by_role(
     }
 }
 
-/// A finding where the name says one kind of map and the pixels another.
+/// A finding if the name suggests one kind of map and the pixels another.
 fn contradiction(role: Option<MaterialRole>, kind: Kind) -> Option<Finding> {
     match (role?, kind) {
         (MaterialRole::Normal(_), Kind::Height) => Some(Finding::HeightsNamedNormals),

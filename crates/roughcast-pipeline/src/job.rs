@@ -18,10 +18,10 @@ use crate::sidecar::Sidecar;
 use crate::target::reader_limits;
 use crate::watch::{Stage, Watch, Watched};
 
-/// The exponent that Toksvig's gloss factor is made for where nobody named one: the lowest that the LEAN paper shows.
+/// The default exponent of Toksvig's gloss factor: the lowest that the LEAN paper shows.
 pub const TOKSVIG_POWER: f32 = 128.0;
 
-/// What becomes of broken texels: NaN, infinite, or normals that point into the surface or have no direction.
+/// What to do with broken texels: NaN, infinite, or normals that point into the surface or have no direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum BrokenTexels {
     /// They are repaired and counted.
@@ -41,7 +41,7 @@ pub enum SidecarFile {
     Json,
 }
 
-/// How maps are read and what is made of them: everything but where they are.
+/// How maps are read and baked: everything but their paths.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct BakeSettings {
@@ -51,9 +51,9 @@ pub struct BakeSettings {
     pub roughness: Option<RoughnessInput>,
     /// What is stored and how.
     pub choices: BakeChoices,
-    /// What becomes of broken texels.
+    /// What to do with broken texels.
     pub broken_texels: BrokenTexels,
-    /// Whether `NAME.json` is written as well.
+    /// Whether `NAME.json` is written too.
     pub sidecar: SidecarFile,
 }
 
@@ -70,7 +70,7 @@ impl BakeSettings {
     }
 }
 
-/// One map, and the file or files to make of it.
+/// One map, and the file or files to write.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BakeJob {
     /// The map.
@@ -78,22 +78,22 @@ pub struct BakeJob {
     /// The file to write, whose extension names the container; a layout of several files writes `NAME.PART.ext`, PNG a file for
     /// each level.
     pub output: PathBuf,
-    /// How it is read and what is made of it.
+    /// How it is read and baked.
     pub settings: BakeSettings,
 }
 
 impl BakeJob {
-    /// Reads the map, bakes it and writes the files: all of them, or none where anything goes wrong or `watch` stops the job.
+    /// Reads the map, bakes it and writes the files: all of them, or none if anything fails or `watch` stops the job.
     ///
     /// The work is shared by the threads of the rayon pool in which this is called: inside of `pool.install(|| job.run(&watch))`
-    /// it is that pool, else rayon's global one. The files do not depend on it.
+    /// it is that pool, otherwise rayon's global one. The files do not depend on it.
     ///
     /// # Errors
     /// [`JobError`], also [`JobError::Cancelled`].
     pub fn run(&self, watch: &dyn Watch) -> Result<JobReport, JobError> {
         let mut watched = Watched::new(watch, &self.input, 0, 1);
         let result = run(&self.input, &self.output, &self.settings, &mut watched);
-        // It is done, and nothing is left to stop.
+        // The job is done, so there is nothing to stop.
         let _ = watched.end();
         let mut report = result?;
         report.times = watched.times().to_vec();
@@ -102,7 +102,7 @@ impl BakeJob {
     }
 }
 
-/// A finding where the name of a file says that it is no map of bumps, and nobody has said otherwise.
+/// A finding if the name of a file suggests that it is not a map of bumps, and the options do not name the kind.
 fn named_otherwise(input: &Path, settings: &BakeSettings) -> Option<Finding> {
     let stem = input.file_stem()?.to_str()?;
     let named = role_of(stem).filter(|named| !named.by_letter && settings.map.kind.is_none())?;
@@ -139,7 +139,7 @@ pub(crate) fn run(
         let (counts, texels) = (report.counts, report.texels);
         return Err(JobError::BrokenTexels { path: path(), counts, texels });
     }
-    // The pixels are not needed any more, and what follows needs room.
+    // The pixels are no longer needed, and the next steps need memory.
     drop((image, roughness));
 
     watched.begin(Stage::Compressing)?;
@@ -175,7 +175,7 @@ pub(crate) fn run(
     })
 }
 
-/// The material's roughness, with a finding where the layout needs one and nobody named it.
+/// The material's roughness, with a finding if the layout needs one that was not given.
 fn roughness_of(settings: &BakeSettings, findings: &mut Vec<Finding>) -> Result<Option<Roughness>, JobError> {
     if let Some(input) = &settings.roughness {
         return Ok(Some(input.load(&settings.map.read.limits)?));
@@ -193,7 +193,7 @@ fn roughness_of(settings: &BakeSettings, findings: &mut Vec<Finding>) -> Result<
     }
 }
 
-/// The textures as they go into files, compressed and split where that is wanted.
+/// The textures as they go into files, compressed and split if requested.
 fn compressed(
     mut arrays: Vec<TextureArray>,
     choices: &BakeChoices,
@@ -232,7 +232,7 @@ fn write(
     Ok(files.commit()?)
 }
 
-/// A finding where a roughness was given that nothing of what is stored depends on.
+/// A finding if the given roughness does not affect what is stored.
 fn unused_roughness(settings: &BakeSettings) -> Option<Finding> {
     let given = settings.roughness.as_ref()?.form();
     let BakeChoices { layout, base, .. } = settings.choices;

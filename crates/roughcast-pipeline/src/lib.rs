@@ -1,19 +1,19 @@
-//! From map files to baked texture files: what the program, a Python package, a web server or an asset importer has in common.
+//! From map files to baked texture files: the code that a program, a Python package, a web server and an asset importer share.
 //!
 //! A short tour, in the order of the work:
 //!
-//! 1. [`read_map`] reads a file and decides what nobody said: heights or normals, in which channels, with green up or down. What
-//!    is odd about it comes back as [`Finding`]s, data that a program puts into words.
+//! 1. [`read_map`] reads a file and decides what was not specified: heights or normals, in which channels, with green up or down.
+//!    It returns oddities as [`Finding`]s, data that a program puts into words.
 //! 2. [`RoughnessInput`] loads the roughness of the material, from a number or a picture.
-//! 3. [`BakeChoices`] says what is stored and how; what is left open follows from the container and the [`Target`].
-//! 4. [`BakeJob`] does all of a map: read, bake, compress, write. Its files appear together or not at all, with a [`Sidecar`] where
-//!    that is wanted. [`JobReport`] has the numbers.
-//! 5. [`FolderJob`] does a folder of maps, several at a time.
-//! 6. A [`Watch`] hears how jobs get on, and may stop them.
+//! 3. [`BakeChoices`] specifies what is stored and how; open choices follow from the container and the [`Target`].
+//! 4. [`BakeJob`] processes one map: read, bake, compress, write. Its files appear together or not at all, with a [`Sidecar`] if
+//!    requested. [`JobReport`] has the numbers.
+//! 5. [`FolderJob`] processes a folder of maps, several at a time.
+//! 6. A [`Watch`] receives the progress of jobs, and may stop them.
 //!
 //! [`bake_for`] is the short way for renderers: the textures of a shading model from a map in memory.
 //!
-//! The library prints nothing and knows no options of a command line. Work is shared by the rayon pool in which it is called.
+//! The library prints nothing and knows no options of a command line. The rayon pool in which it is called shares the work.
 //!
 //! # Example
 //!

@@ -1,4 +1,4 @@
-//! Loading a map: the file, what it is, and what is odd about it.
+//! Loads a map: reads the file, decides what it is, and reports oddities.
 
 use std::path::{Path, PathBuf};
 
@@ -24,19 +24,19 @@ pub struct MapOptions {
     pub read: ReadOptions,
     /// What the picture is.
     pub kind: Option<Kind>,
-    /// Which way green points in a normal map; without a word from anyone, up.
+    /// Which way green points in a normal map; up by default.
     pub green: Option<Green>,
-    /// What the name of the file says of green. It counts where [`MapOptions::green`] is open and the slopes do not contradict.
+    /// The direction of green in the name of the file. It counts if [`MapOptions::green`] is open and the slopes do not contradict it.
     pub green_by_name: Option<Green>,
     /// Which way red points in a normal map.
     pub red: Red,
-    /// Factor of a normal's x and y; 1 where it is open. Height maps have none.
+    /// Factor of a normal's x and y; 1 if it is open. Height maps have none.
     pub normal_scale: Option<f32>,
-    /// The numbers by which a normal's components are stored.
+    /// The range of a normal's stored components.
     pub range: Option<NormalRange>,
     /// The channels that hold a normal.
     pub normal_channels: Option<NormalChannels>,
-    /// Height of a value of 1, as a part of the map's width; [`SourceOptions::DEFAULT_HEIGHT_SCALE`] where it is open.
+    /// Height of a value of 1, as a fraction of the map's width; [`SourceOptions::DEFAULT_HEIGHT_SCALE`] if it is open.
     pub height_scale: Option<f32>,
     /// Whether white is high or deep.
     pub height_sense: HeightSense,
@@ -70,7 +70,7 @@ impl Default for MapOptions {
 }
 
 impl MapOptions {
-    /// The options of the bake, once the pixels have decided what was open.
+    /// The options of the bake, after the pixels have decided the open ones.
     fn source(&self, kind: Kind, range: NormalRange, channels: NormalChannels) -> SourceOptions {
         SourceOptions {
             kind,
@@ -94,24 +94,24 @@ impl MapOptions {
 pub struct Map {
     /// The pixels.
     pub image: Image,
-    /// What the file says of itself.
+    /// What the file says about itself.
     pub info: FileInfo,
-    /// How the pixels are to be read, with nothing left open.
+    /// How to read the pixels, with nothing left open.
     pub options: SourceOptions,
-    /// What the test of green measured, -1 ..= 1; `None` for heights and where there is too little to judge by.
+    /// The correlation that the test of green measured, -1 ..= 1; `None` for heights and for too little evidence.
     pub green_correlation: Option<f64>,
-    /// What the test says of the direction of green.
+    /// The test's verdict on the direction of green.
     pub green: Option<GreenVerdict>,
-    /// What the user should hear about.
+    /// Findings for the user.
     pub findings: Vec<Finding>,
 }
 
-/// Why an image is no map that can be baked, or may be none.
+/// Why an image is not a map that can be baked, or may not be one.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MapError {
-    /// `bake` wrote it: its channels are not those of a map, or hold a roughness that includes the bumps.
-    #[error("it is baked already, in the layout '{layout}', and its values are no longer those of a map")]
+    /// `bake` wrote it: its channels are not those of a map, or contain a roughness that includes the bumps.
+    #[error("it is already baked, in the layout '{layout}', so its values are no longer those of a map")]
     Baked {
         /// The layout that the file names.
         layout: String,
@@ -119,13 +119,13 @@ pub enum MapError {
     /// Its pixels are neither normals nor heights for certain: the caller has to name the kind.
     #[error("it looks like neither a normal nor a height map: {reason}")]
     Undecided {
-        /// What was seen.
+        /// What the pixels show.
         reason: String,
         /// Whether it has an alpha, which may be a component of a normal.
         has_alpha: bool,
     },
     /// Signed numbers were asked for, and the file has none.
-    #[error("{format} holds no signed numbers")]
+    #[error("{format} has no signed numbers")]
     NotSigned {
         /// The pixel format.
         format: String,
@@ -139,17 +139,17 @@ pub enum MapError {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadMapError {
-    /// The file is no image that can be read.
+    /// The file is not an image that can be read.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// The image is no map.
+    /// The image is not a map.
     #[error(transparent)]
     Map(#[from] MapError),
 }
 
-/// Reads a map and decides what the options leave open.
+/// Reads a map and decides the open options.
 ///
-/// Where the slopes do not tell which way green points, a height map of the same material beside it is asked, by its name
+/// If the slopes do not show which way green points, a height map of the same material beside it decides, found by its name
 /// ([`roughcast_io::material_names`]).
 ///
 /// # Errors
@@ -181,10 +181,10 @@ fn height_beside(path: &Path, options: &ReadOptions) -> Option<(PathBuf, Image)>
     Some((found, decoded.image))
 }
 
-/// Decides what the options leave open for an image that was read.
+/// Decides the open options for an image that was read.
 ///
 /// # Errors
-/// [`MapError`] if it is no map, or may be none.
+/// [`MapError`] if it is not a map, or may not be one.
 pub fn map_of(Decoded { image, info }: Decoded, options: &MapOptions) -> Result<Map, MapError> {
     refuse_baked(&info)?;
     if options.range == Some(NormalRange::Signed) && !image.samples().sample_type().is_float() {
@@ -213,7 +213,7 @@ pub fn map_of(Decoded { image, info }: Decoded, options: &MapOptions) -> Result<
     let mut map = Map { image, info, options: source, green_correlation: None, green: None, findings };
     map.test_green();
     if let (Some(named), None, Some(GreenVerdict::Down)) = (options.green_by_name, options.green, map.green) {
-        // The name and the slopes contradict each other: the slopes know better.
+        // The name and the slopes contradict each other: the slopes decide.
         let turned = MapOptions { green_by_name: None, green: Some(turned(named)), ..options.clone() };
         let Map { image, info, .. } = map;
         map = map_of(Decoded { image, info }, &turned)?;
@@ -225,7 +225,7 @@ pub fn map_of(Decoded { image, info }: Decoded, options: &MapOptions) -> Result<
     Ok(map)
 }
 
-/// The kind of map that the pixels of a file are for certain, whatever the options say of the kind; `None` also where it cannot be read.
+/// The kind of map that the pixels of a file are for certain, ignoring the kind in the options; also `None` if it cannot be read.
 pub fn kind_by_pixels(path: &Path, options: &MapOptions) -> Option<Kind> {
     let Decoded { image, info } = read_image_file(path, &options.read).ok()?;
     let range = options.range.unwrap_or_else(|| range_of(&image, &info));
@@ -249,7 +249,7 @@ fn kind_of(
     if let Some(kind) = wanted.or(info.kind) {
         return Ok(kind);
     }
-    // The height is the first of these six channels, whatever the others look like.
+    // The height is the first of these six channels, whatever the others contain.
     if info.channels.first().is_some_and(|name| name == "b0_h") {
         return Ok(Kind::Height);
     }
@@ -289,7 +289,7 @@ impl Map {
         }
     }
 
-    /// Most maps are read with green up because nobody said otherwise; the curl of the slopes tells if that is wrong.
+    /// Most maps are read with green up by default; the curl of the slopes shows if that is wrong.
     fn test_green(&mut self) {
         if self.options.kind == Kind::Normal
             && let Some(test) = test_green_of_map(&self.image, &self.options)

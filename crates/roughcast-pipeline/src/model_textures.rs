@@ -7,14 +7,14 @@ use roughcast::{
     SourceOptions, bake,
 };
 
-/// How a model's textures are made.
+/// How a model's textures are baked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextureOptions {
     /// The type of their texels.
     pub bits: SampleType,
     /// One roughness or two, for `ggx`.
     pub lobe: Lobe,
-    /// The exponent of the base roughness, which `toksvig` and `ggx` store; the other models add it as they shade.
+    /// The exponent of the base roughness, which `toksvig` and `ggx` store; the other models add it when shading.
     pub specular_power: f32,
 }
 

@@ -1,4 +1,4 @@
-//! What a job says of itself, as data.
+//! The report of a job, as data.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -11,7 +11,7 @@ use crate::findings::Finding;
 use crate::target::ReaderLimit;
 use crate::watch::Stage;
 
-/// What was read, made and written, in numbers.
+/// What was read, baked and written, in numbers.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct JobReport {
@@ -19,28 +19,28 @@ pub struct JobReport {
     pub input: PathBuf,
     /// The files that were written, in their order.
     pub files: Vec<PathBuf>,
-    /// What the map's file says of itself.
+    /// What the map's file says about itself.
     pub info: FileInfo,
     /// How its pixels were read.
     pub source: SourceOptions,
     /// How it was baked.
     pub options: BakeOptions,
-    /// What the bake says.
+    /// The report of the bake.
     pub report: BakeReport,
-    /// What block compression costs, where there is any.
+    /// The error of block compression, if there is any.
     pub compression: Option<CompressionError>,
-    /// What the test of green measured, -1 ..= 1; `None` for heights and where there is too little to judge by.
+    /// The correlation that the test of green measured, -1 ..= 1; `None` for heights and for too little evidence.
     pub green_correlation: Option<f64>,
-    /// What common readers refuse of such files.
+    /// Common readers that refuse such files.
     pub reader_limits: Vec<ReaderLimit>,
-    /// What the user should hear about, in the order in which it was found.
+    /// Findings for the user, in the order in which they were found.
     pub findings: Vec<Finding>,
     /// The stages, with the time that each took.
     pub times: Vec<(Stage, Duration)>,
 }
 
 impl JobReport {
-    /// The largest errors of what the files give back, those of the blocks included.
+    /// The largest errors of values decoded from the files, including those of the blocks.
     pub fn bounds(&self) -> Bounds {
         self.with_blocks(self.report.bounds)
     }
@@ -54,13 +54,13 @@ impl JobReport {
         self.compression.map_or(stored, |blocks| blocks.added_to(stored))
     }
 
-    /// The range of the stored slopes, where a shader needs it to decode the texels.
+    /// The range of the stored slopes, if a shader needs it to decode the texels.
     pub fn scale(&self) -> Option<f32> {
         let BakeOptions { layout, bits, .. } = self.options;
         layout.uses_scale(bits).then_some(self.report.scale)
     }
 
-    /// The range of the stored variances or standard deviations, where a shader needs it to decode the texels.
+    /// The range of the stored variances or standard deviations, if a shader needs it to decode the texels.
     pub fn variance_scale(&self) -> Option<f32> {
         let BakeOptions { layout, bits, .. } = self.options;
         layout.uses_variance_scale(bits).then_some(self.report.variance_scale)

@@ -10,7 +10,7 @@ use roughcast_io::{Decoded, FileInfo, Limits, ReadError, ReadOptions, read_image
 use crate::findings::RoughnessForm;
 use crate::map::{MapError, refuse_baked};
 
-/// The Blinn-Phong exponents that materials may have: below 1 nothing is shiny, and above this single floats carry no bump.
+/// The Blinn-Phong exponents that materials may have: below 1 nothing is shiny, and above this single floats cannot represent bumps.
 pub const SPECULAR_POWERS: RangeInclusive<f32> = 1.0..=1_000_000.0;
 
 /// Where the roughness of a material comes from.
@@ -23,34 +23,34 @@ pub enum RoughnessInput {
     Value {
         /// The number.
         value: f32,
-        /// What it is.
+        /// What it means.
         stored: RoughnessStored,
     },
-    /// A picture; it is resampled where its size is not the map's.
+    /// A picture; it is resampled if its size is not the map's.
     File {
         /// The picture.
         path: PathBuf,
         /// The channel, by name; `None` for green in colour, as glTF packs it, and the only one in grey.
         channel: Option<String>,
-        /// What its values are.
+        /// What its values mean.
         stored: RoughnessStored,
     },
 }
 
-/// Why the roughness of a material could not be had.
+/// Why the roughness of a material could not be loaded.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RoughnessError {
     /// The number is not one that this kind of roughness can be.
     #[error(
-        "{value} is no roughness stored as '{stored}': it must be from {} to {}",
+        "{value} is not a roughness stored as '{stored}': it must be from {} to {}",
         range.start(),
         range.end()
     )]
     OutOfRange {
         /// The number.
         value: f32,
-        /// What it should be.
+        /// What it should mean.
         stored: RoughnessStored,
         /// The numbers allowed.
         range: RangeInclusive<f32>,
@@ -72,7 +72,7 @@ pub enum RoughnessError {
         source: ReadError,
     },
     /// The picture is one that `bake` wrote.
-    #[error("{} holds no roughness of a material", path.display())]
+    #[error("{} has no roughness of a material", path.display())]
     Map {
         /// The picture.
         path: PathBuf,
@@ -93,13 +93,13 @@ pub enum Roughness {
         image: Image,
         /// The channel.
         channel: usize,
-        /// What its values are.
+        /// What its values mean.
         stored: RoughnessStored,
     },
 }
 
 impl Roughness {
-    /// As [`roughcast::bake()`] takes it.
+    /// As input for [`roughcast::bake()`].
     pub fn base(&self) -> BaseRoughness<'_> {
         match self {
             Roughness::Variance(variance) => BaseRoughness::Variance(*variance),
@@ -109,13 +109,13 @@ impl Roughness {
         }
     }
 
-    /// Whether it is a colour picture with roughness in green: glTF's packed texture, of which the rest is worth keeping.
+    /// Whether it is a colour picture with roughness in green: glTF's packed texture, whose other channels are kept.
     pub fn is_packed(&self) -> bool {
         matches!(self, Roughness::Map { image, channel: 1, .. } if image.channels() >= 3 && !is_grey(image))
     }
 }
 
-/// Whether red, green and blue are equal throughout, but for what lossy compression does.
+/// Whether red, green and blue are equal throughout, except for lossy compression.
 fn is_grey(image: &Image) -> bool {
     /// JPEG's rounding of chroma.
     const LOSSY: f32 = 4.5 / 255.0;
@@ -127,7 +127,7 @@ fn is_grey(image: &Image) -> bool {
     })
 }
 
-/// The place of a channel of this name. The only channel of a grey picture is its red as well.
+/// The index of a channel of this name. The only channel of a grey picture is also its red.
 fn channel_of(info: &FileInfo, name: &str) -> Option<usize> {
     let is_grey = info.channels.len() == 1 && info.channels[0] == "Y";
     let place = info.channels.iter().position(|channel| channel.eq_ignore_ascii_case(name));
@@ -135,7 +135,7 @@ fn channel_of(info: &FileInfo, name: &str) -> Option<usize> {
 }
 
 impl RoughnessInput {
-    /// The picture, where it is one.
+    /// The picture, if it is one.
     pub fn file(&self) -> Option<&Path> {
         match self {
             RoughnessInput::File { path, .. } => Some(path),
@@ -151,7 +151,7 @@ impl RoughnessInput {
         }
     }
 
-    /// The roughness, read from its file where it is one.
+    /// The roughness, read from its file if it is a picture.
     ///
     /// # Errors
     /// [`RoughnessError`].
@@ -195,7 +195,7 @@ fn picture(
     Ok(Roughness::Map { image, channel, stored })
 }
 
-/// The picture, or of it the channel that was named where the picture as such does not have it: a layer of an EXR may.
+/// The picture, or its named channel if the picture itself does not have it: a layer of an EXR may.
 fn read(path: &Path, channel: Option<&str>, limits: &Limits) -> Result<Decoded, RoughnessError> {
     let whole = ReadOptions::from(*limits);
     let unread = |source| RoughnessError::Read { path: path.to_owned(), source };

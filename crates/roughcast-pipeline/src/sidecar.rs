@@ -1,4 +1,4 @@
-//! `NAME.json`: what a shader needs to know of baked files, for loaders that drop the metadata of the files themselves.
+//! `NAME.json`: what a shader needs to know about baked files, for loaders that drop the metadata of the files themselves.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Sidecar {
-    /// What the texels of the first file mean; the other files differ in their part and layer alone.
+    /// What the texels of the first file mean; the other files differ only in their part and layer.
     pub info: TextureInfo,
     /// The type of the texels.
     pub sample_type: SampleType,
@@ -31,7 +31,7 @@ pub struct Sidecar {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SidecarPart {
-    /// The names of its files, without their folder: one, or of PNG one for each level.
+    /// The names of its files, without their folder: one, or for PNG one per level.
     pub files: Vec<String>,
     /// What its texels mean.
     pub info: TextureInfo,
@@ -42,7 +42,7 @@ pub struct SidecarPart {
 }
 
 impl Sidecar {
-    /// Describes what was written. `files` are the paths of all files, in the order of `stored`, of PNG all levels one after the
+    /// Describes what was written. `files` are the paths of all files, in the order of `stored`, for PNG all levels one after the
     /// other.
     ///
     /// # Panics
@@ -67,7 +67,7 @@ impl Sidecar {
         }
     }
 
-    /// As the file has it; the manual documents its keys.
+    /// The content of the file; the manual documents its keys.
     pub fn to_json(&self) -> Value {
         let info = &self.info;
         let pairs = info.to_pairs();

@@ -1,11 +1,11 @@
-//! Where textures are going to be used, and what can be read there.
+//! Where textures will be used, and what can be read there.
 
 use roughcast::texture::Layout;
 use roughcast::{BakeOptions, Blocks, SampleType, named_enum};
 use roughcast_io::Container;
 
 named_enum! {
-    /// Where textures are going to be used.
+    /// Where textures will be used.
     pub enum Target: "target" {
         /// Native programs on Vulkan, Metal, Direct3D or OpenGL.
         Desktop = "desktop",
@@ -16,7 +16,7 @@ named_enum! {
     }
 }
 
-/// Why textures cannot be sampled at all where they are going to be used.
+/// Why the target cannot sample the textures at all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TargetError {
@@ -37,7 +37,7 @@ pub enum TargetError {
     Blocks,
 }
 
-/// What works only with a feature, or loses something, where textures are going to be used.
+/// What works only with a feature, or loses something, on the target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum TargetFinding {
@@ -45,7 +45,7 @@ pub enum TargetFinding {
     FilteredFloats,
     /// Blocks need extensions that phones lack.
     Blocks,
-    /// Loaders of this container take one level and make the others again, which loses the roughness.
+    /// Loaders of this container read one level and regenerate the others, which loses the roughness.
     OneLevel,
 }
 
@@ -59,7 +59,7 @@ pub enum ReaderLimit {
     SixteenBits,
 }
 
-/// What common readers refuse of a file of this kind.
+/// What common readers refuse in a file of this kind.
 pub fn reader_limits(container: Container, layers: usize, sample_type: SampleType) -> Vec<ReaderLimit> {
     if !matches!(container, Container::Ktx2 | Container::Dds) {
         return Vec::new();
@@ -70,7 +70,7 @@ pub fn reader_limits(container: Container, layers: usize, sample_type: SampleTyp
 }
 
 impl Target {
-    /// Refuses what cannot be sampled there at all.
+    /// Refuses what the target cannot sample at all.
     ///
     /// Sources: WebGPU, "Texture Format Capabilities" (16-bit UNORM formats need the feature `texture-formats-tier1`, blocks the
     /// feature `texture-compression-bc`); OpenGL ES 3.0, table 3.13 (no 16-bit normalised formats), EXT_texture_norm16.
@@ -89,7 +89,7 @@ impl Target {
         })
     }
 
-    /// What works there only with a feature, or loses something.
+    /// What works only with a feature there, or loses something.
     pub fn findings(self, container: Container, options: &BakeOptions) -> Vec<TargetFinding> {
         if self == Target::Desktop {
             return Vec::new();

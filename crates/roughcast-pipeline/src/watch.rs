@@ -17,11 +17,11 @@ named_enum! {
         Reading = "reading",
         /// Making the textures and their levels.
         Baking = "baking",
-        /// Compressing them into blocks, where that is wanted.
+        /// Compressing them into blocks, if requested.
         Compressing = "compressing",
         /// Writing the files. They take their places after the last report of this stage.
         Writing = "writing",
-        /// The job has ended, well or not.
+        /// The job has ended, successfully or not.
         Ended = "ended",
     }
 }
@@ -32,24 +32,24 @@ named_enum! {
 pub struct Progress<'a> {
     /// The map.
     pub input: &'a Path,
-    /// Its place among the files of a folder that are tried; 0 for a job alone.
+    /// Its index among the files of a folder; 0 for a single job.
     pub index: usize,
-    /// How many these are; 1 for a job alone.
+    /// The number of these files; 1 for a single job.
     pub count: usize,
-    /// What is being done.
+    /// The stage.
     pub stage: Stage,
-    /// Which fraction of the stage is done, 0 ..= 1, where that is known. Threads that share the work may report out of order.
+    /// Which fraction of the stage is done, 0 ..= 1, if that is known. Threads that share the work may report out of order.
     pub fraction: Option<f32>,
 }
 
-/// Hears how jobs get on, and may stop them.
+/// Receives the progress of jobs, and may stop them.
 ///
 /// Any closure `Fn(&Progress) -> ControlFlow<()> + Sync` is one. It is called from any thread, also from several at once, at
 /// the beginning of each stage and, while blocks are compressed and files are written, within it. After
 /// `ControlFlow::Break` a job ends with [`JobError::Cancelled`] and leaves no file behind, and a folder begins no further job. The stage
 /// [`Stage::Baking`] runs to its end, since the bake itself cannot be stopped.
 pub trait Watch: Sync {
-    /// The job has got so far.
+    /// Receives the progress of a job.
     fn progress(&self, progress: &Progress<'_>) -> ControlFlow<()>;
 }
 
@@ -59,7 +59,7 @@ impl<F: Fn(&Progress<'_>) -> ControlFlow<()> + Sync> Watch for F {
     }
 }
 
-/// A watch that hears nothing and stops nothing.
+/// A watch that ignores progress and stops nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Unwatched;
 
@@ -84,7 +84,7 @@ impl<'a> Watched<'a> {
         Self { watch, input, index, count, stage: None, times: Vec::new() }
     }
 
-    /// Ends the stage before and begins this one, unless the job is in it already.
+    /// Ends the previous stage and begins this one, unless the job is already in it.
     pub fn begin(&mut self, stage: Stage) -> Result<(), JobError> {
         if self.stage.is_none_or(|(current, _)| current != stage) {
             self.end_stage();
@@ -93,7 +93,7 @@ impl<'a> Watched<'a> {
         self.tell(None)
     }
 
-    /// Tells how much of the stage is done.
+    /// Reports how much of the stage is done.
     pub fn tell(&self, fraction: Option<f32>) -> Result<(), JobError> {
         match self.report(fraction) {
             ControlFlow::Continue(()) => Ok(()),
@@ -108,7 +108,7 @@ impl<'a> Watched<'a> {
         self.watch.progress(&Progress { input, index, count, stage, fraction })
     }
 
-    /// Ends the job. What the watch says has no effect on it any more.
+    /// Ends the job. The watch can no longer stop it.
     pub fn end(&mut self) -> ControlFlow<()> {
         self.end_stage();
         self.stage = Some((Stage::Ended, Instant::now()));
@@ -121,7 +121,7 @@ impl<'a> Watched<'a> {
         }
     }
 
-    /// The stages that were gone through, with the time that each took.
+    /// The completed stages, with the time that each took.
     pub fn times(&self) -> &[(Stage, Duration)] {
         &self.times
     }

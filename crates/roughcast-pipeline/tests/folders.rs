@@ -19,7 +19,7 @@ use roughcast_pipeline::{
 
 const SIDE: usize = 32;
 
-/// A material, a bad file and a picture that is no map.
+/// A material, a bad file and a picture that is not a map.
 fn maps(folder: &Path) -> FolderJob<'static> {
     let maps = folder.join("maps");
     fs::create_dir(&maps).expect("space");
@@ -32,7 +32,7 @@ fn maps(folder: &Path) -> FolderJob<'static> {
     FolderJob::new(maps, folder.join("baked"), BakeSettings::new(Layout::Clean))
 }
 
-/// What became of each file, in a word.
+/// The outcome for each file, in a word.
 fn words(job: &FolderJob<'_>) -> Vec<(String, String)> {
     let results = job.run(&Unwatched).expect("maps");
     let row = |result: &roughcast_pipeline::FolderResult| {
@@ -50,7 +50,7 @@ fn words(job: &FolderJob<'_>) -> Vec<(String, String)> {
 }
 
 #[test]
-fn names_and_pixels_say_what_is_baked_and_a_bad_file_stops_no_other() {
+fn names_and_pixels_select_what_is_baked_and_bad_files_stop_no_others() {
     let folder = scratch();
     let job = maps(folder.path());
     let rows = words(&job);
@@ -104,7 +104,7 @@ fn neither_jobs_nor_pool_change_a_byte_and_the_pool_does_the_work() {
 }
 
 #[test]
-fn a_break_stops_all_jobs_and_what_they_had_begun() {
+fn a_break_stops_all_jobs() {
     let folder = scratch();
     let mut job = maps(folder.path());
     job.jobs = NonZeroUsize::new(1);
@@ -159,7 +159,7 @@ fn a_panic_is_the_error_of_its_file() {
 }
 
 #[test]
-fn folders_that_make_no_sense_are_refused() {
+fn invalid_folders_are_refused() {
     let folder = scratch();
     let job = maps(folder.path());
     let error = |job: &FolderJob<'_>| job.run(&Unwatched).expect_err("it makes no sense");

@@ -65,7 +65,7 @@ fn a_job_reports_its_stages_and_writes_its_files() {
 }
 
 #[test]
-fn a_cancelled_job_leaves_no_file_behind_and_older_files_as_they_were() {
+fn a_cancelled_job_leaves_no_new_files_and_keeps_older_ones() {
     const OLD: &[u8] = b"an older output";
     for stop_at in [Stage::Reading, Stage::Baking, Stage::Compressing, Stage::Writing] {
         // At the beginning of the stage, and where it says how far it is.
@@ -91,7 +91,7 @@ fn a_cancelled_job_leaves_no_file_behind_and_older_files_as_they_were() {
 }
 
 #[test]
-fn what_the_watch_says_of_the_end_does_not_matter() {
+fn the_watch_cannot_stop_a_finished_job() {
     let folder = scratch();
     let stop = |progress: &Progress<'_>| match progress.stage {
         Stage::Ended => ControlFlow::Break(()),
@@ -207,7 +207,7 @@ fn errors_are_data_and_name_no_option_of_a_command_line() {
 }
 
 #[test]
-fn an_input_is_not_written_over_and_a_baked_file_is_no_map() {
+fn inputs_are_not_overwritten_and_baked_files_are_not_maps() {
     let folder = scratch();
     let input = folder.path().join("map.ktx2");
     let mut job = pbr_job(folder.path());

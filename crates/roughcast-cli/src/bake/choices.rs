@@ -1,4 +1,4 @@
-//! What the arguments of `bake` come down to.
+//! The library's choices for the arguments of `bake`.
 
 use roughcast_io::{Container, Supercompression};
 use roughcast_pipeline::{BakeChoices, BakeSettings, BrokenTexels, LayerFiles, SidecarFile};
@@ -17,7 +17,7 @@ impl Args {
         if self.verbose { Times::Shown } else { Times::Hidden }
     }
 
-    /// How maps are read and what is made of them.
+    /// How maps are read and baked.
     pub fn settings(&self) -> BakeSettings {
         let mut settings = BakeSettings::new(self.layout);
         settings.map = self.source.map_options();

@@ -1,4 +1,4 @@
-//! `roughcast bench gpu`: LEAN Figure 12 on this machine, and how close making the maps comes to a plain copy.
+//! `roughcast bench gpu`: LEAN Figure 12 on this machine, and the bandwidth of the bake against a plain copy.
 
 use std::process::ExitCode;
 
@@ -9,22 +9,22 @@ use roughcast_gpu::bake::{BakePath, Bandwidth, bake_bandwidth, copy_bandwidth};
 use roughcast_gpu::{Gpu, GpuOptions};
 use serde_json::{Value, json};
 
-use super::contest::{Row, SIDE, bake_options, hold};
+use super::figure_12::{Row, SIDE, bake_options, measure};
 use crate::args::REPORT;
 use crate::scene_args::{Size, size};
 use crate::{say, say_json};
 
-/// Measure shading and making maps on the graphics card.
+/// Measure shading and baking on the graphics card.
 ///
-/// A plane that covers the whole picture is drawn with Blinn-Phong, with a LEAN map, with a LEAN map that is made again
-/// for every frame, and with a CLEAN map. Times are those of the card's own clock.
+/// A plane that covers the whole picture is drawn with Blinn-Phong, with a LEAN map, with a LEAN map that is baked
+/// for every frame, and with a CLEAN map. The card's own clock measures the times.
 #[derive(clap::Args)]
 pub struct Args {
     /// Width and height of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "1600x1200", value_parser = size)]
     size: Size,
 
-    /// Frames of each method, of which the median counts [default: 200; 10 on a software driver]
+    /// Frames per method; the median counts [default: 200; 10 on a software driver]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_FRAMES))]
     frames: Option<u32>,
 
@@ -35,7 +35,7 @@ pub struct Args {
 
 const MOST_FRAMES: i64 = 100_000;
 
-/// What is sensible on graphics hardware and on a software driver, which is thousands of times slower: frames to measure,
+/// Defaults for graphics hardware and for a software driver, which is thousands of times slower: frames to measure,
 /// and texels along each side of the map whose bake is compared with a copy.
 const HARDWARE: (u32, u32) = (200, 4096);
 const SOFTWARE: (u32, u32) = (10, 2048);
@@ -49,7 +49,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let (frames, side) = if gpu.is_software() { SOFTWARE } else { HARDWARE };
     let frames = args.frames.unwrap_or(frames);
     let size = (args.size.width, args.size.height);
-    let rows = block_on(hold(&gpu, size, frames))?;
+    let rows = block_on(measure(&gpu, size, frames))?;
     let generation = block_on(Generation::measure(&gpu, side))?;
     let report = Report { gpu: &gpu, size, frames, rows, generation };
     if args.json {
@@ -60,7 +60,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Making a LEAN map with all its levels against copying as many bytes.
+/// Baking a LEAN map with all its levels compared with copying as many bytes.
 struct Generation {
     side: u32,
     bake: Bandwidth,
@@ -75,7 +75,7 @@ impl Generation {
         Ok(Self { side, bake, copy })
     }
 
-    /// What the bake reaches of the copy's bandwidth.
+    /// The bake's bandwidth as a fraction of the copy's.
     fn part(&self) -> f64 {
         self.bake.bytes_per_second() / self.copy.bytes_per_second()
     }
@@ -127,7 +127,7 @@ impl Report<'_> {
             vec![format!("adapter     {}", self.gpu.info.name), format!("driver      {}", self.driver())];
         if self.gpu.is_software() {
             lines.push(
-                "            a software driver: its times say nothing about graphics hardware".to_owned(),
+                "            a software driver: its times are not those of graphics hardware".to_owned(),
             );
         }
         let (width, height) = self.size;
@@ -136,7 +136,7 @@ impl Report<'_> {
             self.frames
         ));
         lines.push(format!(
-            "maps        half floats, {SIDE}x{SIDE} where the name gives no side; anisotropic filter"
+            "maps        half floats, {SIDE}x{SIDE} unless the name gives a side; anisotropic filter"
         ));
         lines.push(String::new());
         lines.push(format!(

@@ -1,4 +1,4 @@
-//! A shader's instructions, counted in its SPIR-V: the second line of LEAN Figure 12, which has Direct3D's counts.
+//! Counts a shader's instructions in its SPIR-V: the second line of LEAN Figure 12, which has Direct3D's counts.
 
 use std::collections::HashMap;
 
@@ -7,8 +7,8 @@ use naga::back::spv;
 
 use crate::shader::parse;
 
-/// Instructions of a shader. One on a vector counts once, a called function once a call, the body of a loop once, and both
-/// sides of a branch.
+/// Instructions of a shader. One on a vector counts once, a called function once per call, the body of a loop once, and both
+/// sides of a branch count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Instructions {
     /// Arithmetic, comparisons, selections, conversions and the functions of GLSL.std.450.
@@ -42,7 +42,7 @@ mod op {
     pub const FUNCTION_CALL: u32 = 57;
     /// OpImageSampleImplicitLod to OpImageSampleProjDrefExplicitLod, OpImageFetch, OpImageGather, OpImageDrefGather.
     pub const TEXTURE: RangeInclusive<u32> = 87..=97;
-    /// What costs arithmetic. Left out is what only moves or names values: loads, stores, access chains, shuffles,
+    /// Arithmetic instructions. Excludes those that only move or name values: loads, stores, access chains, shuffles,
     /// composites, bit casts, and control flow.
     pub const ALU: [RangeInclusive<u32>; 6] = [
         EXT_INST..=EXT_INST,
@@ -54,7 +54,7 @@ mod op {
     ];
 }
 
-/// What of a module matters here.
+/// The parts of a module that matter here.
 #[derive(Default)]
 struct Program {
     entry_points: HashMap<String, u32>,
@@ -166,8 +166,8 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_counted_is_an_error() {
-        assert!(count(KNOWN, "twice").is_err(), "it is no entry point");
+    fn uncountable_shaders_are_errors() {
+        assert!(count(KNOWN, "twice").is_err(), "it is not an entry point");
         assert!(count("fn", "shade").is_err());
     }
 

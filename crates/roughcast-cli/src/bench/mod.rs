@@ -1,6 +1,6 @@
 //! `roughcast bench`: what the methods cost on this machine.
 
-mod contest;
+mod figure_12;
 mod gpu;
 mod instructions;
 

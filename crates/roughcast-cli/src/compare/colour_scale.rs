@@ -1,4 +1,4 @@
-//! A perceptual colour scale for error pictures: from black over violet and red to white, its lightness growing evenly.
+//! A perceptual colour scale for error pictures: from black via violet and red to white, with uniformly growing lightness.
 //!
 //! Source of the colour space: B. Ottosson, "A perceptual color space for image processing" (Oklab), 2020.
 
@@ -8,7 +8,7 @@ use crate::display::srgb8;
 
 /// Hue of the darkest and of the brightest colours, in degrees.
 const HUES: (f64, f64) = (290.0, 450.0);
-/// How colourful the middle of the scale is: as much as sRGB shows of all its hues.
+/// Chroma of the middle of the scale: the largest that sRGB has for all its hues.
 const CHROMA: f64 = 0.15;
 
 /// The colour of an error from 0 to 1.
@@ -19,7 +19,7 @@ pub fn colour(error: f32) -> [u8; 3] {
     linear_from_oklab([t, chroma * hue.cos(), chroma * hue.sin()]).map(|value| srgb8(value as f32))
 }
 
-/// Colours of a picture of errors: as many as the eye can name on the scale, and few enough for a small file.
+/// Colours of an error picture: as many as the eye can tell apart on the scale, and few enough for a small file.
 const STEPS: f32 = 24.0;
 
 /// Errors from 0 to 1, row by row, as a picture of [`STEPS`] colours.

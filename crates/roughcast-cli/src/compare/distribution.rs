@@ -1,7 +1,7 @@
-//! The highlight of a whole map, seen from so far that a pixel holds all of it: what it truly looks like, and LEAN's Gaussian.
+//! The highlight of a whole map, seen from so far away that one pixel covers it: the ground truth, and LEAN's Gaussian.
 //!
-//! Both are densities over the plane of `h.xy / h.z`: in truth the map's slopes, each spread by the base roughness; with
-//! LEAN one Gaussian of their mean and covariance (LEAN mapping, Eq. 1, 5).
+//! Both are densities over the plane of `h.xy / h.z`: the ground truth has the map's slopes, each spread by the base roughness;
+//! LEAN has one Gaussian of their mean and covariance (LEAN mapping, Eq. 1, 5).
 
 use roughcast::texture::{Layout, decode};
 use roughcast::{BakeError, BakeOptions, Covariance, Image, SampleType, Slope, SourceOptions, bake};
@@ -11,23 +11,23 @@ use crate::display::srgb8;
 
 /// Cells along each side of the plane.
 pub const CELLS: usize = 160;
-/// How far the cells reach from the mean slope, in deviations of the wider direction: a Gaussian has little beyond.
+/// How far the cells reach from the mean slope, in standard deviations of the wider direction: a Gaussian has little beyond.
 const REACH: f64 = 4.0;
-/// Where a spread is cut off, in deviations.
+/// Where a spread is cut off, in standard deviations.
 const CUT: f64 = 5.0;
 
-/// Densities over a square of the plane, as parts of all light in each cell, row by row from the top.
+/// Densities over a square of the plane, as fractions of all light in each cell, row by row from the top.
 pub struct Distribution {
     pub truth: Vec<f64>,
     pub lean: Vec<f64>,
     /// Half the side of the square, in slope.
     pub reach: f64,
-    /// The part of the light, 0 to 1, that LEAN has in other places than the truth: the total variation distance.
+    /// The fraction of the light, 0 to 1, that LEAN misplaces: the total variation distance from the ground truth.
     pub misplaced: f64,
 }
 
 impl Distribution {
-    /// Of a map whose base roughness has the exponent `specular_power`.
+    /// The distributions of a map whose base roughness has the exponent `specular_power`.
     ///
     /// # Errors
     /// [`BakeError`] if the map cannot be read.
@@ -51,14 +51,14 @@ impl Distribution {
         let grid = Grid { mean: [f64::from(mean.x), f64::from(mean.y)], cell: 2.0 * reach / CELLS as f64 };
         let truth = grid.spread(&grid.histogram(slopes), base.sqrt());
         let lean = grid.gaussian(covariance, base);
-        // What lies outside of the square is in the wrong place as well, as far as the two differ there.
+        // Light outside of the square is misplaced too, as far as the two differ there.
         let beyond = |part: &[f64]| 1.0 - part.iter().sum::<f64>();
         let inside: f64 = truth.iter().zip(&lean).map(|(a, b)| (a - b).abs()).sum();
         let misplaced = 0.5 * (inside + (beyond(&truth) - beyond(&lean)).abs());
         Self { truth, lean, reach, misplaced }
     }
 
-    /// Truth and LEAN as pictures of one exposure.
+    /// Ground truth and LEAN as pictures of one exposure.
     pub fn pictures(&self) -> [Srgb8Picture; 2] {
         let brightest =
             self.truth.iter().chain(&self.lean).fold(f64::MIN_POSITIVE, |most, part| most.max(*part));
@@ -77,7 +77,7 @@ struct Grid {
 }
 
 impl Grid {
-    /// The part of the slopes that lies in each cell.
+    /// The fraction of the slopes in each cell.
     fn histogram(&self, slopes: impl Iterator<Item = Slope>) -> Vec<f64> {
         let (mut cells, mut count) = (vec![0.0; CELLS * CELLS], 0.0);
         for slope in slopes {
@@ -115,7 +115,7 @@ impl Grid {
         along(&along(cells, 1, CELLS), CELLS, 1)
     }
 
-    /// The part of LEAN's Gaussian in each cell, which is small against it.
+    /// The fraction of LEAN's Gaussian in each cell, which is small compared with it.
     fn gaussian(&self, covariance: Covariance, base: f64) -> Vec<f64> {
         let (xx, yy, xy) =
             (f64::from(covariance.xx) + base, f64::from(covariance.yy) + base, f64::from(covariance.xy));
@@ -135,7 +135,7 @@ mod tests {
     use super::*;
 
     const BASE: f64 = 0.004;
-    /// Cells are a part of a deviation wide: a histogram moves slopes by up to half of one, which shifts about this much light.
+    /// Cells are a fraction of a standard deviation wide: a histogram moves slopes by up to half of one, which shifts about this much light.
     const CELL_ERROR: f64 = 0.02;
 
     fn two_slopes(slope: f32) -> Distribution {
@@ -153,12 +153,12 @@ mod tests {
     }
 
     #[test]
-    fn a_single_slope_is_where_lean_has_it() {
+    fn a_single_slope_is_exact_in_lean() {
         assert!(two_slopes(0.0).misplaced < CELL_ERROR);
     }
 
     #[test]
-    fn two_slopes_far_apart_are_not() {
+    fn two_distant_slopes_are_misplaced_by_lean() {
         // The integral of the positive part of the difference along x, by hand.
         let by_hand = |slope: f64| {
             let gauss = |x: f64, v: f64| (-0.5 * x * x / v).exp() / (std::f64::consts::TAU * v).sqrt();

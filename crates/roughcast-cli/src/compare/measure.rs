@@ -1,4 +1,4 @@
-//! One map in one view: truths, every method with every filter, and how far each is from the truth of its base lobe.
+//! One map in one view: the ground truths, every method with every filter, and the error of each against its ground truth.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -29,47 +29,47 @@ pub struct Settings<'a> {
     pub shading: &'a ShadingArgs,
     pub filters: Vec<Filter>,
     pub size: Size,
-    /// Samples a pixel of the truths.
+    /// Samples per pixel of the ground truths.
     pub samples: u32,
-    /// What the truths' surface is between texels.
+    /// The surface between texels in the ground truths.
     pub reconstruction: Reconstruction,
-    /// Frames by which flicker is measured; none without it.
+    /// Frames for measuring flicker; 0 leaves it out.
     pub frames: u32,
 }
 
-/// What came of one map in one view.
+/// The results of one map in one view.
 pub struct Comparison {
     pub view: View,
     pub lights: Vec<Light>,
-    /// The truth of each base lobe, in the order of the models.
+    /// The ground truth of each base lobe, in the order of the models.
     pub truths: Vec<(Shading, Srgb8Picture)>,
     /// By model, then by filter.
     pub trials: Vec<Trial>,
-    /// Truth, ordinary bump mapping and LEAN side by side, while the camera moves; empty without flicker.
+    /// Ground truth, conventional bump mapping and LEAN side by side, while the camera moves; empty without flicker.
     pub animation: Vec<Srgb8Picture>,
 }
 
 /// One method with one filter.
 pub struct Trial {
     pub row: Row,
-    /// The root mean square error in parts of the truth's brightest value.
+    /// The root mean square error as a fraction of the ground truth's brightest value.
     pub error_of_peak: f64,
     pub picture: Srgb8Picture,
     /// The errors of FLIP.
     pub error: Srgb8Picture,
 }
 
-/// The truths of a view, frame by frame.
+/// The ground truths of a view, frame by frame.
 struct Truths {
     lobes: Vec<Shading>,
     /// For every lobe its frames.
     frames: Vec<Vec<Picture>>,
 }
 
-/// Work is counted in samples of a truth with all lobes, 0.24 µs of a core each; a pixel of a method takes as long as so many,
+/// Work is counted in samples of a ground truth with all lobes, 0.24 µs of a core each; a pixel of a method takes as long as this many,
 /// its filtering included ...
 const METHOD_PIXEL: u64 = 3;
-/// ... and a pixel of FLIP's, over all exposures, so many.
+/// ... and a pixel of FLIP, over all exposures, this many.
 const FLIP_PIXEL: u64 = 18;
 
 impl Settings<'_> {
@@ -80,12 +80,12 @@ impl Settings<'_> {
         u64::from(self.size.height) * (frame * u64::from(self.frame_count()) + FLIP_PIXEL * trials)
     }
 
-    /// The frame without a move is the picture itself.
+    /// The frame before any movement is the picture itself.
     fn frame_count(&self) -> u32 {
         self.frames.max(1)
     }
 
-    /// The filter of pictures that stand for a method: the best, where there are several.
+    /// The filter of pictures that represent a method: the best, if there are several.
     pub fn main_filter(&self) -> Filter {
         let anisotropic = self.filters.iter().find(|filter| **filter == Filter::Anisotropic);
         *anisotropic.or(self.filters.last()).expect("the command line gives at least one")
@@ -156,7 +156,7 @@ impl Settings<'_> {
         moves.iter().map(|scene| Ok(method.render(scene, size, &watch)?)).collect()
     }
 
-    /// A row of the results, its numbers still missing.
+    /// A row of the results, without its numbers.
     fn row(&self, subject: &Subject, view: View, method: Shading, filter: Filter) -> Row {
         Row {
             map: subject.name.clone(),
@@ -171,7 +171,7 @@ impl Settings<'_> {
         }
     }
 
-    /// Measures a method's frames against the truth's.
+    /// Measures a method's frames against those of the ground truth.
     fn judge(
         &self,
         row: Row,
@@ -201,7 +201,7 @@ impl Settings<'_> {
 }
 
 impl Comparison {
-    /// What came of a method with one of the filters that were tried.
+    /// The results of a method with one of the filters.
     pub fn trial(&self, method: Shading, filter: Filter) -> &Trial {
         let found = self.trials.iter().find(|trial| trial.row.method == method && trial.row.filter == filter);
         found.expect("every method was tried with every filter")
@@ -209,10 +209,10 @@ impl Comparison {
 }
 
 impl Truths {
-    /// The frames of the truth that a method is compared with.
+    /// The frames of the ground truth that a method is compared with.
     fn of(&self, shading: Shading) -> &[Picture] {
         let place = self.lobes.iter().position(|lobe| *lobe == shading.base_lobe());
-        &self.frames[place.expect("there is a truth of every base lobe")]
+        &self.frames[place.expect("there is a ground truth of every base lobe")]
     }
 
     fn stills(&self, exposure: f32) -> Vec<(Shading, Srgb8Picture)> {
@@ -221,7 +221,7 @@ impl Truths {
     }
 }
 
-/// Moves the bar by so many steps for every row.
+/// Moves the bar by this many steps for every row.
 fn steps(bar: &ProgressBar, each: u64) -> impl Fn(usize, usize) -> ControlFlow<()> + Sync {
     move |_, _| {
         bar.inc(each);

@@ -1,5 +1,5 @@
-//! `roughcast compare`: every method against the truth that it approximates, on the map given and on two that show what
-//! LEAN cannot do.
+//! `roughcast compare`: every method against the ground truth that it approximates, on the given map and on two that show what
+//! LEAN cannot represent.
 
 mod colour_scale;
 mod distribution;
@@ -29,10 +29,10 @@ use distribution::Distribution;
 use measure::{Comparison, Settings};
 use subject::Subject;
 
-/// Compare all shading models with supersampled truth, in near, mid, far and grazing views.
+/// Compare all shading models with supersampled ground truth, in near, mid, far and grazing views.
 ///
-/// Writes index.html, which needs no other file: pictures, errors, tables, flicker; and results.json. Beside MAP it has two
-/// maps with which LEAN cannot cope: sharp V grooves and a woven cloth.
+/// Writes index.html, which needs no other file: pictures, errors, tables, flicker; and results.json. Besides MAP it renders two
+/// maps that LEAN cannot represent: sharp V grooves and a woven cloth.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -47,24 +47,24 @@ pub struct Args {
     #[arg(value_hint = ValueHint::FilePath)]
     map: PathBuf,
 
-    /// The folder to write to; it is made where it is missing
+    /// The folder to write to; it is created if missing
     #[arg(short, long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     output: PathBuf,
 
-    /// Views in which MAP is looked at, separated by commas
+    /// Views of MAP, separated by commas
     #[arg(long, value_name = "LIST", default_values = ["near", "mid", "far", "grazing"], value_delimiter = ',', value_parser = one_of::<View>())]
     views: Vec<View>,
 
-    /// Texture filters with which each model is tried, separated by commas
+    /// Texture filters to test each model with, separated by commas
     #[arg(long, value_name = "LIST", default_values = ["trilinear", "anisotropic"], value_delimiter = ',', value_parser = one_of::<Filter>(), help_heading = SHADING)]
     filters: Vec<Filter>,
 
-    /// Samples a pixel of the truths: a square number up to 4096
+    /// Samples per pixel of the ground truth: a square number up to 4096
     #[arg(long, value_name = "N", default_value = "64", value_parser = samples)]
     samples: u32,
 
-    /// What the surface is between texels, in truth: slopes interpolated, which smooths bumps that change from texel to
-    /// texel; or a facet a texel, whose moments are exactly the map's
+    /// The surface between texels, in the ground truth: slopes interpolated, which smooths bumps that change from texel to
+    /// texel; or a facet per texel, whose moments are exactly the map's
     #[arg(long, default_value = "linear", value_parser = one_of::<Reconstruction>())]
     reconstruction: Reconstruction,
 
@@ -72,7 +72,7 @@ pub struct Args {
     #[arg(long, value_name = "WxH", default_value = "256x192", value_parser = size)]
     size: Size,
 
-    /// Frames of the slow camera move by which flicker is measured, at least 2; 0 leaves flicker out
+    /// Frames of a slow camera move for measuring flicker, at least 2; 0 leaves flicker out
     #[arg(long, value_name = "N", default_value = "8", value_parser = frames)]
     frames: u32,
 
@@ -85,18 +85,18 @@ pub struct Args {
     #[command(flatten)]
     source: SourceArgs,
 
-    /// Print what is in results.json
+    /// Print the contents of results.json
     #[arg(long, help_heading = REPORT)]
     json: bool,
 }
 
-/// Most pixels of all frames together: each takes 28 bytes, for five truths and a method.
+/// The most pixels of all frames together: each takes 28 bytes, for five ground truths and a method.
 const MOST_PIXELS: u64 = 1 << 24;
 
 fn frames(text: &str) -> Result<u32, String> {
     match text.parse::<u32>() {
         Ok(frames) if frames != 1 => Ok(frames),
-        Ok(_) => Err("flicker cannot be seen in one frame: give 2 or more, or 0 for none".to_owned()),
+        Ok(_) => Err("flicker needs more than one frame: give 2 or more, or 0 for none".to_owned()),
         Err(_) => Err("it must be a number of frames, 2 or more, or 0 for none".to_owned()),
     }
 }
@@ -130,7 +130,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 impl Args {
-    /// Refuses what makes no sense before minutes are spent.
+    /// Refuses invalid arguments before minutes are spent.
     fn check(&self) -> Result<()> {
         let pixels = u64::from(self.size.width) * u64::from(self.size.height) * u64::from(self.frames.max(1));
         if pixels > MOST_PIXELS {
@@ -165,7 +165,7 @@ fn without_repeats<T: PartialEq + Copy>(list: &[T]) -> Vec<T> {
     once
 }
 
-/// A map and what came of it.
+/// A map and its results.
 struct Compared {
     subject: Subject,
     /// One for each of its views.
@@ -218,7 +218,7 @@ fn write(folder: &Path, settings: &Settings<'_>, compared: &[Compared]) -> Resul
     set.commit().with_context(|| folder.display().to_string())
 }
 
-/// A line for every map and view: LEAN against ordinary bump mapping.
+/// A line for every map and view: LEAN against conventional bump mapping.
 fn summarise(folder: &Path, settings: &Settings<'_>, compared: &[Compared]) -> Result<()> {
     let filter = settings.main_filter();
     say(&format!("root mean square error, {filter}:"))?;
@@ -226,7 +226,7 @@ fn summarise(folder: &Path, settings: &Settings<'_>, compared: &[Compared]) -> R
         for comparison in comparisons {
             let [ordinary, lean] = page::PAIR.map(|method| comparison.trial(method, filter).row.rmse);
             let (name, view) = (&subject.name, comparison.view);
-            say(&format!("  {name}, {view}: ordinary bump mapping {ordinary:.4}, LEAN {lean:.4}"))?;
+            say(&format!("  {name}, {view}: conventional bump mapping {ordinary:.4}, LEAN {lean:.4}"))?;
         }
     }
     say(&format!("{}", folder.join(FILES[0]).display()))

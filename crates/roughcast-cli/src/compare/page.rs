@@ -1,4 +1,4 @@
-//! The report as a page: numbers first, then every picture beside its truth and its errors.
+//! The report as a page: numbers first, then every picture beside its ground truth and its errors.
 
 use roughcast::shading::{FootprintModel, Shading};
 use roughcast_scene::{Filter, Light, View};
@@ -10,7 +10,7 @@ use super::results::Row;
 use super::subject::Subject;
 use crate::html::Page;
 
-/// The old way and the new: what a reader looks for first.
+/// The conventional method and the new one: what a reader looks for first.
 pub const PAIR: [Shading; 2] = [Shading::BlinnPhong, Shading::Lean];
 
 /// Frames a second of the animations.
@@ -21,8 +21,8 @@ pub fn page(settings: &Settings<'_>, compared: &[Compared]) -> String {
     let (given, others) = compared.split_first().expect("a map was given");
     let mut page = Page::new(&format!("roughcast compare: {}", given.subject.name));
     page.paragraph(
-        "Every shading model, with every texture filter, against the truth of its own base lobe: many rays a pixel, each \
-         shaded at the finest level, in the same form and with the same energy. All numbers are taken on linear radiance, \
+        "Every shading model, with every texture filter, against the ground truth of its own base lobe: many rays per pixel, each \
+         shaded at the finest level, in the same form and with the same energy. All numbers are measured in linear radiance, \
          before any tone curve.",
     );
     how_it_was_made(&mut page, settings, given);
@@ -64,7 +64,10 @@ fn how_it_was_made(page: &mut Page, settings: &Settings<'_>, given: &Compared) {
         ("masking", shading.masking.name().to_owned()),
         ("footprint", shading.footprint.name().to_owned()),
         ("base lobe in the surface", shading.base.name().to_owned()),
-        ("truth", format!("{} samples a pixel, Gaussian pixel filter, float slopes", settings.samples)),
+        (
+            "ground truth",
+            format!("{} samples per pixel, Gaussian pixel filter, float slopes", settings.samples),
+        ),
         ("its surface between texels", settings.reconstruction.name().to_owned()),
         ("pictures", format!("{}x{} pixels", size.width, size.height)),
         ("flicker", flicker),
@@ -88,8 +91,8 @@ fn how_it_was_made(page: &mut Page, settings: &Settings<'_>, given: &Compared) {
     page.paragraph(
         "RMSE is the root mean square error in radiance. FLIP is the mean of HDR-FLIP, 0 to 1: the difference that a viewer \
          sees who flips between two pictures. Energy is the relative error of the highlight's light. Flicker is the variance \
-         over time in excess of the truth's, in radiance squared. Pixels count that the surface covers fully. The pictures of a \
-         view share one exposure; they are JPEG, and the numbers are not taken from them.",
+         over time in excess of the ground truth's, in radiance squared. Only pixels that the surface covers fully count. The pictures of a \
+         view share one exposure; they are JPEG, and the numbers are not computed from them.",
     );
     page.begin_row();
     page.picture(&legend(256, 12), "FLIP in the error pictures, from 0 to 1");
@@ -104,9 +107,9 @@ fn lights(lights: &[Light]) -> String {
     lights.iter().map(one).collect::<Vec<_>>().join(" and ")
 }
 
-/// Ordinary bump mapping against LEAN, and who was best, for every map and view.
+/// Conventional bump mapping against LEAN, and the best method, for every map and view.
 fn overview(page: &mut Page, settings: &Settings<'_>, compared: &[Compared]) {
-    page.heading(2, "Ordinary bump mapping against LEAN");
+    page.heading(2, "Conventional bump mapping against LEAN");
     let filter = settings.main_filter();
     let mut rows = Vec::new();
     for Compared { subject, comparisons, .. } in compared {
@@ -126,16 +129,16 @@ fn overview(page: &mut Page, settings: &Settings<'_>, compared: &[Compared]) {
             ]);
         }
     }
-    page.paragraph(&format!("Both with {filter} filtering; LEAN / ordinary below 1 is better."));
+    page.paragraph(&format!("Both with {filter} filtering; LEAN / conventional below 1 is better."));
     page.table(
         &[
             "map, view",
-            "RMSE, ordinary",
+            "RMSE, conventional",
             "RMSE, LEAN",
-            "LEAN / ordinary",
-            "FLIP, ordinary",
+            "LEAN / conventional",
+            "FLIP, conventional",
             "FLIP, LEAN",
-            "flicker, ordinary",
+            "flicker, conventional",
             "flicker, LEAN",
             "least RMSE of all",
         ],
@@ -154,7 +157,7 @@ fn view_heading(subject: &Subject, comparison: &Comparison) -> String {
     format!("{}, {} view: {}", subject.name, comparison.view, span(comparison.view))
 }
 
-/// What moves: the truth, the old way and the new.
+/// The animations: ground truth, the conventional method and the new one.
 fn film(page: &mut Page, settings: &Settings<'_>, comparison: &Comparison) {
     if comparison.animation.is_empty() {
         return;
@@ -163,7 +166,7 @@ fn film(page: &mut Page, settings: &Settings<'_>, comparison: &Comparison) {
     let filter = settings.main_filter();
     let [ordinary, lean] = PAIR.map(|method| flicker(&comparison.trial(method, filter).row));
     let caption = format!(
-        "While the camera moves: truth (off-centre Beckmann); ordinary bump mapping (blinn-phong, {filter}), flicker \
+        "While the camera moves: ground truth (off-centre Beckmann); conventional bump mapping (blinn-phong, {filter}), flicker \
          {ordinary}; LEAN ({filter}), flicker {lean}"
     );
     page.film(&comparison.animation, FRAMES_PER_SECOND, &caption);
@@ -191,7 +194,7 @@ fn table(page: &mut Page, comparison: &Comparison) {
     page.table(&["method, filter", "truth", "RMSE", "FLIP", "energy", "flicker"], &rows);
 }
 
-/// The truth of every base lobe, and beside it each of its models' pictures with these filters and their errors.
+/// The ground truth of every base lobe, and beside it each of its models' pictures with these filters and their errors.
 fn pictures(page: &mut Page, comparison: &Comparison, filters: &[Filter]) {
     for (lobe, truth) in &comparison.truths {
         page.begin_row();
@@ -215,18 +218,18 @@ fn flicker(row: &Row) -> String {
     }
 }
 
-/// What LEAN cannot do, with the numbers.
+/// What LEAN cannot represent, with the numbers.
 fn limits(page: &mut Page, settings: &Settings<'_>, compared: &[Compared]) {
     page.heading(2, "What LEAN cannot do");
     page.paragraph(
         "LEAN knows the mean and the covariance of the slopes under a pixel: one Gaussian, with one direction. Where slopes come \
          in separate groups, as in sharp V grooves (two) or along the threads of a woven cloth (two directions that cross), the \
-         true highlight has as many parts or is lopsided, and LEAN has one round or oval part that covers them all, brightest where \
-         the truth may be dark. Neither more bits nor a better filter mend that.",
+         true highlight has as many parts or is asymmetric, while LEAN has one round or oval part that covers them all, brightest where \
+         the ground truth may be dark. Neither more bits nor a better filter fix that.",
     );
     page.paragraph(&format!(
-        "The highlight of a whole map, as a pixel has it that holds all of the map, over h.xy / h.z, base roughness included (s = \
-         {}). Misplaced is the part of the light that LEAN has where the truth has less.",
+        "The highlight of a whole map in one pixel that covers it, over h.xy / h.z, base roughness included (s = \
+         {}). The misplaced light is the part that LEAN shows where the ground truth shows less.",
         settings.shading.specular_power
     ));
     page.begin_row();
@@ -244,7 +247,7 @@ fn limits(page: &mut Page, settings: &Settings<'_>, compared: &[Compared]) {
         page.paragraph(
             "All variance under the texture filter counts as roughness, as in the papers. Where texels are magnified, as in the near \
              view, LEAN is then duller than the ground truth: between two texels it finds the slopes of both, while the ground truth is a \
-             surface that bends from the one to the other.",
+             surface that bends from one to the other.",
         );
     }
 }

@@ -1,10 +1,10 @@
-//! The numbers of a comparison, as `results.json` holds them.
+//! The numbers of a comparison, as in `results.json`.
 
 use roughcast::shading::Shading;
 use roughcast_scene::{Filter, View};
 use serde_json::{Value, json};
 
-/// How far one method with one filter is from the truth of its base lobe.
+/// The error of one method with one filter against the ground truth of its base lobe.
 #[derive(Clone, Debug)]
 pub struct Row {
     pub map: String,
@@ -16,9 +16,9 @@ pub struct Row {
     pub rmse: f64,
     /// Mean error of HDR-FLIP, 0 to 1.
     pub flip: f64,
-    /// Relative error of the energy of the highlight, as a part of the truth's; negative where it is too dark.
+    /// Relative error of the highlight's energy, as a fraction of the ground truth's; negative if it is too dark.
     pub energy: f64,
-    /// Temporal variance in excess of the truth's, in radiance squared; `None` if it was not measured.
+    /// Temporal variance in excess of the ground truth's, in radiance squared; `None` if it was not measured.
     pub flicker: Option<f64>,
 }
 

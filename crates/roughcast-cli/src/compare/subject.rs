@@ -1,4 +1,4 @@
-//! The maps that are compared: the one given, and two that no single Gaussian describes.
+//! The maps that are compared: the given one, and two that no single Gaussian describes.
 
 use anyhow::{Context, Result};
 use roughcast::{Gradient, HeightSense, Image, Kind, SourceOptions};
@@ -7,9 +7,9 @@ use roughcast_pipeline::Map;
 use roughcast_scene::View;
 use roughcast_scene::pattern::v_grooves;
 
-/// A map and the views in which it is looked at.
+/// A map and its views.
 pub struct Subject {
-    /// As in the rows of the results.
+    /// Its name in the rows of the results.
     pub name: String,
     pub image: Image,
     pub options: SourceOptions,
@@ -25,7 +25,7 @@ const GROOVES: usize = 32;
 /// Both of their highlights are in the picture of a plane, and apart for exponents above 100.
 const GROOVE_SLOPE: f64 = 0.15;
 
-/// A quarter of the texels of a height map of Godot's demonstration projects; its licence lies beside it.
+/// A quarter of the texels of a height map from Godot's demonstration projects; its licence lies beside it.
 const WOOL: &[u8] = include_bytes!("../../assets/wool_depth.png");
 
 /// The views in which bumps are too small to be seen one by one, but not beyond what textures have levels for.
@@ -55,7 +55,7 @@ fn v_groove() -> Subject {
         options,
         views: LIMIT_VIEWS.to_vec(),
         about: format!(
-            "{GROOVES} sharp V grooves over {GROOVED_TEXELS}x{GROOVED_TEXELS} texels, made by formula: slopes of \
+            "{GROOVES} sharp V grooves over {GROOVED_TEXELS}x{GROOVED_TEXELS} texels, computed by formula: slopes of \
              {GROOVE_SLOPE} to one side and to the other, and nothing between"
         ),
     }
@@ -97,12 +97,12 @@ mod tests {
         let finest = &decode(&baked.arrays).expect("moments")[0];
         let slopes = finest.moments.iter().map(|moments| f64::from(moments.mean.x));
         let steep = slopes.filter(|x| (x.abs() - GROOVE_SLOPE).abs() < 1e-3).count();
-        // All but the two texels of each groove that see both of its sides.
+        // All but the two texels of each groove whose gradient spans both of its sides.
         assert_eq!(steep, GROOVED_TEXELS * (GROOVED_TEXELS - 2 * GROOVES));
     }
 
     #[test]
-    fn the_wool_is_there() {
+    fn the_wool_is_included() {
         let wool = wool().expect("a picture");
         assert_eq!((wool.image.width(), wool.image.height(), wool.image.channels()), (512, 512, 1));
     }

@@ -13,12 +13,12 @@ use super::scene::{Stage, scene};
 use super::{Figure, Panel, Table};
 use crate::display::{exposure_of, shown};
 
-/// Within what 8 bits hold.
+/// Within the range of 8 bits.
 const SPECULAR_POWER: f32 = 128.0;
 const SAMPLES: u32 = 256;
 /// Each distance is twice the one before.
 const DISTANCES: [f64; 4] = [4.5, 9.0, 18.0, 36.0];
-/// The energy of LEAN's highlight is to be the truth's but for this part.
+/// The largest relative error of the energy of LEAN's highlight.
 const ENERGY: f64 = 0.1;
 
 pub fn make() -> Result<Figure> {
@@ -46,7 +46,7 @@ pub fn make() -> Result<Figure> {
     Ok(Figure {
         title: "ridges on a model that moves away",
         claim: format!(
-            "at every distance LEAN is closer to the truth than ordinary bump mapping, and its highlight has the truth's energy \
+            "at every distance LEAN is closer to the ground truth than conventional bump mapping, and its highlight has the ground truth's energy \
              within {:.0} %",
             100.0 * ENERGY
         ),
@@ -54,7 +54,7 @@ pub fn make() -> Result<Figure> {
         holds,
         making: format!(
             "Random ridges of 512x512 texels with a root mean square slope of 0.25 on a torus, 8-bit textures, s = {SPECULAR_POWER}, \
-             anisotropic filtering, the paper's form; truth of {SAMPLES} samples a pixel. The picture covers the model at every distance."
+             anisotropic filtering, the paper's form; ground truth of {SAMPLES} samples per pixel. The picture covers the model at every distance."
         ),
         panels,
         charts: Vec::new(),

@@ -15,28 +15,28 @@ use crate::display::{exposure_of, shown};
 
 /// The least exponent of the claim.
 const SPECULAR_POWER: f32 = 2048.0;
-/// The text's.
+/// As in the paper.
 const SAMPLES: u32 = 64;
-/// LEAN's error is to be at most this part of ordinary bump mapping's.
+/// The largest error of LEAN relative to conventional bump mapping's.
 const ERROR_RATIO: f64 = 1.0 / 3.0;
-/// Ordinary bump mapping is to flicker at least so many times as much.
+/// The least flicker of conventional bump mapping relative to LEAN's.
 const FLICKER_RATIO: f64 = 5.0;
 /// Slope of the checker's edges: about the width of the lobe, 1 / sqrt(s), times two.
 const EDGE_SLOPE: f64 = 0.05;
 /// Steeper edges, for which the claim is not made: flat squares with a sharp highlight and edges that send theirs far away
 /// are two distributions, and LEAN has one Gaussian.
 const STEEPER: [f64; 2] = [0.1, 0.2];
-/// Frames of the camera move by which flicker is measured.
+/// Frames of the camera move for measuring flicker.
 const FRAMES: u32 = 8;
 const SIZE: (u32, u32) = (480, 360);
-/// Flicker needs a truth for every frame; it is measured in smaller pictures.
+/// Flicker needs a ground truth for every frame; it is measured in smaller pictures.
 const MOVING_SIZE: (u32, u32) = (240, 180);
 
-/// The four pictures of the text, and ordinary mip-mapped normals beside them.
+/// The four pictures of the paper's figure, and conventional mip-mapped normals beside them.
 const METHODS: [(&str, Shading, Filter); 5] = [
-    ("ordinary bump mapping", Shading::BlinnPhong, Filter::Nearest),
-    ("ordinary, trilinear mip maps", Shading::BlinnPhong, Filter::Trilinear),
-    ("ordinary, anisotropic", Shading::BlinnPhong, Filter::Anisotropic),
+    ("conventional bump mapping", Shading::BlinnPhong, Filter::Nearest),
+    ("conventional, trilinear mip maps", Shading::BlinnPhong, Filter::Trilinear),
+    ("conventional, anisotropic", Shading::BlinnPhong, Filter::Anisotropic),
     ("LEAN, trilinear", Shading::Lean, Filter::Trilinear),
     ("LEAN, anisotropic", Shading::Lean, Filter::Anisotropic),
 ];
@@ -50,7 +50,7 @@ pub fn make() -> Result<Figure> {
     let exposure = exposure_of(&truth);
     let mut panels = vec![Panel {
         picture: shown(&truth, exposure),
-        caption: format!("truth, {SAMPLES} samples a pixel"),
+        caption: format!("ground truth, {SAMPLES} samples per pixel"),
     }];
     let (mut rows, mut errors, mut numbers) = (Vec::new(), Vec::new(), Map::new());
     let flickers = flickers()?;
@@ -83,13 +83,13 @@ pub fn make() -> Result<Figure> {
     Ok(Figure {
         title: "a raised checkerboard",
         claim: format!(
-            "against {SAMPLES} samples a pixel, LEAN with anisotropic filtering has at most {ERROR_RATIO:.2} of the error (RMSE) of ordinary \
+            "against {SAMPLES} samples per pixel, LEAN with anisotropic filtering has at most {ERROR_RATIO:.2} of the error (RMSE) of conventional \
              bump mapping, which flickers at least {FLICKER_RATIO} times as much"
         ),
         numbers,
         holds: error_ratio <= ERROR_RATIO && flicker_ratio >= FLICKER_RATIO,
         making: format!(
-            "Raised checker of 512x512 texels with edges of slope {EDGE_SLOPE}, 16-bit textures, s = {SPECULAR_POWER}, off-centre Beckmann as truth, in the paper's \
+            "Raised checker of 512x512 texels with edges of slope {EDGE_SLOPE}, 16-bit textures, s = {SPECULAR_POWER}, off-centre Beckmann as ground truth, in the paper's \
              form; Blinn-Phong times s. {}x{} pixels; flicker over {FRAMES} frames of {}x{}.",
             SIZE.0, SIZE.1, MOVING_SIZE.0, MOVING_SIZE.1
         ),

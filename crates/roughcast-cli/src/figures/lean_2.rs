@@ -1,4 +1,4 @@
-//! LEAN Figure 2: what becomes of bumps, and of ridges, when only the coarsest level is left.
+//! LEAN Figure 2: bumps and ridges at the coarsest level.
 
 use anyhow::Result;
 use glam::{DVec2, DVec3};
@@ -15,13 +15,13 @@ use crate::display::{exposure_of, shown};
 
 const SPECULAR_POWER: f32 = 128.0;
 const SIZE: (u32, u32) = (240, 240);
-/// Texels on a side of the maps, as in the text.
+/// Texels on a side of the maps, as in the paper.
 const TEXELS: usize = 512;
 const RMS_SLOPE: f64 = 0.25;
 /// So far away that a pixel sees tens of texels.
 const FAR_REPEATS: f64 = 64.0;
 const SAMPLES: u32 = 256;
-/// How far the highlight's measured aspect ratio may be from the covariance's.
+/// The largest relative difference of the highlight's measured aspect ratio from the covariance's.
 const ASPECT_ERROR: f64 = 0.05;
 /// Half vectors farther out are at the rim of the sphere, where a pixel spans too many of them; a Gaussian as wide as the
 /// widest here has less than a ten-thousandth of its weight there.
@@ -36,14 +36,14 @@ pub fn make() -> Result<Figure> {
         title: "bumps become roughness, ridges a highlight with a direction",
         claim: format!(
             "far away the ridges' highlight is longer than wide: in the plane of h.xy / h.z its aspect ratio is sqrt(l1 / l2) of the \
-             eigenvalues of covariance + I/s within {:.0} %, in truth and with LEAN, while ordinary mip maps keep it round",
+             eigenvalues of covariance + I/s within {:.0} %, in the ground truth and with LEAN, while conventional mip maps keep it round",
             100.0 * ASPECT_ERROR
         ),
         numbers: figure.numbers,
         holds,
         making: format!(
             "Maps of {TEXELS}x{TEXELS} texels with a root mean square slope of {RMS_SLOPE}, s = {SPECULAR_POWER}, the paper's form; 16-bit \
-             textures, and 8-bit ones beside them as in the text. Finest and coarsest level by --level; truth of {SAMPLES} samples a \
+             textures, and 8-bit ones beside them as in the paper. Finest and coarsest level by --level; ground truth of {SAMPLES} samples per \
              pixel with {FAR_REPEATS} repeats of the map. {}x{} pixels.",
             SIZE.0, SIZE.1
         ),
@@ -64,7 +64,7 @@ struct Parts {
 }
 
 impl Parts {
-    /// Pictures and measures of one map. Returns by how much the aspect ratios of the truth and of LEAN in 16 bits are off.
+    /// Pictures and measures of one map. Returns the errors of the aspect ratios of the ground truth and of LEAN in 16 bits.
     fn add(&mut self, name: &str, map: Pattern) -> Result<[f64; 2]> {
         let expected = expected(&map)?;
         let mut stage = stage(map);
@@ -82,7 +82,7 @@ impl Parts {
         let exposure = exposure_of(&truth);
         for (picture, what) in [
             (&finest, "finest level"),
-            (&ordinary, "coarsest level, ordinary"),
+            (&ordinary, "coarsest level, conventional"),
             (&lean, "coarsest level, LEAN"),
             (&truth, "truth, far away"),
         ] {
@@ -113,7 +113,7 @@ impl Parts {
     }
 }
 
-/// The aspect ratio that the whole map's covariance and the base roughness promise.
+/// The aspect ratio that the whole map's covariance and the base roughness predict.
 fn expected(map: &Pattern) -> Result<f64> {
     let options = BakeOptions { layout: Layout::Moments, bits: SampleType::F32, ..BakeOptions::default() };
     let levels = decode(&bake(&map.heights, &map.source_options(), None, &options)?.arrays)?;

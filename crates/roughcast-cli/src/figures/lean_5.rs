@@ -1,4 +1,4 @@
-//! LEAN Figure 5: four models on a bumpy sphere, near enough that nothing is filtered.
+//! LEAN Figure 5: four models on a bumpy sphere, so near that nothing is filtered.
 
 use anyhow::Result;
 use glam::DVec3;
@@ -15,9 +15,9 @@ use crate::display::{exposure_of, shown};
 
 const SPECULAR_POWER: f32 = 128.0;
 const SIZE: (u32, u32) = (320, 320);
-/// FLIP of two pictures side by side that few observers tell apart; a picture and itself have 0, a stranger 0.3 and more.
+/// FLIP of two pictures that few observers can tell apart side by side; identical pictures have 0, unrelated ones 0.3 and more.
 const EQUIVALENT: f64 = 0.03;
-/// LEAN in 16 bits against the same lobe without moments, as a part of the highlight's peak: s times the error of a stored
+/// LEAN in 16 bits against the same lobe without moments, as a fraction of the highlight's peak: s times the error of a stored
 /// variance, and as much again for the slope.
 const SAME: f32 = 0.02;
 
@@ -30,7 +30,7 @@ const MODELS: [(&str, Shading); 4] = [
 
 pub fn make() -> Result<Figure> {
     let stage = stage();
-    // Every pixel takes one texel of the finest level, as it is: nothing is filtered.
+    // Every pixel reads one texel of the finest level: nothing is filtered.
     let sampler = Sampler { filter: Filter::Nearest, level: Some(0.0), ..Sampler::default() };
     let pictures = MODELS.map(|(_, shading)| stage.sampled(shading, sampler));
     let pictures = pictures.into_iter().collect::<Result<Vec<Picture>>>()?;
@@ -47,8 +47,8 @@ pub fn make() -> Result<Figure> {
     Ok(Figure {
         title: "four models without filtering",
         claim: format!(
-            "where nothing is filtered, Blinn-Phong, Beckmann in the bump's frame, off-centre Beckmann and LEAN look the same (FLIP at \
-             most {EQUIVALENT}), and the last two are the same but for the rounding of 16 bits ({SAME} of the peak)"
+            "without filtering, Blinn-Phong, Beckmann in the bump's frame, off-centre Beckmann and LEAN look the same (FLIP at \
+             most {EQUIVALENT}), and the last two are the same except for the rounding of 16 bits ({SAME} of the peak)"
         ),
         numbers,
         holds: worst <= EQUIVALENT && difference <= SAME,
@@ -63,7 +63,7 @@ pub fn make() -> Result<Figure> {
     })
 }
 
-/// The largest difference of two highlights, as a part of the second one's peak.
+/// The largest difference of two highlights, as a fraction of the second one's peak.
 fn largest_difference(picture: &Picture, other: &Picture) -> f32 {
     let peak = other.specular.iter().flatten().fold(0.0_f32, |a, b| a.max(*b));
     let pairs = picture.specular.iter().flatten().zip(other.specular.iter().flatten());

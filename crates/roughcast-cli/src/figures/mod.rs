@@ -1,4 +1,4 @@
-//! `roughcast figures`: the figures of the texts, made again, each with the claim that it must show and the numbers that
+//! `roughcast figures`: reproduces the figures of the LEAN paper, each with the claim that it must show and the numbers that
 //! prove it.
 
 mod lean_13;
@@ -24,10 +24,10 @@ use crate::args::one_of;
 use crate::html::{Chart, Page, Verdict};
 use crate::progress;
 
-/// Make the figures of the texts again, each with its claim and the numbers that prove it.
+/// Reproduce the figures of the LEAN paper, each with its claim and the numbers that prove it.
 ///
 /// Writes index.html, which needs no other file; results.json, with claim, numbers and "holds" of each figure; and the
-/// pictures as NAME.png. Exits with 1 where a claim does not hold.
+/// pictures as NAME.png. Exits with 1 if a claim does not hold.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Figures:
@@ -35,18 +35,18 @@ Figures:
   lean-4   Blinn-Phong and Beckmann approach each other as the exponent grows
   lean-5   four models that look the same where nothing is filtered
   lean-13  bumps with a direction, as the object moves away
-  lean-14  a raised checkerboard: ordinary bump maps alias, LEAN does not")]
+  lean-14  a raised checkerboard: conventional bump maps alias, LEAN does not")]
 pub struct Args {
     /// Which figures [default: all]
     #[arg(value_name = "NAME", value_parser = one_of::<Name>())]
     names: Vec<Name>,
 
-    /// The folder to write to; it is made where it is missing
+    /// The folder to write to; it is created if missing
     #[arg(short, long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     output: PathBuf,
 }
 
-/// The figures that can be made, by text and number.
+/// The figures that can be reproduced, by paper and number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Name {
     Lean2,
@@ -87,11 +87,11 @@ impl Name {
 /// A figure with its claim.
 struct Figure {
     title: &'static str,
-    /// What the text's figure claims, made exact.
+    /// The claim of the paper's figure, made exact.
     claim: String,
-    /// The numbers by which the claim is judged, with the limits that they are held against.
+    /// The numbers that decide the claim, with their limits.
     numbers: Map<String, Value>,
-    /// Whether they bear it out.
+    /// Whether the claim holds.
     holds: bool,
     /// How it was made: maps, their bits, exponent, sizes.
     making: String,
@@ -106,13 +106,13 @@ struct Panel {
     caption: String,
 }
 
-/// Numbers that are more than a sentence holds.
+/// Numbers that do not fit into a sentence.
 struct Table {
     header: Vec<&'static str>,
     rows: Vec<Vec<String>>,
 }
 
-/// Makes the figures, and says which claims hold.
+/// Makes the figures, and reports which claims hold.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let names = if args.names.is_empty() { Name::all().to_vec() } else { args.names.clone() };
     let folder = || args.output.display().to_string();
@@ -165,7 +165,7 @@ fn results(figures: &[(&str, Figure)]) -> Value {
 }
 
 fn page(figures: &[(&str, Figure)]) -> String {
-    let mut page = Page::new("roughcast: the figures of the texts, made anew");
+    let mut page = Page::new("roughcast: the figures of the LEAN paper, reproduced");
     for (name, figure) in figures {
         page.heading(2, &format!("{name}: {}", figure.title));
         page.verdict(Verdict::from(figure.holds), &figure.claim);

@@ -1,4 +1,4 @@
-//! What the figures share: a map on a shape, rendered by methods and in truth.
+//! What the figures share: a map on a shape, rendered by the methods and as ground truth.
 
 use std::sync::Arc;
 
@@ -69,12 +69,12 @@ impl Stage {
         scenes.iter().map(|scene| Ok(method.render(scene, self.size, &unwatched)?)).collect()
     }
 
-    /// The truth of a model's base lobe.
+    /// The ground truth of a model's base lobe.
     pub fn truth(&self, shading: Shading, samples: u32) -> Result<Picture> {
         Ok(self.truth_frames(shading, samples, std::slice::from_ref(&self.scene))?.remove(0))
     }
 
-    /// The truths of several scenes.
+    /// The ground truths of several scenes.
     pub fn truth_frames(&self, shading: Shading, samples: u32, scenes: &[Scene]) -> Result<Vec<Picture>> {
         let slopes = SlopeMap::of(&self.map.heights, &self.map.source_options())?;
         let truth = Truth {

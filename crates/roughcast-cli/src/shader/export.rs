@@ -1,4 +1,4 @@
-//! The library of shading models in each language, by way of naga.
+//! The library of shading models in each language, translated by naga.
 
 use anyhow::{Context, Result};
 use naga::ShaderStage;
@@ -50,7 +50,7 @@ pub enum Export {
 }
 
 /// The modules of these names, and what they need, in a language, with prefixed names. SPIR-V is a whole shader, whose names
-/// nobody else sees: it has none.
+/// are private: it has no prefix.
 pub fn export(names: &[&str], language: Language, prefix: &Prefix) -> Result<Export> {
     let exported = modules(names)?;
     let source = library(names)?;
@@ -101,8 +101,8 @@ pub fn parse(source: &str) -> Result<(naga::Module, ModuleInfo)> {
     Ok((module, info))
 }
 
-/// GLSL wants an entry point: it gets an empty one, which is the last function and is cut off again, and its version and
-/// precisions are left to the user.
+/// GLSL needs an entry point: it gets an empty one, which is the last function and is removed again; its version and
+/// precisions are up to the user.
 fn to_glsl(source: &str, version: glsl::Version) -> Result<String> {
     const ENTRY_POINT: &str = "entry_point";
     let (module, info) = parse(&format!("{source}\n@fragment fn {ENTRY_POINT}() {{}}\n"))?;

@@ -1,5 +1,5 @@
-//! Exports as guests: the generated text taken apart into its items and put together again by module, so that two exports may
-//! stand in one file and no constant is there for nothing.
+//! Makes exports safe to paste together: splits the generated code into its items and regroups them by module, so that two exports may
+//! be in one file and no constant is unused.
 //!
 //! In GLSL, HLSL and Metal's language each module has a guard. A constant that an export does not use is left out of it, so each
 //! has a guard of its own; those of `options` are for the caller, and always there.
@@ -11,7 +11,7 @@ use super::prefix::{CONSTRUCT, Prefix, global_names, is_constant};
 /// The module whose constants are the choices of `LobeOptions`.
 const OPTIONS: &str = "options";
 
-/// A constant, struct or function of the generated text.
+/// A constant, struct or function of the generated code.
 struct Item<'a> {
     name: &'a str,
     text: &'a str,
@@ -51,7 +51,7 @@ pub fn with_guards(code: &str, modules: &[&Module], prefix: &Prefix) -> Result<S
 fn guarded(macro_name: &str, items: &[&Item<'_>], prefix: &Prefix, out: &mut String) {
     *out += &format!("#ifndef {macro_name}\n#define {macro_name}\n");
     for (place, item) in items.iter().enumerate() {
-        // Constants stand together; the rest has air between.
+        // Constants are adjacent; other items are separated by blank lines.
         if place > 0 && !(is_constant(item.name) && is_constant(items[place - 1].name)) {
             out.push('\n');
         }
@@ -70,7 +70,7 @@ fn has_word(code: &str, word: &str) -> bool {
     code.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).any(|part| part == word)
 }
 
-/// What stands before the first item, such as includes, and the items in their order.
+/// The lines before the first item, such as includes, and the items in their order.
 fn items(code: &str) -> (String, Vec<Item<'_>>) {
     let (mut prelude, mut items) = (String::new(), Vec::new());
     let mut start = None;
@@ -98,7 +98,7 @@ fn items(code: &str) -> (String, Vec<Item<'_>>) {
     (prelude, items)
 }
 
-/// The name of an item: what stands before `=`, `{` or `(`.
+/// The name of an item: the word before `=`, `{` or `(`.
 fn item(text: &str) -> Item<'_> {
     let end = text.find(['=', '{', '(']).unwrap_or(text.len());
     let name = text[..end].split_whitespace().next_back().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! The comment with which every exported text starts: naga drops comments, so what a user must know stands here.
+//! The comment at the start of every export: naga drops comments, so what a user must know is here.
 
 use roughcast::shading::{Gaussians, Shading};
 use roughcast::wgsl::{self, CONVENTIONS, Module, Role};
@@ -19,7 +19,7 @@ const PACKING: &[&str] = &[
     "  base and roughness_stored are MAPS_... and STORED_..., zero for maps without base and for perceptual roughness.",
 ];
 
-/// How the argument `ratio` is made; derivatives are `dpdx` and `dpdy` of WGSL, and called otherwise elsewhere.
+/// How the argument `ratio` is computed; derivatives are `dpdx` and `dpdy` in WGSL, and have other names elsewhere.
 const FOOTPRINT: &[&str] = &[
     "  ratio is the footprint correction: with the texture's size in texels, the derivatives dpdx, dpdy (GLSL dFdx, dFdy; HLSL ddx, ddy;",
     "  Metal dfdx, dfdy), mean = filtered.first.mean, and the sampler's anisotropy and bias,",
@@ -78,7 +78,7 @@ pub fn header(modules: &[&Module], parsed: &naga::Module, language: Language, pr
     commented.map(|line| format!("// {line}").trim_end().to_owned() + "\n").collect()
 }
 
-/// The variable for the texel of a layer. The normal texture's is called `bump`, beside the normals made of it.
+/// The variable for the texel of a layer. The normal texture's is called `bump`, to distinguish it from the normals computed from it.
 fn texel_variable(layer: &'static str) -> &'static str {
     if layer == "normal" { "bump" } else { layer }
 }
@@ -131,7 +131,7 @@ fn rule_in_words(language: Language) -> &'static str {
     }
 }
 
-/// What is to be known of one language.
+/// Notes on one language.
 fn notes(language: Language) -> &'static [&'static str] {
     match language {
         Language::Wgsl => &[
@@ -149,7 +149,7 @@ fn notes(language: Language) -> &'static [&'static str] {
     }
 }
 
-/// The line in pieces that fit; those after the first are set in by two more.
+/// The line in pieces that fit; those after the first are indented by two more.
 fn wrapped(line: &str) -> Vec<String> {
     let room = WIDTH - "// ".len();
     let indent = line.len() - line.trim_start().len();

@@ -1,4 +1,4 @@
-//! Where the members of the library's structs lie in buffers, language by language.
+//! The offsets of the library's structs in buffers, for each language.
 //!
 //! Sources: WGSL, 14.4.1 "Alignment and Size"; OpenGL 4.6, 7.6.2.2 "Standard Uniform Block Layout" (std140, std430); Direct3D,
 //! "Packing rules for constant variables". Metal's structs as exported have WGSL's places: their three-component members are
@@ -6,7 +6,7 @@
 
 use naga::{Module, Type, TypeInner, VectorSize};
 
-/// A rule by which members get their places.
+/// A rule for the offsets of members.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
     /// WGSL, std430 and the exported Metal.
@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn natural_places_are_nagas() {
+    fn natural_offsets_match_naga() {
         let module = whole();
         let names = structs(&module);
         assert!(names.len() > 7, "{names:?}");
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn what_goes_into_uniform_buffers_has_the_same_places_by_every_rule() {
+    fn uniform_structs_have_the_same_offsets_by_every_rule() {
         let module = whole();
         for name in ["Packing", "LobeOptions"] {
             let [natural, std140, cbuffer] =
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn the_manuals_table_is_this_one() {
+    fn the_manual_has_the_same_table() {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/shaders.md");
         let manual = std::fs::read_to_string(path).expect("docs/shaders.md is there");
         let module = whole();

@@ -1,4 +1,4 @@
-//! Names as they were written: naga numbers every local name that another function has used before, and puts an underscore
+//! Restores names to their original spelling: naga numbers every local name that another function has used before, and puts an underscore
 //! after names that end in a digit.
 
 use std::collections::{HashMap, HashSet};
@@ -27,7 +27,7 @@ pub fn with_plain_names(code: &str) -> String {
     plain
 }
 
-/// Writes one function with its plain names.
+/// Writes one function with its original names.
 fn rename(function: &str, reserved: &HashSet<&str>, out: &mut String) {
     let all = tokens(function);
     let mut used: HashSet<&str> = all.iter().filter(|token| !token.member).map(|token| token.text).collect();
@@ -52,7 +52,7 @@ fn rename(function: &str, reserved: &HashSet<&str>, out: &mut String) {
     out.push_str(&function[at..]);
 }
 
-/// The name that naga has added to: `view` of `view_3`, `lean1` of `lean1_` and `lean1_2`.
+/// The name without naga's suffix: `view` of `view_3`, `lean1` of `lean1_` and `lean1_2`.
 fn without_number(name: &str) -> Option<&str> {
     let (base, number) = name.rsplit_once('_')?;
     let ends_in_digit = base.ends_with(|c: char| c.is_ascii_digit());
@@ -79,7 +79,7 @@ fn tokens(code: &str) -> Vec<Token<'_>> {
         let length = code[start..].find(|c| !is_part(c)).unwrap_or(code.len() - start);
         at = start + length;
         let text = &code[start..at];
-        // Of a number such as 1e-7 the pieces are no identifiers, or none that is renamed.
+        // The pieces of a number such as 1e-7 are not identifiers, or not renamed ones.
         if !text.starts_with(|c: char| c.is_ascii_digit()) {
             let before = &code[..start];
             found.push(Token {
@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn of_two_numbered_names_the_first_gets_the_plain_one() {
+    fn the_first_of_two_numbered_names_gets_the_plain_one() {
         let code = "float g(float h_1) {\n    float h_2 = h_1.h_2;\n    return h_2;\n}\n";
         let plain = "float g(float h) {\n    float h_2 = h.h_2;\n    return h_2;\n}\n";
         assert_eq!(with_plain_names(code), plain);

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 
 use roughcast::wgsl::{MODULES, Role, map_words};
 
-/// What the names of functions and structs start with; constants take it in capitals.
+/// The prefix of functions and structs; constants have it in capitals.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Prefix(String);
 
@@ -38,17 +38,17 @@ impl Prefix {
         }
     }
 
-    /// The macro that says that a module is there. It keeps the prefix as it is: `rc_` and `RC_` are two.
+    /// The macro that marks a module as defined. It keeps the case of the prefix: `rc_` and `RC_` differ.
     pub fn module_guard(&self, module: &str) -> String {
         format!("{}{}_MODULE", self.0, module.replace('-', "_").to_ascii_uppercase())
     }
 
-    /// The macro that says that constants are there, whose names have the prefix in capitals.
+    /// The macro that marks constants as defined, whose names have the prefix in capitals.
     pub fn constant_guard(&self, name: &str) -> String {
         format!("{}{}_CONSTANT", self.0, name).to_ascii_uppercase()
     }
 
-    /// Code in which every global name of the library, and what naga has made of one, has its prefix. Members of structs keep theirs.
+    /// The code with a prefix on every global name of the library, also as changed by naga. Members of structs keep their names.
     pub fn apply(&self, code: &str) -> String {
         if self.0.is_empty() {
             return code.to_owned();
@@ -57,13 +57,13 @@ impl Prefix {
         map_words(code, |word, before| {
             let known = names.contains_key(word)
                 || word.strip_prefix(CONSTRUCT).is_some_and(|of| names.contains_key(of));
-            // What follows a single dot is a member; what follows `1.` is no word.
+            // A word after a single dot is a member; what follows `1.` is not a word.
             (known && !before.ends_with('.')).then(|| self.of(word))
         })
     }
 }
 
-/// How the functions start by which naga makes structs in HLSL.
+/// The prefix of naga's constructor functions in HLSL.
 pub const CONSTRUCT: &str = "Construct";
 
 /// Constants are in capitals.
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_start_of_a_name_is_refused() {
+    fn invalid_prefixes_are_refused() {
         for wrong in ["1a", "a-b", "a b", "gl_", "__x", "_x", "a__", "ä"] {
             assert!(Prefix::from_str(wrong).is_err(), "{wrong}");
         }

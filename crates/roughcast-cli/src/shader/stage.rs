@@ -1,4 +1,4 @@
-//! The fragment shaders of the SPIR-V modules: WGSL files with general names, put together for each model.
+//! The fragment shaders of the SPIR-V modules: WGSL files with generic names, combined for each model.
 
 use anyhow::{Result, bail};
 use roughcast::Lobe;
@@ -10,7 +10,7 @@ const RESOURCES: &str = include_str!("stage/resources.wgsl");
 const FOOTPRINT: &str = include_str!("stage/footprint.wgsl");
 const SHADE: &str = include_str!("stage/shade.wgsl");
 
-/// The functions of which each model has its own.
+/// The functions that differ by model.
 const OWN_FUNCTIONS: [&str; 11] = [
     "texel0",
     "texel1",
@@ -68,7 +68,7 @@ pub fn fragment_shaders(models: &[Shading]) -> Result<String> {
     Ok(code)
 }
 
-/// The general names of the files, and those of a model.
+/// The generic names in the files, and those of a model.
 fn names_of(model: Shading) -> Vec<(&'static str, String)> {
     let identifier = model.name().replace('-', "_");
     let own = |name: &str| match name.strip_suffix("_model") {

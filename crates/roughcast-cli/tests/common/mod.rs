@@ -1,4 +1,4 @@
-//! What the tests of the program share: running it, the test data, and reading its outputs.
+//! Shared by the tests of the program: running it, the test data, and reading its outputs.
 
 // Every test file is a crate of its own and uses a part of this.
 #![allow(dead_code)]

@@ -31,7 +31,7 @@ pub fn heights(path: &Path, side: usize) {
     write(path, side, 1, samples);
 }
 
-/// Writes a picture of a colour that is no normal, with a little variation.
+/// Writes a picture of a colour that is not a normal, with a little variation.
 pub fn colour(path: &Path, side: usize) {
     let texel = |i: usize| [200, (i % 7) as u8 * 3, (i % 5) as u8 * 2];
     write(path, side, 3, (0..side * side).flat_map(texel).collect());

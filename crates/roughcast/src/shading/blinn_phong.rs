@@ -22,18 +22,3 @@ pub fn blinn_phong_lobe(surface: &BumpFacet, view: Vector, light: Vector, option
         Form::Physical => lobe * facet_visible_part(surface, view, light, options),
     }
 }
-
-/// The largest difference between `cos^s` and Beckmann's `exp(-s/2 tan²)` over all angles: LEAN mapping, Figure 4.
-///
-/// For large s it tends to `4 e⁻² / s`, about `0.54 / s`. `specular_power` is s, above zero.
-pub fn blinn_phong_against_beckmann(specular_power: f64) -> f64 {
-    /// Of u = s/2 tan², beyond which both lobes are below 1e-17 for s >= 1 but for Blinn-Phong's tail, which only falls.
-    const FARTHEST: f64 = 40.0;
-    /// Steps of u: near its maximum the difference is a parabola, and this leaves a relative error below 1e-6.
-    const STEPS: u32 = 40_000;
-    let difference = |u: f64| {
-        let tangent_squared = 2.0 * u / specular_power;
-        (-0.5 * specular_power * tangent_squared.ln_1p()).exp() - (-u).exp()
-    };
-    (1..=STEPS).map(|i| difference(FARTHEST * f64::from(i) / f64::from(STEPS))).fold(0.0, f64::max)
-}

@@ -51,7 +51,7 @@ mod vector;
 
 pub use base::{base_covariance, base_in_map, base_to_add};
 pub use beckmann::{beckmann_lobe, beckmann_surface};
-pub use blinn_phong::{blinn_phong_against_beckmann, blinn_phong_lobe, blinn_phong_surface};
+pub use blinn_phong::{blinn_phong_lobe, blinn_phong_surface};
 pub use calls::{Calls, Gaussians};
 pub use facet::{
     BumpFacet, LEAST_COSINE, LEAST_VIEW_COSINE, bump_facet, cosine_lobe, cosine_power, facet_visible_part,

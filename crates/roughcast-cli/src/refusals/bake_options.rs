@@ -1,4 +1,4 @@
-//! What the program says of the library's errors: the library names the fault, the program the option to change.
+//! Errors of a bake: the library names the fault, the program the option to change.
 
 use std::error::Error;
 
@@ -6,7 +6,7 @@ use roughcast::texture::BlockCompression;
 use roughcast::{BakeError, PyramidFilter, SourceError};
 use roughcast_gpu::GpuError;
 
-/// An error in one line, with the option to change where there is one.
+/// An error in one line, with the option to change, if there is one.
 pub fn with_options(error: &(dyn Error + 'static)) -> String {
     if let Some(GpuError::Bake(error)) = error.downcast_ref() {
         return of_bake(error);
@@ -22,7 +22,7 @@ fn of_bake(error: &BakeError) -> String {
     match error {
         BakeError::Source(error) => of_source(error),
         BakeError::FloatsOnly { layout, .. } => {
-            format!("the layout '{layout}' holds floats: say --bits half or --bits float")
+            format!("the layout '{layout}' stores floats: use --bits half or --bits float")
         }
         BakeError::NoBaseToFoldIn => {
             "--base baked needs a roughness to fold in: add --specular-power or --roughness".to_owned()
@@ -32,17 +32,17 @@ fn of_bake(error: &BakeError) -> String {
              --roughness"
         ),
         BakeError::SpecularPowersNeedFloats { .. } => {
-            "specular powers do not fit into 0 to 1: say --bits half, or store another roughness with --roughness-output"
+            "specular powers do not fit into 0 to 1: use --bits half, or store another roughness with --roughness-output"
                 .to_owned()
         }
         BakeError::NoScale { layout } => {
             format!("the layout '{layout}' stores normals, not slopes: leave --scale out")
         }
         BakeError::ScaleOfFloats { .. } => {
-            "float texels hold slopes as they are: leave --scale out".to_owned()
+            "float texels store slopes unscaled: leave --scale out".to_owned()
         }
         BakeError::BlocksNeedEightBits { .. } => {
-            "blocks are compressed from 8 bits: leave --bits out, or say --bits 8".to_owned()
+            "blocks are compressed from 8 bits: leave --bits out, or use --bits 8".to_owned()
         }
         BakeError::NotCompressible { reason: BlockCompression::WouldLoseVariance, .. } => {
             format!("{error}. Use --as variance or --as pbr with --compress bc")
@@ -51,11 +51,11 @@ fn of_bake(error: &BakeError) -> String {
             format!("{error}: use --as variance, --as pbr or --as toksvig")
         }
         BakeError::SlopeBeyondHalf { max_slope, largest } => format!(
-            "the square of a slope of {max_slope} does not fit into a half float: lower --max-slope to {largest} or say \
+            "the square of a slope of {max_slope} does not fit into a half float: lower --max-slope to {largest} or use \
              --bits float"
         ),
         BakeError::BaseBeyondScale { base_variance, scale } => format!(
-            "the base roughness alone has a variance of {base_variance}, which a scale of {scale} cannot hold: raise \
+            "the base roughness alone has a variance of {base_variance}, which a scale of {scale} cannot represent: raise \
              --scale"
         ),
         error => error.to_string(),
@@ -69,7 +69,7 @@ fn of_source(error: &SourceError) -> String {
     }
 }
 
-/// Why a filter that other programs have cannot be used, by its name.
+/// Why a filter of other programs cannot be used, by its name.
 pub fn filter_refusal(name: &str) -> Option<&'static str> {
     const NEGATIVE: [&str; 11] = [
         "lanczos",
@@ -86,7 +86,7 @@ pub fn filter_refusal(name: &str) -> Option<&'static str> {
     ];
     let known = name.parse::<PyramidFilter>().is_ok();
     (!known && NEGATIVE.contains(&name)).then_some(
-        "its kernel has lobes below zero, and with negative weights the covariance of slopes stops being one: use \
+        "its kernel has lobes below zero, and negative weights make the covariance of slopes invalid: use \
          box, triangle or gaussian",
     )
 }
@@ -121,9 +121,9 @@ mod tests {
             (SourceError::Channels { wanted: "normal map", needed: 3, got: 2 }.into(), "--normal-channels"),
         ] {
             let line = with_options(&error);
-            assert!(line.contains(option) && !line.contains('\n'), "'{line}' does not say '{option}'");
+            assert!(line.contains(option) && !line.contains('\n'), "'{line}' does not name '{option}'");
             let wrapped = anyhow::Error::from(GpuError::from(error));
-            assert_eq!(with_options(wrapped.as_ref()), line, "the GPU's bake says the same");
+            assert_eq!(with_options(wrapped.as_ref()), line, "the GPU's bake reports the same");
         }
     }
 

@@ -18,8 +18,8 @@ use roughcast_scene::{Plane, Reconstruction, Scene, Shape, SlopeMap, View, patte
 use super::instructions::{Instructions, count};
 use crate::progress;
 
-/// A method, and how its maps come about.
-struct Entrant {
+/// A method, and when its maps are made.
+struct TimedMethod {
     name: &'static str,
     shading: Shading,
     /// Texels of the maps along each side.
@@ -37,65 +37,65 @@ enum Maps {
 /// Texels along each side of a map that is made once.
 pub const SIDE: usize = 512;
 
-/// The first is what the others are compared with.
-const ENTRANTS: [Entrant; 5] = [
-    Entrant { name: "blinn-phong", shading: Shading::BlinnPhong, side: SIDE, maps: Maps::Once },
-    Entrant { name: "lean", shading: Shading::Lean, side: SIDE, maps: Maps::Once },
-    Entrant { name: "lean-generated-512", shading: Shading::Lean, side: 512, maps: Maps::EveryFrame },
-    Entrant { name: "lean-generated-2048", shading: Shading::Lean, side: 2048, maps: Maps::EveryFrame },
-    Entrant { name: "clean", shading: Shading::Clean, side: SIDE, maps: Maps::Once },
+/// All methods; the others are compared with the first.
+const METHODS: [TimedMethod; 5] = [
+    TimedMethod { name: "blinn-phong", shading: Shading::BlinnPhong, side: SIDE, maps: Maps::Once },
+    TimedMethod { name: "lean", shading: Shading::Lean, side: SIDE, maps: Maps::Once },
+    TimedMethod { name: "lean-generated-512", shading: Shading::Lean, side: 512, maps: Maps::EveryFrame },
+    TimedMethod { name: "lean-generated-2048", shading: Shading::Lean, side: 2048, maps: Maps::EveryFrame },
+    TimedMethod { name: "clean", shading: Shading::Clean, side: SIDE, maps: Maps::Once },
 ];
 
-/// What one method costs.
+/// The cost of one method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     pub name: &'static str,
     pub instructions: Instructions,
-    /// Milliseconds a frame: the median of drawing it and, where maps are made for every frame, that of making them.
+    /// Milliseconds per frame: the median of drawing it and, if maps are made for every frame, that of making them.
     pub milliseconds: f64,
-    /// The same in units of Blinn-Phong's.
+    /// The same relative to Blinn-Phong.
     pub ratio: f64,
-    /// What making the maps moves in every frame, in bytes; 0 where they are made once.
+    /// Bytes that making the maps moves in every frame; 0 if they are made once.
     pub generated_bytes: u64,
 }
 
 /// Frames before the measured ones, in which drivers compile, allocate and raise clocks.
 const WARM_UP: u32 = 3;
 
-/// Half floats, which every device can filter, store to and render to; no base, which is added as the model shades.
+/// Half floats, which every device can filter, store to and render to; no base, which the model adds when shading.
 pub fn bake_options(shading: Shading) -> BakeOptions {
     BakeOptions { layout: shading.layout(), bits: SampleType::F16, ..BakeOptions::default() }
 }
 
 /// Draws `frames` frames of each method in pictures of `size` pixels.
 ///
-/// The methods take turns within a frame, each frame beginning with another one: a drift of the clock, and what a method
-/// leaves in the caches for the next, meet all of them alike. Maps that are made for every frame are made before it is
+/// The methods take turns within a frame, and each frame begins with another one: a drift of the clock, and what a method
+/// leaves in the caches for the next, affect all of them equally. Maps that are made for every frame are made before it is
 /// drawn; how long that takes is measured before.
-pub async fn hold(gpu: &Gpu, size: (u32, u32), frames: u32) -> Result<Vec<Row>> {
+pub async fn measure(gpu: &Gpu, size: (u32, u32), frames: u32) -> Result<Vec<Row>> {
     let mut timestamps = Timestamps::new(gpu, 1).await?;
     let mut renderer = Renderer::new(gpu, RenderTarget::Colour(COLOUR_FORMAT)).await?;
-    let mut contestants = Vec::new();
-    for entrant in &ENTRANTS {
-        contestants.push(Contestant::new(&mut renderer, entrant, size).await?);
+    let mut prepared = Vec::new();
+    for timed_method in &METHODS {
+        prepared.push(PreparedMethod::new(&mut renderer, timed_method, size).await?);
     }
     let canvas = Canvas::new(gpu, size).await?;
     let bar = progress::timed_bar(u64::from(WARM_UP + frames));
     for frame in 0..WARM_UP + frames {
-        for turn in 0..contestants.len() {
-            let index = (frame as usize + turn) % contestants.len();
-            let nanoseconds = contestants[index].draw(gpu, &canvas, &mut timestamps).await?;
+        for turn in 0..prepared.len() {
+            let index = (frame as usize + turn) % prepared.len();
+            let nanoseconds = prepared[index].draw(gpu, &canvas, &mut timestamps).await?;
             if frame >= WARM_UP {
-                contestants[index].nanoseconds.extend(nanoseconds);
+                prepared[index].nanoseconds.extend(nanoseconds);
             }
         }
         bar.inc(1);
     }
     bar.finish_and_clear();
-    rows(&contestants)
+    rows(&prepared)
 }
 
-/// Submits one pass, waits for it, and tells how many nanoseconds it took, where the clock did.
+/// Submits one pass, waits for it, and returns how many nanoseconds it took, if the clock measured it.
 async fn timed(
     gpu: &Gpu,
     timestamps: &mut Timestamps,
@@ -109,21 +109,21 @@ async fn timed(
     Ok(timestamps.read(gpu).await?.first().and_then(|span| span.nanoseconds))
 }
 
-fn rows(contestants: &[Contestant]) -> Result<Vec<Row>> {
+fn rows(prepared: &[PreparedMethod]) -> Result<Vec<Row>> {
     let mut rows: Vec<Row> = Vec::new();
-    for contestant in contestants {
-        let draw = median(&contestant.nanoseconds)
-            .context("the GPU's clock is too coarse to measure this: say a larger --size")?;
-        let milliseconds = (contestant.bake_nanoseconds + draw) * 1e-6;
+    for method in prepared {
+        let draw = median(&method.nanoseconds)
+            .context("the GPU's clock is too coarse to measure this: use a larger --size")?;
+        let milliseconds = (method.bake_nanoseconds + draw) * 1e-6;
         let reference = rows.first().map_or(milliseconds, |first| first.milliseconds);
         rows.push(Row {
-            name: contestant.entrant.name,
-            instructions: contestant.instructions,
+            name: method.timed_method.name,
+            instructions: method.instructions,
             milliseconds,
             ratio: milliseconds / reference,
-            generated_bytes: match contestant.entrant.maps {
+            generated_bytes: match method.timed_method.maps {
                 Maps::Once => 0,
-                Maps::EveryFrame => contestant.baker.moved_bytes(),
+                Maps::EveryFrame => method.baker.moved_bytes(),
             },
         });
     }
@@ -131,49 +131,56 @@ fn rows(contestants: &[Contestant]) -> Result<Vec<Row>> {
 }
 
 /// A method with everything that it needs on the GPU.
-struct Contestant {
-    entrant: &'static Entrant,
+struct PreparedMethod {
+    timed_method: &'static TimedMethod,
     instructions: Instructions,
     baker: GpuBaker,
     drawing: Drawing,
-    /// Of making the maps for one frame.
+    /// Times of making the maps for one frame.
     bake_nanoseconds: f64,
-    /// Of drawing each measured frame.
+    /// Times of drawing each measured frame.
     nanoseconds: Vec<f64>,
 }
 
-impl Contestant {
-    async fn new(renderer: &mut Renderer, entrant: &'static Entrant, size: (u32, u32)) -> Result<Self> {
+impl PreparedMethod {
+    async fn new(
+        renderer: &mut Renderer,
+        timed_method: &'static TimedMethod,
+        size: (u32, u32),
+    ) -> Result<Self> {
         let gpu = renderer.gpu().clone();
-        let (map, source) = (normal_map(entrant.side)?, SourceOptions::default());
-        let options = bake_options(entrant.shading);
+        let (map, source) = (normal_map(timed_method.side)?, SourceOptions::default());
+        let options = bake_options(timed_method.shading);
         let baker = GpuBaker::for_image(&gpu, &map, &source, None, &options, BakePath::default()).await?;
         baker.run();
-        let textures = GpuTextures::of_baked(&gpu, entrant.shading, baker.textures(), &baker.info().await?)?;
-        let scene = scene(entrant.side, size);
+        let textures =
+            GpuTextures::of_baked(&gpu, timed_method.shading, baker.textures(), &baker.info().await?)?;
+        let scene = scene(timed_method.side, size);
         let geometry = Geometry::new(&gpu, &scene.shape, 1).await?;
         let mut drawing = renderer.prepare(&geometry, &textures, &DrawOptions::default()).await?;
         drawing.set_view(renderer, &scene, size).await?;
         let key = ShaderKey {
-            shading: entrant.shading,
+            shading: timed_method.shading,
             reader: textures.reader(),
             level: LevelOfDetail::Derivatives,
         };
         let instructions = count(&shader_source(key)?, "radiance")?;
-        // Measured in a row of its own: between render passes lavapipe's clock shows a compute pass as if it took no time.
-        let bake_nanoseconds = match entrant.maps {
+        // Measured separately: between render passes lavapipe's clock shows no time for a compute pass.
+        let bake_nanoseconds = match timed_method.maps {
             Maps::Once => 0.0,
             Maps::EveryFrame => {
-                bake_bandwidth(&gpu, entrant.side as u32, &options, BakePath::default()).await?.nanoseconds
+                bake_bandwidth(&gpu, timed_method.side as u32, &options, BakePath::default())
+                    .await?
+                    .nanoseconds
             }
         };
-        Ok(Self { entrant, instructions, baker, drawing, bake_nanoseconds, nanoseconds: Vec::new() })
+        Ok(Self { timed_method, instructions, baker, drawing, bake_nanoseconds, nanoseconds: Vec::new() })
     }
 
-    /// Makes what has to be made for a frame and draws it. Returns the nanoseconds of the drawing, or nothing where the
-    /// clock did not tell.
+    /// Makes the maps for a frame, if needed, and draws it. Returns the nanoseconds of the drawing, or `None` if the
+    /// clock did not measure it.
     async fn draw(&self, gpu: &Gpu, canvas: &Canvas, timestamps: &mut Timestamps) -> Result<Option<f64>> {
-        if self.entrant.maps == Maps::EveryFrame {
+        if self.timed_method.maps == Maps::EveryFrame {
             self.baker.run();
         }
         let views = Views::new(&canvas.colour, &canvas.depth);
@@ -184,7 +191,7 @@ impl Contestant {
     }
 }
 
-/// What is drawn on; nobody looks at it.
+/// The render target, which is not displayed.
 struct Canvas {
     colour: wgpu::TextureView,
     depth: wgpu::TextureView,
@@ -222,7 +229,7 @@ fn scene(side: usize, size: (u32, u32)) -> Scene {
 const RMS_SLOPE: f64 = 0.3;
 const SEED: u64 = 12;
 
-/// A normal map of 4 x 8 bits with random bumps, the same ones again and again where it is larger than [`SIDE`].
+/// A normal map of 4 x 8 bits with random bumps, repeated if it is larger than [`SIDE`].
 fn normal_map(side: usize) -> Result<Image> {
     let bumps = pattern::random_bumps(SIDE, RMS_SLOPE, SEED);
     let slopes = SlopeMap::of(&bumps.heights, &bumps.source_options())?;

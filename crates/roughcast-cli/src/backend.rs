@@ -1,4 +1,4 @@
-//! What renders the pictures of `render`: textures sampled on the processor, the truth, or the graphics card.
+//! The renderers of `render`: textures sampled on the processor, the ground truth, or the graphics card.
 
 use std::ops::ControlFlow;
 
@@ -12,16 +12,16 @@ use roughcast_gpu::{Gpu, GpuOptions, render};
 use roughcast_scene::render::{Method, Truth};
 use roughcast_scene::{BakedTextures, MAX_DETAIL, Picture, Sampler, Scene, SlopeDetail};
 
-/// One way to make a picture of a scene. All pictures of one painter have the same size.
-pub enum Painter {
-    Method(MethodPainter),
-    Truth(TruthPainter),
-    Gpu(Box<GpuPainter>),
+/// One way to render a scene. All pictures of one renderer have the same size.
+pub enum Backend {
+    Method(MethodBackend),
+    GroundTruth(GroundTruthBackend),
+    Gpu(Box<GpuBackend>),
 }
 
-impl Painter {
-    /// A picture of the scene, which has the shape that the painter was made for.
-    pub fn paint(&mut self, scene: &Scene, bar: &ProgressBar) -> Result<Picture> {
+impl Backend {
+    /// A picture of the scene, which has the shape that the renderer was made for.
+    pub fn render(&mut self, scene: &Scene, bar: &ProgressBar) -> Result<Picture> {
         bar.reset();
         let watch = |done: usize, rows: usize| {
             bar.set_length(rows as u64);
@@ -29,28 +29,28 @@ impl Painter {
             ControlFlow::Continue(())
         };
         match self {
-            Self::Method(painter) => {
-                let MethodPainter { shading, textures, sampler, options, size } = painter;
+            Self::Method(backend) => {
+                let MethodBackend { shading, textures, sampler, options, size } = backend;
                 let method =
                     Method { shading: *shading, detail: &textures.sampled(*sampler), options: *options };
                 Ok(method.render(scene, *size, &watch)?)
             }
-            Self::Truth(painter) => {
+            Self::GroundTruth(backend) => {
                 let truth = Truth {
-                    shading: painter.shading,
-                    detail: &painter.detail,
-                    options: painter.options,
-                    samples: painter.samples,
+                    shading: backend.shading,
+                    detail: &backend.detail,
+                    options: backend.options,
+                    samples: backend.samples,
                 };
-                Ok(truth.render(scene, painter.size, &watch)?)
+                Ok(truth.render(scene, backend.size, &watch)?)
             }
-            Self::Gpu(painter) => painter.paint(scene),
+            Self::Gpu(backend) => backend.render(scene),
         }
     }
 }
 
 /// One sample per pixel of filtered textures, on the processor.
-pub struct MethodPainter {
+pub struct MethodBackend {
     pub shading: Shading,
     pub textures: BakedTextures,
     pub sampler: Sampler,
@@ -58,8 +58,8 @@ pub struct MethodPainter {
     pub size: (u32, u32),
 }
 
-/// Many samples a pixel of the finest level.
-pub struct TruthPainter {
+/// Many samples per pixel of the finest level.
+pub struct GroundTruthBackend {
     pub detail: SlopeDetail,
     pub shading: Shading,
     pub options: LobeOptions,
@@ -68,14 +68,14 @@ pub struct TruthPainter {
 }
 
 /// The graphics card.
-pub struct GpuPainter {
+pub struct GpuBackend {
     renderer: Renderer,
     drawing: Drawing,
     size: (u32, u32),
 }
 
-impl GpuPainter {
-    /// Takes the textures and the scene's shape to the fastest card that there is.
+impl GpuBackend {
+    /// Uploads the textures and the scene's shape to the fastest card.
     pub fn new(
         shading: Shading,
         arrays: &[TextureArray],
@@ -93,7 +93,7 @@ impl GpuPainter {
         })
     }
 
-    fn paint(&mut self, scene: &Scene) -> Result<Picture> {
+    fn render(&mut self, scene: &Scene) -> Result<Picture> {
         Ok(block_on(render::render(&self.renderer, &mut self.drawing, scene, self.size))?)
     }
 }
