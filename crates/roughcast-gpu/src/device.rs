@@ -1,43 +1,43 @@
-//! A device, made here without a window or given by the caller, and what it can do.
+//! A device, created here without a window or given by the caller, and its capabilities.
 
 use crate::GpuError;
 use crate::error::one_line;
 
-/// Features that are asked for where the adapter has them. None is needed by everything.
+/// Features that are requested if the adapter has them. None is needed by everything.
 const WANTED_FEATURES: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
     .union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS)
     .union(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM)
     .union(wgpu::Features::FLOAT32_FILTERABLE)
     .union(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES);
 
-/// Which adapters may be taken.
+/// Which adapters may be used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AdapterChoice {
-    /// The fastest, whatever it is; a software driver where there is nothing else.
+    /// The fastest of any kind; a software driver if there is nothing else.
     #[default]
     Fastest,
     /// A software driver: the same on every machine.
     Software,
 }
 
-/// Which limits are asked for.
+/// Which limits are requested.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LimitChoice {
     /// All that the adapter has.
     #[default]
     Adapter,
-    /// Those that every implementation of WebGPU has, so that nothing works here that would not work there.
+    /// Those of every implementation of WebGPU, so that nothing works here that would not work there.
     WebGpu,
 }
 
-/// How a device is made.
+/// How to create a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GpuOptions {
-    /// The APIs among which to choose.
+    /// The APIs to choose from.
     pub backends: wgpu::Backends,
-    /// Which adapters may be taken.
+    /// Which adapters may be used.
     pub adapter: AdapterChoice,
-    /// Which limits are asked for.
+    /// Which limits are requested.
     pub limits: LimitChoice,
 }
 
@@ -52,7 +52,7 @@ impl Default for GpuOptions {
     }
 }
 
-/// A device with its queue, and what it can do.
+/// A device with its queue and its capabilities.
 #[derive(Clone, Debug)]
 pub struct Gpu {
     /// The device.
@@ -63,19 +63,19 @@ pub struct Gpu {
     pub info: wgpu::AdapterInfo,
     /// Features that may be used.
     pub features: wgpu::Features,
-    /// Limits that hold.
+    /// The limits.
     pub limits: wgpu::Limits,
-    /// Tells what formats can do beyond what WebGPU promises; unknown for a device of the caller.
+    /// Knows what formats support beyond WebGPU's guarantees; unknown for a device of the caller.
     adapter: Option<wgpu::Adapter>,
 }
 
 impl Gpu {
-    /// Makes a device without a window.
+    /// Creates a device without a window.
     ///
     /// # Errors
     /// [`GpuError::NoAdapter`] and [`GpuError::NoDevice`].
     pub async fn new(options: &GpuOptions) -> Result<Self, GpuError> {
-        // OpenGL only where there is nothing better: it lacks compute shaders on many devices.
+        // OpenGL only if there is nothing better: it lacks compute shaders on many devices.
         let (first, second) = (options.backends & wgpu::Backends::PRIMARY, options.backends);
         let adapter = match request_adapter(first, options.adapter).await {
             Ok(adapter) => adapter,
@@ -86,7 +86,7 @@ impl Gpu {
         Self::from_adapter(&adapter, options.limits).await
     }
 
-    /// Makes a device of an adapter that the caller has chosen, such as one that can present to a window.
+    /// Creates a device of an adapter that the caller has chosen, such as one that can present to a window.
     ///
     /// # Errors
     /// [`GpuError::NoDevice`].
@@ -106,13 +106,13 @@ impl Gpu {
         Ok(Self { adapter: Some(adapter.clone()), ..Self::from_device(device, queue) })
     }
 
-    /// Takes a device that the caller has: an engine's, a browser's, a window's.
+    /// Uses a device of the caller: an engine's, a browser's, a window's.
     pub fn from_device(device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let (info, features, limits) = (device.adapter_info(), device.features(), device.limits());
         Self { device, queue, info, features, limits, adapter: None }
     }
 
-    /// Whether the adapter is a program on the CPU: its timings say nothing about graphics hardware.
+    /// Whether the adapter is a program on the CPU: its timings are not those of graphics hardware.
     pub fn is_software(&self) -> bool {
         self.info.device_type == wgpu::DeviceType::Cpu
     }
@@ -122,7 +122,7 @@ impl Gpu {
         self.limits.max_compute_invocations_per_workgroup > 0
     }
 
-    /// Whether a pass's time can be taken.
+    /// Whether passes can be timed.
     pub fn has_timestamps(&self) -> bool {
         self.features.contains(wgpu::Features::TIMESTAMP_QUERY)
     }
@@ -137,13 +137,13 @@ impl Gpu {
         usages: wgpu::TextureUsages,
     ) -> Result<(), GpuError> {
         let instead = match format {
-            wgpu::TextureFormat::Rgba16Unorm => "use half floats (--bits half) or 8 bits (--bits 8) instead",
-            _ => "use half floats (--bits half) instead",
+            wgpu::TextureFormat::Rgba16Unorm => "use half floats or 8 bits instead",
+            _ => "use half floats instead",
         };
         if !self.features.contains(format.required_features()) {
             return Err(GpuError::Format { wanted: "use", format, instead });
         }
-        // With adapter-specific formats, what a device of the caller can do is only known by trying.
+        // With adapter-specific formats, only a trial shows what a device of the caller supports.
         let specific = wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES;
         let allowed = match (&self.adapter, self.features.contains(specific)) {
             (_, false) => format.guaranteed_format_features(self.features).allowed_usages,
@@ -162,7 +162,7 @@ impl Gpu {
         Ok(())
     }
 
-    /// Refuses a format between whose texels the device cannot interpolate.
+    /// Refuses a format that the device cannot filter.
     ///
     /// # Errors
     /// [`GpuError::Format`], which names what to use instead.
@@ -172,11 +172,11 @@ impl Gpu {
         if kind == Some(wgpu::TextureSampleType::Float { filterable: true }) {
             return Ok(());
         }
-        let instead = "use half floats (--bits half) instead";
+        let instead = "use half floats instead";
         Err(GpuError::Format { wanted: "filter", format, instead })
     }
 
-    /// Makes a texture, or says why there can be none.
+    /// Creates a texture, or returns why it cannot.
     ///
     /// # Errors
     /// [`GpuError::Empty`], [`GpuError::TextureTooLarge`], [`GpuError::OutOfMemory`], [`GpuError::Refused`].
@@ -196,7 +196,7 @@ impl Gpu {
         self.checked(what, |device| device.create_texture(descriptor)).await
     }
 
-    /// Makes a buffer, or says why there can be none.
+    /// Creates a buffer, or returns why it cannot.
     ///
     /// # Errors
     /// [`GpuError::BufferTooLarge`], [`GpuError::OutOfMemory`], [`GpuError::Refused`].
@@ -215,8 +215,8 @@ impl Gpu {
         self.checked(what, |device| device.create_buffer(descriptor)).await
     }
 
-    /// Makes something of which wgpu may say that it is wrong or too large; what it says becomes an error, where by
-    /// itself it would be a panic.
+    /// Creates something that wgpu may reject as invalid or too large; its message becomes an error instead of
+    /// a panic.
     ///
     /// # Errors
     /// [`GpuError::OutOfMemory`], [`GpuError::Refused`].

@@ -1,4 +1,4 @@
-//! What can go wrong on a GPU. One line each, with the mend.
+//! What can go wrong on a GPU. One line each, with the remedy.
 
 use roughcast::BakeError;
 use roughcast_scene::DetailError;
@@ -8,46 +8,46 @@ use roughcast_scene::render::RenderError;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuError {
-    /// There is no adapter of the wanted kind.
+    /// There is no adapter of the requested kind.
     #[error(
         "no GPU adapter was found ({reason}): install a graphics driver; a software one is in the Debian package \
          mesa-vulkan-drivers"
     )]
     NoAdapter {
-        /// What wgpu says.
+        /// wgpu's message.
         reason: String,
     },
     /// The adapter refuses to give a device.
     #[error(
-        "the adapter '{adapter}' gives no device ({reason}): update its driver, or choose another adapter"
+        "the adapter '{adapter}' cannot create a device ({reason}): update its driver, or choose another adapter"
     )]
     NoDevice {
         /// Name of the adapter.
         adapter: String,
-        /// What wgpu says.
+        /// wgpu's message.
         reason: String,
     },
     /// The device cannot use a texture format in the wanted way.
     #[error("this device cannot {wanted} {format:?} textures: {instead}")]
     Format {
-        /// What was to be done with it.
+        /// The operation.
         wanted: &'static str,
         /// The format.
         format: wgpu::TextureFormat,
-        /// The mend.
+        /// The remedy.
         instead: &'static str,
     },
-    /// A feature is not there.
+    /// A feature is missing.
     #[error("this device has no {feature}: {instead}")]
     Feature {
         /// The feature.
         feature: &'static str,
-        /// The mend.
+        /// The remedy.
         instead: &'static str,
     },
     /// A texture is larger than the device allows.
     #[error(
-        "a texture of {width}x{height} texels is too large for this device, which stops at {limit} a side: \
+        "a texture of {width}x{height} texels is too large for this device, whose limit is {limit} per side: \
          use a smaller map, or work on the CPU"
     )]
     TextureTooLarge {
@@ -68,7 +68,7 @@ pub enum GpuError {
     },
     /// A buffer is larger than the device allows.
     #[error(
-        "{what} needs a buffer of {bytes} bytes, and this device stops at {limit}: use a smaller map, or work on the CPU"
+        "{what} needs a buffer of {bytes} bytes, but this device allows {limit}: use a smaller map, or work on the CPU"
     )]
     BufferTooLarge {
         /// What the buffer is for.
@@ -79,43 +79,43 @@ pub enum GpuError {
         limit: u64,
     },
     /// The device's memory is full.
-    #[error("the GPU's memory does not hold {what}: use smaller maps or a smaller picture")]
+    #[error("the GPU's memory is too small for {what}: use smaller maps or a smaller picture")]
     OutOfMemory {
-        /// What was to be made.
+        /// What was being created.
         what: &'static str,
     },
-    /// wgpu refuses what was asked of it.
+    /// wgpu refuses the request.
     #[error("the GPU refuses {what} ({reason}): update its driver, or work on the CPU")]
     Refused {
-        /// What was to be made.
+        /// What was being created.
         what: &'static str,
-        /// What wgpu says.
+        /// wgpu's message.
         reason: String,
     },
     /// Results could not be read back.
-    #[error("the GPU's results could not be read back ({reason}): make a new device, or work on the CPU")]
+    #[error("the GPU's results could not be read back ({reason}): create a new device, or work on the CPU")]
     ReadBack {
-        /// What wgpu says.
+        /// wgpu's message.
         reason: String,
     },
-    /// The map cannot be read as slopes, or options do not go together.
+    /// The map cannot be read as slopes, or options contradict each other.
     #[error(transparent)]
     Bake(#[from] BakeError),
     /// The scene cannot be rendered.
     #[error(transparent)]
     Scene(#[from] RenderError),
-    /// Textures are no source of bumps: they are not complete, or not those of the model.
+    /// Textures are not a source of bumps: they are incomplete, or not those of the model.
     #[error(transparent)]
     Detail(#[from] DetailError),
-    /// A texture or an image is not of the kind that is needed.
+    /// A texture or an image is not of the required kind.
     #[error("{0}")]
     Shape(String),
-    /// What the CPU can do and the GPU cannot.
+    /// Something that only the CPU supports.
     #[error("{0}")]
     OnlyOnCpu(String),
 }
 
-/// The words of a longer message on one line.
+/// A longer message on one line.
 pub(crate) fn one_line(message: &dyn std::fmt::Display) -> String {
     message.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -1,7 +1,7 @@
 //! roughcast on the GPU.
 //!
 //! Everything that has to wait is `async` and nothing blocks, so that the crate can be compiled for the web. Natively any
-//! executor will do; `pollster::block_on` is the smallest. There a thread polls the device while a future waits for it.
+//! executor works; `pollster::block_on` is the smallest. Natively, a thread polls the device while a future waits for it.
 
 #![forbid(unsafe_code)]
 

@@ -1,14 +1,14 @@
-//! From the GPU's memory back: futures that do not block, so that the same code serves a page in a browser.
+//! Reads back the GPU's memory with futures that do not block, so that the same code works in a browser.
 
 use crate::error::one_line;
 use crate::wait::{Answer, called_back};
 use crate::{Gpu, GpuError};
 
-/// A copy in memory that the CPU can see, made by an encoder. Read it once the encoder's commands are submitted.
+/// A copy in memory that the CPU can read, made by an encoder. Read it once the encoder's commands are submitted.
 #[derive(Debug)]
 pub struct Staged {
     buffer: wgpu::Buffer,
-    /// Bytes of a row that matter, and bytes from one row to the next.
+    /// Used bytes of a row, and bytes from one row to the next.
     row: u64,
     stride: u64,
 }
@@ -121,7 +121,7 @@ async fn staging_buffer(gpu: &Gpu, size: u64) -> Result<wgpu::Buffer, GpuError> 
     gpu.create_buffer("a copy to be read back", &descriptor).await
 }
 
-/// Waits until all that was submitted so far is done.
+/// Waits until all submitted work is done.
 ///
 /// # Errors
 /// [`GpuError::ReadBack`] if the device was lost.
@@ -132,7 +132,7 @@ pub async fn submitted_work_done(gpu: &Gpu) -> Result<(), GpuError> {
 
 async fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<(), GpuError> {
     let ask = |answer: Answer<_>| {
-        // Without the scope wgpu would panic on a device that is gone. The callback gets the error as well.
+        // Without the scope wgpu would panic on a lost device. The callback gets the error too.
         let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
         buffer.map_async(wgpu::MapMode::Read, .., move |result| answer.send(result));
         drop(scope.pop());

@@ -31,11 +31,11 @@ pub struct Timestamps {
 pub struct Measured {
     /// Its name.
     pub name: String,
-    /// How long it took. None where the clock did not tell: it was reset, or too coarse to tell the end from the begin.
+    /// How long it took. None if the clock could not measure it: it was reset, or is too coarse to separate begin and end.
     pub nanoseconds: Option<f64>,
 }
 
-/// Where one span's begin and end are written.
+/// The queries of one span's begin and end.
 #[derive(Clone, Debug)]
 pub struct Span {
     queries: wgpu::QuerySet,
@@ -73,7 +73,7 @@ impl Timestamps {
         Ok(Self { queries, results, capacity, names: Vec::new(), nanoseconds_a_tick })
     }
 
-    /// A new span, or nothing where all are in use.
+    /// A new span, or `None` if all are in use.
     pub fn span(&mut self, name: &str) -> Option<Span> {
         let index = self.names.len() as u32;
         if index == self.capacity {
@@ -91,7 +91,7 @@ impl Timestamps {
         }
     }
 
-    /// Waits for the submitted commands and returns the spans, of which none is left in use.
+    /// Waits for the submitted commands and returns the spans; all are free again.
     ///
     /// # Errors
     /// [`GpuError::ReadBack`] if the device was lost.
@@ -128,7 +128,7 @@ impl Span {
         }
     }
 
-    /// From the begin of this render pass on; another pass has to end it.
+    /// From the begin of this render pass; another pass must end it.
     pub fn from_render_pass(&self) -> wgpu::RenderPassTimestampWrites<'_> {
         wgpu::RenderPassTimestampWrites { end_of_pass_write_index: None, ..self.of_render_pass() }
     }

@@ -1,4 +1,4 @@
-//! Waiting for what wgpu tells by a callback: nobody spins, the caller's thread does not block, and an error ends the wait.
+//! Waits for wgpu's callbacks: nothing spins, the caller's thread does not block, and an error ends the wait.
 //!
 //! In a browser callbacks come by themselves. Natively they come only from [`wgpu::Device::poll`], so a thread that lives as
 //! long as the wait blocks in it. All other threads sleep.
@@ -13,12 +13,12 @@ use std::time::Duration;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::error::one_line;
 
-/// What calls back.
+/// Something that calls back.
 pub(crate) trait Device: Clone + Unpin + wgpu::WasmNotSend + 'static {
     /// Blocks until the work submitted so far is done, and calls back.
     ///
     /// # Errors
-    /// The reason why this cannot be.
+    /// The reason why it cannot.
     #[cfg(not(target_arch = "wasm32"))]
     fn finish_work(&self) -> Result<(), String>;
 }
@@ -30,7 +30,7 @@ impl Device for wgpu::Device {
     }
 }
 
-/// Waits for a callback. `ask` asks for it and moves the [`Answer`] into it.
+/// Waits for a callback. `ask` requests it and moves the [`Answer`] into it.
 ///
 /// # Errors
 /// The reason why the callback will not come.
@@ -43,7 +43,7 @@ pub(crate) async fn called_back<T: Send + 'static>(
     Wait { device: Some(device.clone()), signal }.await
 }
 
-/// A callback's end of the wait. Dropped without an answer, it ends the wait with an error.
+/// A callback's end of the wait. If dropped without an answer, it ends the wait with an error.
 pub(crate) struct Answer<T>(Signal<T>);
 
 impl<T> Answer<T> {
@@ -58,7 +58,7 @@ impl<T> Drop for Answer<T> {
     }
 }
 
-/// What the callback, the thread that polls and the future share.
+/// State shared by the callback, the polling thread and the future.
 struct Signal<T>(Arc<Shared<T>>);
 
 struct Shared<T> {
@@ -106,7 +106,7 @@ impl<T> Signal<T> {
         !result.unwrap_or_else(PoisonError::into_inner).1.timed_out()
     }
 
-    /// No code that holds the lock can panic, so what a poisoned one guards is sound.
+    /// No code that holds the lock can panic, so the state behind a poisoned lock is valid.
     fn state(&self) -> MutexGuard<'_, State<T>> {
         self.0.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -145,12 +145,12 @@ fn watch<T>(_: impl Device, _: Signal<T>) -> Result<(), String> {
     Ok(())
 }
 
-/// Has a thread poll the device until the answer is there.
+/// Starts a thread that polls the device until the answer arrives.
 #[cfg(not(target_arch = "wasm32"))]
 fn watch<T: Send + 'static>(device: impl Device, signal: Signal<T>) -> Result<(), String> {
     let thread = std::thread::Builder::new().name("roughcast-gpu wait".to_owned());
     let spawned = thread.spawn(move || {
-        // wgpu panics where the device was lost; then this is dropped, too, and ends the wait.
+        // wgpu panics if the device was lost; then this is dropped too, and ends the wait.
         let end = Answer(signal.clone());
         if let Err(reason) = finish(&device, &signal, Patience::default()) {
             end.0.send(Err(reason));

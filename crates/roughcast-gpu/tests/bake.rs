@@ -105,7 +105,7 @@ fn height_source() -> SourceOptions {
 const PATHS: [BakePath; 2] = [BakePath::Compute, BakePath::Raster];
 
 #[test]
-fn every_size_of_normals_is_the_cpus_bake() {
+fn every_size_of_normals_matches_the_cpu() {
     let gpu = gpu();
     for (width, height) in SIZES {
         let image = normals(width, height, 3, SampleType::U8);
@@ -116,7 +116,7 @@ fn every_size_of_normals_is_the_cpus_bake() {
 }
 
 #[test]
-fn every_size_of_heights_is_the_cpus_bake() {
+fn every_size_of_heights_matches_the_cpu() {
     let gpu = gpu();
     for (width, height) in SIZES {
         let image = heights(width, height, SampleType::U16);
@@ -129,7 +129,7 @@ fn every_size_of_heights_is_the_cpus_bake() {
 // The sizes from here on are even twice and then odd: every way to average is met, and shaders stay small.
 
 #[test]
-fn every_format_layout_and_path_is_the_cpus_bake() {
+fn every_format_layout_and_path_matches_the_cpu() {
     let gpu = gpu();
     let image = normals(92, 44, 3, SampleType::U16);
     for bits in FORMATS {
@@ -142,7 +142,7 @@ fn every_format_layout_and_path_is_the_cpus_bake() {
 }
 
 #[test]
-fn every_type_of_height_is_the_cpus_bake() {
+fn every_type_of_height_matches_the_cpu() {
     let gpu = gpu();
     for sample_type in [SampleType::U8, SampleType::U16, SampleType::F16, SampleType::F32] {
         let image = heights(44, 36, sample_type);
@@ -151,7 +151,7 @@ fn every_type_of_height_is_the_cpus_bake() {
 }
 
 #[test]
-fn every_gradient_wrap_and_sense_is_the_cpus_bake() {
+fn every_gradient_wrap_and_sense_matches_the_cpu() {
     let gpu = gpu();
     let image = heights(44, 36, SampleType::U16);
     for gradient in Gradient::ALL {
@@ -165,7 +165,7 @@ fn every_gradient_wrap_and_sense_is_the_cpus_bake() {
 }
 
 #[test]
-fn every_way_to_store_normals_is_the_cpus_bake() {
+fn every_way_to_store_normals_matches_the_cpu() {
     let gpu = gpu();
     for order in NormalChannels::ALL {
         for green in Green::ALL {
@@ -194,7 +194,7 @@ fn every_way_to_store_normals_is_the_cpus_bake() {
 }
 
 #[test]
-fn bad_texels_are_mended_and_counted_as_on_the_cpu() {
+fn bad_texels_are_repaired_and_counted_as_on_the_cpu() {
     let gpu = gpu();
     let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, -1.0, 1e-30, 1e30];
     let values: Vec<f32> = (0..16 * 16 * 3).map(|i| if i % 5 == 0 { bad[i / 5 % 7] } else { 0.7 }).collect();
@@ -210,7 +210,7 @@ fn bad_texels_are_mended_and_counted_as_on_the_cpu() {
             Case { path, ..Case::new(&image, source, Layout::Lean, SampleType::F16) }.check(&gpu);
         }
     }
-    // Two channels that say nothing at all.
+    // Two channels without any slopes.
     let image = Image::new(8, 8, 2, Samples::U8(vec![0; 128])).expect("as many");
     let source = SourceOptions { normal_channels: NormalChannels::Xy, ..normal_source() };
     Case::new(&image, source, Layout::Lean, SampleType::F16).check(&gpu);
@@ -227,7 +227,7 @@ fn few_steep(width: usize, height: usize, every: usize) -> Image {
 }
 
 #[test]
-fn the_automatic_limit_of_slopes_is_the_cpus() {
+fn the_automatic_limit_of_slopes_matches_the_cpu() {
     let gpu = gpu();
     let source = SourceOptions { range: NormalRange::Signed, ..normal_source() };
     let mut limited = 0;
@@ -271,7 +271,7 @@ fn holes_in_heights_are_flat_and_counted_as_on_the_cpu() {
 }
 
 #[test]
-fn base_roughness_and_fixed_scales_are_the_cpus_bake() {
+fn base_roughness_and_fixed_scales_match_the_cpu() {
     let gpu = gpu();
     let image = normals(44, 36, 3, SampleType::U8);
     let roughness = Some(BaseRoughness::Variance(1.0 / 64.0));
@@ -294,7 +294,7 @@ fn base_roughness_and_fixed_scales_are_the_cpus_bake() {
 }
 
 #[test]
-fn real_maps_are_the_cpus_bake() {
+fn real_maps_match_the_cpu() {
     let gpu = gpu();
     for (path, kind) in roughcast_testdata::rows_with_files(REAL_MAPS, |row| row.0) {
         let image = real(path, 300, 252);
@@ -320,7 +320,7 @@ fn the_webs_limits_take_more_dispatches_to_the_same_result() {
 }
 
 #[test]
-fn moving_bumps_reuse_textures_and_differ_as_their_inputs_do() {
+fn moving_bumps_reuse_textures_and_follow_their_inputs() {
     let gpu = gpu();
     let frames = [normals(64, 32, 3, SampleType::U8), normals(64, 32, 3, SampleType::U8).flipped()];
     let options = BakeOptions { bits: SampleType::U16, ..Default::default() };
@@ -350,7 +350,7 @@ fn moving_bumps_reuse_textures_and_differ_as_their_inputs_do() {
 }
 
 #[test]
-fn textures_that_are_on_the_gpu_already_are_the_cpus_bake() {
+fn textures_already_on_the_gpu_match_the_cpu() {
     let gpu = gpu();
     let options = BakeOptions { bits: SampleType::F16, ..Default::default() };
     let cases = [
@@ -390,7 +390,7 @@ fn textures_that_are_on_the_gpu_already_are_the_cpus_bake() {
 }
 
 #[test]
-fn a_device_without_16_bit_unorm_says_so() {
+fn a_device_without_16_bit_unorm_is_refused_by_name() {
     let gpu = gpu_without_features();
     let image = normals(8, 8, 3, SampleType::U16);
     let make = |bits| {
@@ -398,7 +398,7 @@ fn a_device_without_16_bit_unorm_says_so() {
         block_on(GpuBaker::for_image(&gpu, &image, &normal_source(), None, &options, BakePath::Fastest))
     };
     let line = make(SampleType::U16).err().expect("a feature").to_string();
-    assert!(line.contains("Rgba16Unorm") && line.contains("--bits half"), "{line}");
+    assert!(line.contains("Rgba16Unorm") && line.contains("use half floats"), "{line}");
     make(SampleType::F16).expect("half floats need no feature, nor does a map of 16 bits");
 }
 
@@ -417,7 +417,7 @@ impl Flipped for Image {
 }
 
 #[test]
-fn what_the_gpu_cannot_do_is_refused_with_the_reason() {
+fn unsupported_requests_are_refused_with_a_reason() {
     let gpu = gpu();
     let image = normals(8, 8, 3, SampleType::U8);
     let refused = |options: BakeOptions, word: &str| {

@@ -27,7 +27,7 @@ fn moved(array: &TextureArray, steps: u16) -> TextureArray {
 }
 
 #[test]
-fn a_texel_that_is_off_is_found_and_measured() {
+fn a_wrong_texel_is_detected_and_measured() {
     for bits in [SampleType::U8, SampleType::U16, SampleType::F16] {
         let array = baked(bits);
         assert_eq!(difference(&array, &array).expect("one shape").steps, 0);
@@ -40,7 +40,7 @@ fn a_texel_that_is_off_is_found_and_measured() {
 }
 
 #[test]
-fn halves_are_counted_across_zero_and_nan_is_no_neighbour() {
+fn half_steps_are_counted_across_zero_and_nan_is_far_from_everything() {
     let with = |value: f16| {
         let mut array = baked(SampleType::F16);
         let Samples::F16(v) = array.layers[0].levels[0].samples_mut() else { unreachable!("asked for") };
@@ -55,7 +55,7 @@ fn halves_are_counted_across_zero_and_nan_is_no_neighbour() {
 }
 
 #[test]
-fn other_shapes_are_no_match() {
+fn other_shapes_do_not_match() {
     let array = baked(SampleType::F16);
     let mut short = array.clone();
     short.layers.pop();

@@ -1,4 +1,4 @@
-//! Devices, and the way back from them.
+//! Devices, and reading back from them.
 
 mod common;
 
@@ -30,7 +30,7 @@ fn without_an_adapter_the_error_names_the_package() {
 }
 
 #[test]
-fn a_device_of_the_caller_is_taken_as_it_is() {
+fn a_device_of_the_caller_is_used_unchanged() {
     let Gpu { device, queue, info, features, limits, .. } = gpu();
     let taken = Gpu::from_device(device, queue);
     assert_eq!((taken.info, taken.features, taken.limits), (info, features, limits));
@@ -38,7 +38,7 @@ fn a_device_of_the_caller_is_taken_as_it_is() {
 }
 
 #[test]
-fn what_is_too_large_or_empty_is_an_error_and_no_panic() {
+fn too_large_or_empty_resources_are_errors() {
     let gpu = gpu();
     let limit = gpu.limits.max_texture_dimension_2d;
     let make = |width, height| {
@@ -60,7 +60,7 @@ fn what_is_too_large_or_empty_is_an_error_and_no_panic() {
 }
 
 #[test]
-fn what_wgpu_refuses_is_an_error_of_one_line() {
+fn refusals_of_wgpu_are_errors_of_one_line() {
     let gpu = gpu();
     let descriptor =
         wgpu::TextureDescriptor { mip_level_count: 99, ..texture_of(4, 4, wgpu::TextureFormat::Rgba8Unorm) };
@@ -74,7 +74,7 @@ fn what_wgpu_refuses_is_an_error_of_one_line() {
 }
 
 #[test]
-fn a_format_that_is_not_there_is_named_with_its_stand_in() {
+fn a_missing_format_is_named_with_its_substitute() {
     let gpu = gpu_without_features();
     let error = gpu
         .require_format(wgpu::TextureFormat::Rgba16Unorm, wgpu::TextureUsages::TEXTURE_BINDING)
@@ -100,7 +100,7 @@ fn rows_come_back_without_padding() {
 }
 
 #[test]
-fn depth_is_refused_and_not_read_as_something_else() {
+fn depth_textures_are_refused() {
     let gpu = gpu();
     let descriptor = wgpu::TextureDescriptor {
         usage: wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::RENDER_ATTACHMENT,

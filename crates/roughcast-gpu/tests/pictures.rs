@@ -82,7 +82,7 @@ fn compare(scene: &Scene, cpu: &Picture, gpu: &Picture, edge: f64) -> Apart {
 }
 
 #[test]
-fn unfiltered_pictures_of_every_model_and_shape_are_the_same() {
+fn unfiltered_pictures_of_every_model_and_shape_match() {
     let gpu = gpu();
     let models = models();
     for (place, (name, scene)) in scenes(View::Near).iter().enumerate() {
@@ -246,7 +246,7 @@ fn the_comparisons_of_filters_fail_when_they_should() {
 }
 
 #[test]
-fn round_shapes_are_approached_as_their_triangles_shrink() {
+fn round_shapes_converge_as_their_triangles_shrink() {
     let gpu = gpu();
     let scene = scene(Shape::Torus(Torus::default()), View::Near);
     let draw = options(unfiltered(), lobe(Form::Normalised, BaseLobe::Plane));

@@ -1,4 +1,4 @@
-//! What waiting for a real device costs, and what a lost one gives.
+//! The cost of waiting for a real device, and errors of a lost one.
 
 mod common;
 
@@ -109,7 +109,7 @@ fn several_waits_for_one_device_all_end() {
 }
 
 #[test]
-fn a_destroyed_device_is_an_error_and_no_endless_wait() {
+fn a_destroyed_device_is_an_error() {
     let gpu = gpu();
     let buffer = slow_work(&gpu);
     gpu.device.destroy();

@@ -1,4 +1,4 @@
-//! What the renderer takes, draws into and refuses.
+//! What the renderer accepts, draws into and refuses.
 
 mod common;
 
@@ -33,7 +33,7 @@ fn picture(gpu: &Gpu, scene: &Scene, size: (u32, u32)) -> Result<Picture, GpuErr
 }
 
 #[test]
-fn every_shader_is_made_for_the_limits_of_the_web() {
+fn every_shader_compiles_within_the_limits_of_the_web() {
     let gpu = gpu_of_the_web();
     for target in [RenderTarget::Parts, RenderTarget::Colour(wgpu::TextureFormat::Bgra8UnormSrgb)] {
         let mut renderer = block_on(Renderer::new(&gpu, target)).expect("a renderer");
@@ -64,7 +64,7 @@ fn shaders_sample_as_many_textures_as_the_model_has_inputs() {
 }
 
 #[test]
-fn a_colour_target_shows_the_radiance_that_the_picture_has() {
+fn a_colour_target_has_the_radiance_of_the_picture() {
     /// Half a step of a half float below two, and of the single float that it was rounded from.
     const HALF_FLOAT: f32 = 1e-3;
     let (gpu, scene) = (gpu(), plane());
@@ -116,7 +116,7 @@ fn a_colour_target_shows_the_radiance_that_the_picture_has() {
 }
 
 #[test]
-fn nothing_is_seen_where_there_is_no_surface() {
+fn the_background_shows_where_there_is_no_surface() {
     let mut scene = plane();
     // A camera that looks away.
     scene.camera.target = scene.camera.eye * 2.0;
@@ -147,7 +147,7 @@ fn a_drawing_follows_the_scene() {
 }
 
 #[test]
-fn what_cannot_be_rendered_is_an_error_of_one_line() {
+fn invalid_renders_are_errors_of_one_line() {
     let (gpu, scene) = (gpu(), plane());
     let line = |result: Result<Picture, GpuError>| {
         let line = result.expect_err("it cannot be rendered").to_string();
@@ -187,7 +187,7 @@ fn plain_device() -> Gpu {
 }
 
 #[test]
-fn textures_baked_on_the_gpu_are_drawn_where_they_are() {
+fn textures_baked_on_the_gpu_are_drawn_without_a_copy() {
     let (gpu, scene) = (gpu(), plane());
     let bumps = pattern::random_bumps(SIDE, 0.3, 5);
     for (shading, bits) in [

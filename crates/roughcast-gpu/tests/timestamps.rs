@@ -1,4 +1,4 @@
-//! Times by the GPU's clock, and what is measured by them.
+//! Times by the GPU's clock, and measurements with them.
 
 mod common;
 
@@ -35,14 +35,14 @@ fn each_span_has_its_name_and_a_time() {
 }
 
 #[test]
-fn without_the_feature_there_is_an_error_and_no_zero() {
+fn without_the_feature_there_is_an_error() {
     let error =
         block_on(Timestamps::new(&gpu_without_features(), 1)).expect_err("the feature was not asked for");
     assert!(matches!(error, GpuError::Feature { feature: "timestamp queries", .. }), "{error:?}");
 }
 
 #[test]
-fn bandwidths_are_those_of_the_bytes_that_have_to_move() {
+fn bandwidths_count_the_necessary_bytes() {
     let gpu = gpu();
     let options = BakeOptions { bits: SampleType::F16, ..Default::default() };
     let baked = block_on(bake_bandwidth(&gpu, 4, &options, BakePath::Compute)).expect("measured");

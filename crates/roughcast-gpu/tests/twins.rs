@@ -18,9 +18,9 @@ const INPUTS: usize = 1 << 14;
 /// A quotient or a root of the GPU after one exact correction: the nearest float, save where two are about equally near.
 const NEAREST_OR_NEXT: u32 = 1;
 
-/// A mended slope: the quotient by the larger component, two squares, a root, a quotient and a product, in f32 where the
+/// A repaired slope: the quotient by the larger component, two squares, a root, a quotient and a product, in f32 where the
 /// CPU has f64.
-const MENDED: f32 = 6.0 * f32::EPSILON;
+const REPAIRED: f32 = 6.0 * f32::EPSILON;
 
 /// The inverse of a product of two, read back through another inverse.
 const STORES: f32 = 4.0 * f32::EPSILON;
@@ -118,7 +118,7 @@ fn quotients_and_roots_are_rounded_as_on_the_cpu() {
 }
 
 #[test]
-fn codes_divided_by_their_number_are_the_cpus() {
+fn codes_divided_by_their_number_match_the_cpu() {
     let inputs: Vec<[f32; 4]> =
         (0..1 << 16).map(|code| [code as f32, (code % 256) as f32, 0.0, 0.0]).collect();
     let body = "output = vec4f(component_from_code(input.x, 65535.0), component_from_code(input.y, 255.0),\
@@ -136,22 +136,21 @@ fn codes_divided_by_their_number_are_the_cpus() {
 }
 
 #[test]
-fn slopes_are_mended_as_on_the_cpu() {
+fn slopes_are_repaired_as_on_the_cpu() {
     const MAX_SLOPE: f32 = 3.0;
     let mut inputs = inputs(2, -8, 8);
     let special = [0.0, -1.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, 1e-30];
     for (i, input) in inputs.iter_mut().enumerate().take(special.len().pow(3)) {
         *input = [special[i % 7], special[i / 7 % 7], special[i / 49], 0.0];
     }
-    let body =
-        "let mended = repaired_slope(input.xyz, 3.0);\noutput = vec4f(mended.slope, f32(mended.fault), 0.0);";
+    let body = "let repaired = repaired_slope(input.xyz, 3.0);\noutput = vec4f(repaired.slope, f32(repaired.fault), 0.0);";
     for (input, output) in inputs.iter().zip(run(&gpu(), body, &inputs)) {
         let mut counts = SourceCounts::default();
         let wanted = roughcast::repaired_slope(input[0], input[1], input[2], MAX_SLOPE, &mut counts)
             .unwrap_or_default();
         let length = wanted.x.hypot(wanted.y);
         // A slope as long as the largest may fall on either side of it.
-        let on_the_edge = (length - MAX_SLOPE).abs() <= MENDED * MAX_SLOPE;
+        let on_the_edge = (length - MAX_SLOPE).abs() <= REPAIRED * MAX_SLOPE;
         let fault = match (counts.clamped, counts.behind, counts.invalid, counts.non_finite) {
             (1, ..) => 1.0,
             (_, 1, ..) => 2.0,
@@ -161,13 +160,13 @@ fn slopes_are_mended_as_on_the_cpu() {
         };
         assert!(output[2] == fault || (on_the_edge && fault < 2.0), "{input:?}: {output:?}, not {fault}");
         for (got, wanted) in output.iter().zip([wanted.x, wanted.y]) {
-            assert!((got - wanted).abs() <= MENDED * wanted.abs(), "{input:?}: {output:?}, not {wanted:?}");
+            assert!((got - wanted).abs() <= REPAIRED * wanted.abs(), "{input:?}: {output:?}, not {wanted:?}");
         }
     }
 }
 
 #[test]
-fn unit_normals_are_the_cpus() {
+fn unit_normals_match_the_cpu() {
     let inputs = inputs(3, -8, 6);
     for (input, output) in
         inputs.iter().zip(run(&gpu(), "output = vec4f(normal_from_slope(input.xy), 0.0);", &inputs))
@@ -224,7 +223,7 @@ fn weights_are_coverage() {
 }
 
 #[test]
-fn scales_are_the_cpus() {
+fn scales_match_the_cpu() {
     let inputs = inputs(5, -14, 8);
     let body = "let scale = smallest_scale(abs(input.x), abs(input.y));\nlet stores = unsigned_stores(scale);\n\
                 output = vec4f(scale, stores.slope.x, stores.second.x, stores.trace.x);";
@@ -238,7 +237,7 @@ fn scales_are_the_cpus() {
 }
 
 #[test]
-fn bins_hold_the_slopes_that_are_counted_in_them() {
+fn bins_contain_the_slopes_counted_in_them() {
     /// The square's leading five bits: 3.1 % at most, half of it in the length.
     const BIN: f32 = 1.0158;
     let inputs: Vec<[f32; 4]> = inputs(6, -9, 6).into_iter().map(|input| input.map(f32::abs)).collect();
@@ -253,7 +252,7 @@ fn bins_hold_the_slopes_that_are_counted_in_them() {
 }
 
 #[test]
-fn the_automatic_limit_is_the_cpus_rule() {
+fn the_automatic_limit_matches_the_cpu() {
     let inputs: Vec<[f32; 4]> = inputs(7, -6, 7).into_iter().map(|input| input.map(f32::abs)).collect();
     let body = "output = vec4f(automatic_limit(input.x, input.y, input.z, 128.0));";
     let mut limited = 0;
@@ -276,7 +275,7 @@ fn the_automatic_limit_is_the_cpus_rule() {
 }
 
 #[test]
-fn a_wrong_twin_is_caught() {
+fn a_wrong_twin_is_detected() {
     let inputs: Vec<[f32; 4]> = (0..64).map(|i| [i as f32, 1.0, 2.0, 3.0]).collect();
     let wrong = run(&gpu(), "output = vec4f(quotient(input.x + 1.0, 3.0));", &inputs);
     assert!(
@@ -299,7 +298,7 @@ fn item(begin: &str) -> &'static str {
 }
 
 #[test]
-fn lights_are_finite_at_every_distance_and_those_of_the_cpu() {
+fn lights_are_finite_at_every_distance_and_match_the_cpu() {
     let source = include_str!("../src/render/scene.wgsl");
     let least = source.lines().find(|line| line.starts_with("const LEAST_SQUARED_DISTANCE"));
     let functions = ["struct SceneLight {", "fn unit_or(", "struct LightAt {", "fn light_at("].map(item);

@@ -18,16 +18,16 @@ pub struct Camera {
     pub vertical_fov: f64,
 }
 
-/// Why a camera shows nothing.
+/// Why a camera is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum CameraError {
     /// NaN or infinity.
     #[error("the camera has a coordinate that is not finite: give numbers")]
     NotFinite,
-    /// The eye is where it looks.
+    /// The eye is at its target.
     #[error("the camera's eye is at its target {0}: move one of them")]
     NoView(DVec3),
-    /// The view goes up or down along the up direction, or there is no up direction.
+    /// The view is parallel to the up direction, or there is no up direction.
     #[error("the camera's up direction {up} is zero or parallel to its view {view}: choose another")]
     ParallelUp {
         /// The up direction as given.
@@ -35,7 +35,7 @@ pub enum CameraError {
         /// From the eye to the target.
         view: DVec3,
     },
-    /// The angle of view is not one that a plane can show.
+    /// The angle of view is outside of 0 .. pi.
     #[error("the camera's vertical angle of view is {0} radians: choose one between 0 and pi, both excluded")]
     FieldOfView(f64),
 }
@@ -44,14 +44,14 @@ pub enum CameraError {
 const MIN_SINE: f64 = 1e-9;
 
 impl Camera {
-    /// A camera that shows something.
+    /// A valid camera.
     pub fn new(eye: DVec3, target: DVec3, up: DVec3, vertical_fov: f64) -> Result<Self, CameraError> {
         let camera = Self { eye, target, up, vertical_fov };
         camera.validate()?;
         Ok(camera)
     }
 
-    /// Whether the camera shows something; the other methods presuppose it.
+    /// Checks that the camera is valid; the other methods presuppose it.
     pub fn validate(&self) -> Result<(), CameraError> {
         let view = self.target - self.eye;
         if !(self.eye.is_finite() && view.is_finite() && self.up.is_finite() && self.vertical_fov.is_finite())
@@ -86,7 +86,7 @@ impl Camera {
     /// The ray through a point of a picture of `width` x `height` pixels, at least one each way.
     ///
     /// `x` and `y` are in pixels; (0, 0) is the top left corner of the top left pixel, so pixel centres are at +0.5. Points
-    /// outside of the picture have their rays, too.
+    /// outside of the picture have rays too.
     pub fn ray(&self, x: f64, y: f64, width: u32, height: u32) -> Ray {
         self.pixel_rays(width, height).ray(x, y)
     }
@@ -99,7 +99,7 @@ impl Camera {
     }
 }
 
-/// A camera together with the size of a picture: [`Camera::ray`] with its constants at hand.
+/// A camera together with the size of a picture: [`Camera::ray`] with precomputed constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PixelRays {
     eye: DVec3,

@@ -5,8 +5,8 @@ use glam::{DVec2, DVec3};
 
 use crate::{Footprint, Hit, Ray, UvPoint};
 
-/// The neighbour's ray is followed at most this many times as far as the hit is away. At the horizon it meets the plane
-/// arbitrarily far off, or behind the eye; footprints as long as this take the coarsest level of any texture.
+/// The neighbour's ray is followed to at most this many times the hit's distance. At the horizon it meets the plane
+/// arbitrarily far away, or behind the eye; footprints this long use the coarsest level of any texture.
 const MAX_REACH: f64 = 1e4;
 
 /// Largest change of a texture coordinate. Near a pole the coordinates change without bound; no map has this many texels'
@@ -20,14 +20,14 @@ impl Hit {
     /// How the coordinates of a set change from this pixel to its right neighbour, whose ray is `dx`, and to the one below
     /// it, whose ray is `dy`: [`Hit::surface_footprint`] and [`Hit::footprint_in_set`] together.
     ///
-    /// Always finite: beyond the horizon the footprint is the long one that is reached just before it; where the surface has
-    /// no such texture coordinates, or where they do not change with the position, it is zero.
+    /// Always finite: beyond the horizon the footprint is the long one just before it; if the surface has
+    /// no such texture coordinates, or if they do not change with the position, it is zero.
     pub fn footprint(&self, set: usize, dx: &Ray, dy: &Ray) -> Footprint {
         self.footprint_in_set(set, &self.surface_footprint(dx, dy))
     }
 
     /// How the surface's own parameters (s, t) change from this pixel to its right neighbour, whose ray is `dx`, and to the
-    /// one below it, whose ray is `dy`. The surface is taken for its tangent plane. Always finite.
+    /// one below it, whose ray is `dy`. The surface is approximated by its tangent plane. Always finite.
     pub fn surface_footprint(&self, dx: &Ray, dy: &Ray) -> Footprint {
         Footprint {
             dx: self.change_of_parameters(self.offset_on_plane(dx)),
@@ -60,7 +60,7 @@ impl Hit {
     }
 
     /// The change (ds, dt) that moves the point nearest to `offset`: least squares of `dpds ds + dpdt dt = offset`. Zero
-    /// where the position does not change with either.
+    /// if the position does not change with either.
     fn change_of_parameters(&self, offset: DVec3) -> DVec2 {
         let (ss, st, tt) = (self.dpds.length_squared(), self.dpds.dot(self.dpdt), self.dpdt.length_squared());
         let (os, ot) = (self.dpds.dot(offset), self.dpdt.dot(offset));

@@ -21,15 +21,15 @@ pub struct Frame {
     tangent: DVec3,
     bitangent: DVec3,
     normal: DVec3,
-    /// Known by construction, so that the common case takes three dot products.
+    /// Known at construction, so that the common case takes three dot products.
     orthonormal: bool,
 }
 
-/// Smallest volume of a frame's axes, in parts of the product of their lengths: below it, components along the axes keep fewer
+/// Smallest volume of a frame's axes, relative to the product of their lengths: below it, components along the axes keep fewer
 /// than half of the digits of an f64.
 const MIN_VOLUME: f64 = 1e-8;
 
-/// How far products of axes that are called orthonormal may be from 0 and 1: single floats may have been normalised.
+/// How far products of supposedly orthonormal axes may be from 0 and 1: single floats may have been normalised.
 const ORTHONORMAL: f64 = 1e-6;
 
 impl Frame {
@@ -77,7 +77,7 @@ impl Frame {
         Self { tangent: -self.tangent, bitangent: -self.bitangent, normal: -self.normal, ..*self }
     }
 
-    /// Components of a world-space vector in this frame: the numbers by which the axes add up to it.
+    /// Components of a world-space vector in this frame: the coefficients of the axes.
     #[inline]
     pub fn tangent_from_world(&self, v: DVec3) -> DVec3 {
         if self.orthonormal {
@@ -107,17 +107,17 @@ impl Frame {
     }
 }
 
-/// Which side of a surface is seen.
+/// Which side of a surface faces the viewer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Side {
-    /// The one to which the surface's own normal points.
+    /// The one that the surface's own normal points to.
     #[default]
     Front,
     /// The other one.
     Back,
 }
 
-/// The most sets of texture coordinates that a hit carries. glTF wants at least two of a renderer; hits are copied often.
+/// The most sets of texture coordinates of a hit. glTF requires renderers to support at least two; hits are copied often.
 pub const MAX_UV_SETS: usize = 4;
 
 /// One set of texture coordinates at a point of a surface.
@@ -157,7 +157,7 @@ impl UvSets {
         self.count == 0
     }
 
-    /// A set; one that is not there is zero everywhere.
+    /// A set; a missing one is zero everywhere.
     #[inline]
     pub fn get(&self, set: usize) -> UvPoint {
         self.points.get(set).copied().unwrap_or_default()
@@ -178,7 +178,7 @@ impl FromIterator<UvPoint> for UvSets {
 
 /// A point of a surface.
 ///
-/// The surface has two parameters of its own, s and t, whatever textures lie on it: a shape's are its texture coordinates,
+/// The surface has two parameters of its own, s and t, independent of its textures: a shape's are its texture coordinates,
 /// a triangle's run along two of its edges. Position and every set of texture coordinates are known with their change by
 /// s and t; by the chain rule that gives the change of either with the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -191,7 +191,7 @@ pub struct Hit {
     pub geometric_normal: DVec3,
     /// The shading frame, orthonormal, towards the viewer.
     pub frame: Frame,
-    /// Which side is seen.
+    /// Which side faces the viewer.
     pub side: Side,
     /// Change of the position with s.
     pub dpds: DVec3,
@@ -202,14 +202,14 @@ pub struct Hit {
 }
 
 impl Hit {
-    /// The texture coordinates of a set; zero for a set that is not there.
+    /// The texture coordinates of a set; zero for a missing set.
     #[inline]
     pub fn uv(&self, set: usize) -> DVec2 {
         self.uv_sets.get(set).uv
     }
 
-    /// Change of the position with u of a set of texture coordinates. Zero where the set is not there, or does not tell
-    /// where u grows: where its area vanishes.
+    /// Change of the position with u of a set of texture coordinates. Zero if the set is missing, or does not determine
+    /// the direction of u because its area vanishes.
     pub fn dpdu(&self, set: usize) -> DVec3 {
         let UvPoint { ds, dt, .. } = self.uv_sets.get(set);
         let det = ds.perp_dot(dt);
@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn an_orthonormal_frame_is_the_same_frame_in_either_way() {
+    fn an_orthonormal_frame_is_the_same_by_both_constructors() {
         let [fast, ..] = frames();
         let slow = Frame::new(fast.tangent(), fast.bitangent(), fast.normal()).unwrap();
         let v = DVec3::new(0.3, -0.7, 0.45);
@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn axes_that_do_not_span_space_make_no_frame() {
+    fn degenerate_axes_are_refused() {
         let (x, y) = (DVec3::X, DVec3::Y);
         for normal in [x + y, DVec3::ZERO, DVec3::NAN, DVec3::INFINITY] {
             assert_eq!(Frame::new(x, y, normal), None);
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn sets_beyond_the_room_are_left_out_and_missing_ones_are_zero() {
+    fn extra_sets_are_left_out_and_missing_ones_are_zero() {
         let point = |u: f64| UvPoint { uv: DVec2::splat(u), ds: DVec2::X, dt: DVec2::Y };
         let sets: UvSets = (1..=MAX_UV_SETS + 2).map(|k| point(k as f64)).collect();
         assert_eq!((sets.len(), sets.get(MAX_UV_SETS - 1)), (MAX_UV_SETS, point(MAX_UV_SETS as f64)));

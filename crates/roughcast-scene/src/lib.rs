@@ -1,10 +1,10 @@
-//! Cameras, shapes, meshes and lights; the CPU reference renderer, which is the supersampled truth of every comparison; and the
-//! measures by which pictures are compared.
+//! Cameras, shapes, meshes and lights; the CPU reference renderer, which provides the supersampled ground truth; and
+//! image metrics.
 //!
 //! # Features
 //!
-//! - `render`, on by default: the CPU renderer with its texture filters, the hierarchy by which rays find the triangles of
-//!   a mesh, and the measures of pictures. Without it the crate is the description of a scene, for other renderers.
+//! - `render`, on by default: the CPU renderer with its texture filters, the hierarchy that finds the triangles of
+//!   a mesh, and the image metrics. Without it the crate is the description of a scene, for other renderers.
 //!
 //! # Conventions
 //!

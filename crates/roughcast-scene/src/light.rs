@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// A light without extent.
+/// A light without size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Light {
     /// Infinitely far away.
@@ -25,12 +25,12 @@ impl Light {
     /// Irradiance that gives a white surface which faces the light a radiance of one.
     pub const WHITE: [f32; 3] = [std::f32::consts::PI; 3];
 
-    /// A point light's irradiance is the same at all shorter distances: it stays finite, and so does what shaders make of
-    /// it in single floats.
+    /// A point light's irradiance is constant at shorter distances: it stays finite, and so do the results of shaders
+    /// in single floats.
     pub const LEAST_DISTANCE: f64 = 1e-6;
 
     /// Unit vector towards the light and the irradiance of a surface that faces it, at a point. The vector is zero at the
-    /// place of a point light, which therefore gives no light there.
+    /// position of a point light, which therefore gives no light there.
     pub fn at(&self, point: DVec3) -> (DVec3, [f32; 3]) {
         match *self {
             Self::Directional { towards, irradiance } => (towards, irradiance),
@@ -50,7 +50,7 @@ mod tests {
 
     use super::*;
 
-    /// At the origin, where every distance is a number of its own.
+    /// At the origin, where every distance is representable.
     const LIGHT: Light = Light::Point { position: DVec3::ZERO, intensity: [8.0, 4.0, 2.0] };
 
     #[test]

@@ -1,4 +1,4 @@
-//! Textures in memory as a renderer samples them: all levels, four channels of floats.
+//! Textures in memory for sampling: all levels, four channels of floats.
 
 use std::sync::OnceLock;
 
@@ -17,8 +17,8 @@ pub struct Level {
     texels: Vec<[f32; 4]>,
 }
 
-/// A texture with its levels, as stored: integer texels as 0 ..= 1, floats as they are. Channels that the texture lacks
-/// are 0, the fourth is 1: what graphics hardware returns.
+/// A texture with its levels, as stored: integer texels as 0 ..= 1, floats unchanged. Channels that the texture lacks
+/// are 0, the fourth is 1, as in graphics hardware.
 ///
 /// Four floats per texel are kept, 16 bytes; a summed-area table, made at its first use, takes 32 more for each texel of
 /// level 0.
@@ -76,7 +76,7 @@ impl Level {
 }
 
 impl Mipmap {
-    /// A texture as a sampler sees it.
+    /// Converts a texture for sampling.
     ///
     /// # Errors
     /// [`MipmapError::Channels`] if it has more than four channels, [`MipmapError::Size`] if it has no level.
@@ -99,7 +99,7 @@ impl Mipmap {
         Ok(Self { levels, table: OnceLock::new() })
     }
 
-    /// The same texture with another channel in the place of the first.
+    /// The same texture with another channel in place of the first.
     pub(crate) fn with_first_channel(mut self, channel: usize) -> Self {
         for texel in self.levels.iter_mut().flat_map(|level| &mut level.texels) {
             texel[0] = texel[channel];
@@ -118,13 +118,13 @@ impl Mipmap {
         (self.levels[0].width, self.levels[0].height)
     }
 
-    /// The summed-area table of level 0, made now where it is not there yet.
+    /// The summed-area table of level 0, computed at the first use.
     pub fn table(&self) -> &SummedAreaTable {
         self.table.get_or_init(|| SummedAreaTable::of(&self.levels[0]))
     }
 }
 
-/// The texel that stands at an index which may lie beyond the edges.
+/// The texel at an index, which may lie beyond the edges.
 pub(crate) fn wrapped(index: i64, length: usize, wrap: Wrap) -> usize {
     let length = length as i64;
     let inside = match wrap {
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn integers_become_parts_of_one_and_missing_channels_are_as_hardware_has_them() {
+    fn integers_are_normalised_and_missing_channels_are_as_in_hardware() {
         let mipmap = Mipmap::of(&texture(1, Samples::U8(vec![0, 255]))).unwrap();
         assert_eq!(mipmap.levels()[0].row(0), [[0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 1.0]]);
         let mipmap = Mipmap::of(&texture(2, Samples::U16(vec![65535, 0, 13107, 65535]))).unwrap();
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn textures_that_no_sampler_can_return_are_refused() {
+    fn textures_with_too_many_channels_or_no_levels_are_refused() {
         let five = texture(5, Samples::F32(vec![0.0; 10]));
         assert!(matches!(Mipmap::of(&five), Err(MipmapError::Channels { channels: 5, .. })));
         assert!(matches!(Mipmap::new(vec![]), Err(MipmapError::Size { .. })));
@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn indices_wrap_as_their_mode_says() {
+    fn indices_follow_the_wrap_mode() {
         let indices = [-5, -4, -3, -2, -1, 0, 1, 2, 3, 4, 5, 6];
         let all = |wrap| indices.map(|i| wrapped(i, 3, wrap));
         assert_eq!(all(Wrap::Repeat), [1, 2, 0, 1, 2, 0, 1, 2, 0, 1, 2, 0]);

@@ -1,4 +1,4 @@
-//! Height maps of the texts' figures, made by formula: all repeat without a seam, and their slopes are known.
+//! Height maps of the papers' figures, computed by formula: all repeat without a seam, and their slopes are known.
 
 use std::f64::consts::TAU;
 
@@ -6,7 +6,7 @@ use roughcast::{Image, Kind, Samples, SourceOptions};
 
 use crate::split_mix::{GOLDEN_RATIO, scrambled};
 
-/// A height map and how it is to be read.
+/// A height map and how to read it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pattern {
     /// One channel of single floats: heights in units of the map's width.
@@ -93,14 +93,14 @@ impl Wave {
     fn bump(index: u64, size: usize, seed: u64) -> Self {
         let [length, phase, turn] = random(seed, index);
         let cycles = size as f64 / (SHORTEST_WAVE + length * (LONGEST_WAVE - SHORTEST_WAVE));
-        // Directions go round evenly, with a little chance, so that the bumps have no direction of their own.
+        // Directions are distributed evenly, with some randomness, so that the bumps have no preferred direction.
         let angle = (index as f64 + turn) * TAU / BUMP_WAVES as f64;
         let [x, y] = [(cycles * angle.cos()).round(), (cycles * angle.sin()).round()];
         Self { cycles: if x == 0.0 && y == 0.0 { [1.0, 0.0] } else { [x, y] }, phase: phase * TAU }
     }
 }
 
-/// The sum of waves of equal root mean square slope, which together have the one asked for.
+/// The sum of waves of equal root mean square slope, which together have the requested one.
 fn superposition(size: usize, waves: &[Wave], rms_slope: f64) -> Pattern {
     let frequency = TAU / size as f64;
     // The slope of a cosine of amplitude a and wave number k has mean square (a k)^2 / 2.
@@ -142,8 +142,8 @@ mod tests {
     }
 
     #[test]
-    fn random_patterns_have_the_slopes_asked_for() {
-        // Waves that happen to be equal add up by chance phase; and the Sobel filter weakens the shortest waves
+    fn random_patterns_have_the_requested_slopes() {
+        // Waves that happen to be equal add up with random phases; and the Sobel filter weakens the shortest waves
         // (sin(k)/k at 12 texels: 5 %).
         const CHANCE: f64 = 0.15;
         let ridges = whole(&random_ridges(SIZE, SLOPE, 1)).covariance();
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn every_pattern_is_level_on_the_whole_and_so_repeats_without_a_seam() {
+    fn every_pattern_has_zero_mean_slope_and_repeats_without_a_seam() {
         let patterns = [
             raised_checker(SIZE, 8, 4.0, 0.5),
             v_grooves(SIZE, 16, 0.4),
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn grooves_have_two_slopes_and_edges_have_theirs() {
+    fn grooves_and_edges_have_their_slopes() {
         // Away from the kinks; the three texels about each of 32 kinks of 256 columns see both sides.
         let grooves = whole(&v_grooves(SIZE, 16, 0.4)).covariance();
         assert!((grooves.xx / 0.16 - 1.0).abs() < 0.2, "{grooves:?}");

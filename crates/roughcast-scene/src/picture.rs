@@ -9,9 +9,9 @@ pub struct Picture {
     pub height: usize,
     /// Radiance in linear RGB, background included.
     pub radiance: Vec<[f32; 3]>,
-    /// The part of the radiance that the specular lobes made.
+    /// The part of the radiance from the specular lobes.
     pub specular: Vec<[f32; 3]>,
-    /// The part of the pixel that a surface covers, 0 ..= 1.
+    /// The fraction of the pixel that a surface covers, 0 ..= 1.
     pub coverage: Vec<f32>,
 }
 

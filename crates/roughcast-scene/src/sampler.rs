@@ -1,4 +1,4 @@
-//! How textures are sampled: what every renderer is told.
+//! How textures are sampled, for every renderer.
 
 use roughcast::Wrap;
 
@@ -9,7 +9,7 @@ roughcast::named_enum! {
         Nearest = "nearest",
         /// Between the texels of two levels, by the footprint's larger extent.
         Trilinear = "trilinear",
-        /// As graphics hardware: at most 16 trilinear taps along the footprint.
+        /// As in graphics hardware: at most 16 trilinear taps along the footprint.
         Anisotropic = "anisotropic",
         /// Elliptical weighted average, with axes up to 32:1.
         Ewa = "ewa",
@@ -27,7 +27,7 @@ pub struct Sampler {
     /// does not apply to it.
     pub level: Option<f64>,
     /// Added to the footprint's level of detail. As in graphics hardware the taps of [`Filter::Anisotropic`] stay where
-    /// they are. Filters that know no levels take the footprint `2^bias` times as large; [`Filter::Nearest`] has none.
+    /// they are. Filters without levels use a footprint `2^bias` times as large; [`Filter::Nearest`] has none.
     pub mip_bias: f64,
     /// What lies beyond the edges.
     pub wrap: Wrap,

@@ -6,16 +6,16 @@ use roughcast::shading::Material;
 
 use crate::{Camera, Light, Shape};
 
-/// A shape with a material under lights, as a camera sees it. Cheap to clone: the shape is shared.
+/// A shape with a material, under lights, seen by a camera. Cheap to clone: the shape is shared.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// The shape.
     pub shape: Arc<Shape>,
     /// The camera.
     pub camera: Camera,
-    /// The lights. Nothing throws a shadow.
+    /// The lights. Nothing casts a shadow.
     pub lights: Vec<Light>,
-    /// The colours of the surface; its bumps and its roughness are those of textures.
+    /// The colours of the surface; textures provide its bumps and its roughness.
     pub material: Material,
     /// How often the textures repeat over the shape's texture coordinates from 0 to 1.
     pub repeats: f64,

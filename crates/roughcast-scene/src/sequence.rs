@@ -2,10 +2,10 @@
 
 use crate::Scene;
 
-/// What the middle of the picture moves by from frame to frame, in parts of the picture's height: less than a pixel, so
-/// that whatever jumps does so by aliasing.
+/// How far the middle of the picture moves from frame to frame, as a fraction of the picture's height: less than a pixel, so
+/// that all jumps are aliasing.
 const STEP: f64 = 1.0 / 600.0;
-/// The move is mostly sideways; so much of it is forward, so that the scale of things changes, too.
+/// The move is mostly sideways; this fraction is forward, so that the scale changes too.
 const FORWARD: f64 = 0.5;
 
 /// The scene at `frames` times of a slow camera move, the first being the scene itself.
@@ -33,7 +33,7 @@ mod tests {
     use crate::{Plane, Shape, View};
 
     #[test]
-    fn a_move_starts_where_the_scene_is_and_goes_by_less_than_a_pixel() {
+    fn a_move_starts_at_the_scene_with_steps_below_a_pixel() {
         const SIZE: (u32, u32) = (256, 192);
         let plane = Arc::new(Shape::Plane(Plane::default()));
         let scene = View::Mid.scene(plane, (64, 64), SIZE, Material::default());

@@ -1,4 +1,4 @@
-//! From the slopes that a texture stores to slopes of the surface that it lies on.
+//! Converts the slopes in a texture to slopes of the surface that it lies on.
 //!
 //! A texture stores the slopes of heights f in texels over a grid of texels: `b = (-df/dx, -df/dy)`, x right and y up. On a
 //! surface, W texels lie along a unit of u and H texels along a unit of v, which grows downwards: `x = W u`, `y = -H v`. With h
@@ -17,7 +17,7 @@
 //!
 //! and the normal of the displaced surface is n - g (Mikkelsen, "Bump Mapping Unparametrized Surfaces on the GPU", 2010, Eqs. 3
 //! and 4, Listing 1). The slope in the hit's frame is (-g · tangent, -g · bitangent). All of it is linear in b, so a 2x2 matrix
-//! says it, and moments travel with it. Only the area of the surface's own parametrization is divided by: texture
+//! describes it, and moments transform with it. Only the area of the surface's own parametrization is divided by: texture
 //! coordinates may be degenerate.
 
 use glam::{DVec2, DVec3};
@@ -25,8 +25,8 @@ use roughcast::SlopeMatrix;
 
 use crate::{Hit, Side, UvPoint};
 
-/// Sine of the angle between dpds and dpdt, projected along the shading normal, below which the surface has no area to
-/// tell a direction by.
+/// Sine of the angle between dpds and dpdt, projected along the shading normal, below which the surface has no area that
+/// determines a direction.
 const MIN_SINE: f64 = 1e-10;
 
 /// How a texture of slopes lies on a surface.
@@ -64,7 +64,7 @@ impl SlopeFrame {
         Self { uv_set, ..self }
     }
 
-    /// The same with bumps of a size: one texel of height is so high in world space.
+    /// The same with a size of the bumps: the height of one texel in world space.
     #[must_use]
     pub fn with_world_height_per_texel(self, height: f64) -> Self {
         Self { world_height_per_texel: Some(height), ..self }
@@ -77,13 +77,13 @@ impl SlopeFrame {
 
     /// Takes slopes in the texture's frame, in texels per texel, to slopes in the frame of the hit.
     ///
-    /// Without a world height it is the identity, as glTF has it for normal maps: the texture's x and y are the tangent and
-    /// the bitangent, and how the texture is stretched does not matter. From behind a bump is a dent, whose slopes
+    /// Without a world height it is the identity, as in glTF's normal maps: the texture's x and y are the tangent and
+    /// the bitangent, and stretching of the texture does not matter. From behind a bump is a dent, whose slopes
     /// in the reversed frame are the same numbers.
     ///
-    /// Always finite. All slopes become zero where the surface's own parametrization has no area (a pole), where the
-    /// shading normal lies in the surface, where the texture coordinates are missing or the same all around, and
-    /// where single floats do not hold the result.
+    /// Always finite. All slopes become zero if the surface's own parametrization has no area (a pole), if the
+    /// shading normal lies in the surface, if the texture coordinates are missing or constant, and
+    /// if single floats cannot represent the result.
     pub fn matrix(&self, hit: &Hit) -> SlopeMatrix {
         let Some(height) = self.world_height_per_texel else { return [[1.0, 0.0], [0.0, 1.0]] };
         let normal = hit.frame.normal();

@@ -1,4 +1,4 @@
-//! Standard views of a shape: where the camera stands, how large texels are in the picture, and a light whose highlight is
+//! Standard views of a shape: the camera position, the size of texels in the picture, and a light whose highlight is
 //! in it.
 
 use std::f64::consts::FRAC_PI_4;
@@ -10,7 +10,7 @@ use roughcast::shading::Material;
 use crate::{Camera, Footprint, Hit, Light, Plane, Ray, Scene, Shape};
 
 roughcast::named_enum! {
-    /// A distance, told by how many texels a pixel spans.
+    /// A distance, defined by how many texels a pixel spans.
     pub enum View: "view" {
         /// Texels are magnified: a quarter of one in a pixel.
         Near = "near",
@@ -25,12 +25,12 @@ roughcast::named_enum! {
 
 /// Vertical angle of view.
 const FOV: f64 = 0.61;
-/// Rays by which a view is measured, each way.
+/// Rays along each side for measuring a view.
 const GRID: u32 = 24;
-/// The place in the picture, right and down, in parts of its size, where the highlight is wanted.
+/// The position of the highlight in the picture, right and down, as fractions of its size.
 const HIGHLIGHT: (f64, f64) = (0.46, 0.44);
 /// Shapes other than planes mirror the light where the eye meets them at about this cosine, so that it lights most of what
-/// is seen; in grazing views it stands behind them.
+/// is visible; in grazing views it is behind them.
 const FRONTAL_COSINE: f64 = 0.86;
 const GRAZING_COSINE: f64 = 0.45;
 
@@ -45,7 +45,7 @@ impl View {
         }
     }
 
-    /// The camera of this view. Whether something is near or far is told by its texels, so only grazing views differ.
+    /// The camera of this view. The size of texels makes a view near or far, so only grazing views differ.
     pub fn camera(self, shape: &Shape) -> Camera {
         let on_plane =
             |plane: &Plane, eye: DVec3, target: DVec3| (eye * plane.half_size(), target * plane.half_size());
@@ -70,7 +70,7 @@ impl View {
     /// The scene of this view: a shape with a map of `texels` a side, in a picture of `size`, with one light whose
     /// highlight is in the picture.
     ///
-    /// A shape that nothing can be laid on, or that is not in the picture, gets one repeat and a light from above.
+    /// A shape that cannot be textured, or that is not in the picture, gets one repeat and a light from above.
     pub fn scene(
         self,
         shape: Arc<Shape>,
@@ -87,7 +87,7 @@ impl View {
     }
 }
 
-/// How often a map of `texels` a side must repeat for a pixel to span `texels_per_pixel` of them, the way in which it spans
+/// How often a map of `texels` a side must repeat for a pixel to span `texels_per_pixel` of them, in the direction in which it spans
 /// fewer, in the middle (the median) of what `camera` shows.
 pub fn repeats(
     shape: &Shape,
@@ -121,7 +121,7 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
     values.get(values.len() / 2).copied()
 }
 
-/// A white directional light that the shape mirrors into the camera near the middle of the picture.
+/// A white directional light that the shape reflects into the camera near the middle of the picture.
 pub fn default_light(shape: &Shape, camera: &Camera, size: (u32, u32), view: View) -> Light {
     let wanted = (HIGHLIGHT.0 * f64::from(size.0), HIGHLIGHT.1 * f64::from(size.1));
     let cosine = match (shape, view) {
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plane_fills_the_picture_but_for_the_sky_of_the_grazing_view() {
+    fn a_plane_fills_the_picture_except_the_sky_of_the_grazing_view() {
         let plane = || Arc::new(Shape::Plane(Plane::default()));
         for view in View::ALL {
             let scene = view.scene(plane(), TEXELS, SIZE, Material::default());

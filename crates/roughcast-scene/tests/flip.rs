@@ -67,7 +67,7 @@ fn pictures() -> Vec<&'static str> {
 }
 
 #[test]
-fn real_pictures_have_nvidias_error() {
+fn real_pictures_match_nvidias_errors() {
     let mut means = Vec::new();
     for name in pictures() {
         let reference = pixels(name, (10, 10));
@@ -87,7 +87,7 @@ fn real_pictures_have_nvidias_error() {
 }
 
 #[test]
-fn the_comparison_finds_a_wrong_error() {
+fn the_comparison_detects_a_wrong_error() {
     let (reference, test) = (pixels(pictures()[0], (10, 10)), pixels(pictures()[0], (11, 10)));
     let theirs = nvidia(&reference, &test);
     let mut wrong = theirs.clone();

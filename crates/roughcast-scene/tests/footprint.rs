@@ -20,13 +20,13 @@ const SIZE: (u32, u32) = (96, 72);
 const MAPS: [(&str, Green); 2] =
     [("crops/rock020_normal_256.jpg", Green::Down), ("materials/water_bevy/water_normals.png", Green::Up)];
 
-/// Of ordinary bump mapping's error in the near view, the most that LEAN and CLEAN may have. Measured: 0.53 and 0.27; with EWA, whose
+/// The largest error of LEAN and CLEAN in the near view, relative to conventional bump mapping. Measured: 0.53 and 0.27; with EWA, whose
 /// Gaussian is wider than a bilinear filter, 0.70 and 0.58. benches/materials.py measures all real materials.
 const NEAR: f64 = 0.75;
 /// By how much the correction may change errors where a pixel covers many texels.
 const UNCHANGED: f64 = 0.02;
 
-/// A map in a view, with its truth.
+/// A map in a view, with its ground truth.
 struct Seen {
     scene: Scene,
     slopes: SlopeMap,
@@ -77,7 +77,7 @@ impl Seen {
 }
 
 #[test]
-fn lean_beats_ordinary_bump_mapping_in_the_near_view() {
+fn lean_beats_conventional_bump_mapping_in_the_near_view() {
     for (name, green) in roughcast_testdata::rows_with_files(MAPS, |row| row.0) {
         let seen = Seen::new(name, green, View::Near);
         let (own, off_centre) = (seen.truth(Shading::BlinnPhong), seen.truth(Shading::OffCentre));
@@ -94,7 +94,7 @@ fn lean_beats_ordinary_bump_mapping_in_the_near_view() {
 }
 
 #[test]
-fn far_and_grazing_views_stay_as_they_are() {
+fn far_and_grazing_views_do_not_change() {
     for (name, green) in roughcast_testdata::rows_with_files(MAPS, |row| row.0) {
         for view in [View::Far, View::Grazing] {
             let seen = Seen::new(name, green, view);

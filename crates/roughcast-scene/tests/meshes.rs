@@ -138,7 +138,7 @@ fn tangents_of_files_agree_with_mikktspace() {
 }
 
 #[test]
-fn a_tessellated_shape_is_the_shape() {
+fn a_tessellated_shape_matches_its_formula() {
     for analytic in [Shape::Sphere(Sphere), Shape::Torus(Torus::default())] {
         let full = analytic.triangles(96);
         let bare = TriangleMesh { normals: Vec::new(), tangents: Vec::new(), ..full.clone() };
@@ -199,7 +199,7 @@ fn front() -> Ray {
 }
 
 #[test]
-fn handedness_is_that_of_gltf() {
+fn handedness_follows_gltf() {
     for (uvs, tangent, w, u) in [(UPRIGHT, DVec3::X, 1.0, 0.25), (MIRRORED, DVec3::NEG_X, -1.0, 0.75)] {
         let mesh = Mesh::new(vec![square(uvs)]).unwrap();
         assert!(mesh.triangles().tangents.iter().all(|t| t[3] == w));
@@ -220,7 +220,7 @@ fn handedness_is_that_of_gltf() {
 }
 
 #[test]
-fn the_files_normals_say_which_side_is_out() {
+fn the_normals_of_the_file_determine_the_outer_side() {
     let mut inside_out = square(UPRIGHT);
     inside_out.normals = vec![[0.0, 0.0, -1.0]; 4];
     let mesh = Mesh::new(vec![inside_out]).unwrap();

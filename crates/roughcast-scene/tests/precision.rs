@@ -1,4 +1,4 @@
-//! The exponent of the LEAN text's ocean, 13777: 16-bit maps shade as float maps do, and 8-bit maps do not.
+//! The exponent of the LEAN paper's ocean, 13777: 16-bit maps shade as float maps do, and 8-bit maps do not.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use roughcast_scene::{BakedTextures, Picture, Plane, Sampler, Shape, View};
 
 const SPECULAR_POWER: f32 = 13_777.0;
 const SIZE: (u32, u32) = (160, 120);
-/// Mean FLIP below which two pictures are taken for the same: a hundredth of the way from one colour to its opposite.
+/// Mean FLIP below which two pictures count as the same: a hundredth of the way from one colour to its opposite.
 const SAME: f64 = 0.01;
 /// Eight bits hold exponents up to about a hundred for slopes of one: the comparator must see that, by so many times what
 /// it lets pass.
@@ -40,7 +40,7 @@ fn flip(map: &Image, bits: SampleType, view: View) -> f64 {
 }
 
 #[test]
-fn sixteen_bits_and_halves_carry_the_exponent_of_the_text() {
+fn sixteen_bits_and_halves_represent_the_exponent_of_the_paper() {
     for name in roughcast_testdata::rows_with_files(MAPS, |name| name) {
         let map = map(name);
         for view in View::ALL {

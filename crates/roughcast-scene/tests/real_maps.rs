@@ -1,4 +1,4 @@
-//! Real normal maps, seen from afar: LEAN against the ordinary way.
+//! Real normal maps, seen from afar: LEAN against conventional bump mapping.
 
 mod common;
 
@@ -24,7 +24,7 @@ const MAPS: [(&str, f64); 3] = [
 ];
 
 #[test]
-fn lean_is_nearer_to_the_truth_of_real_maps() {
+fn lean_has_smaller_errors_on_real_maps() {
     for (name, factor) in roughcast_testdata::rows_with_files(MAPS, |row| row.0) {
         let map = picture(name).image;
         let source = SourceOptions::default();

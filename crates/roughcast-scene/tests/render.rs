@@ -1,4 +1,4 @@
-//! Laws of the renderer: methods against their truths.
+//! Laws of the renderer: methods against their ground truths.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use roughcast_scene::{
 
 const SIZE: (u32, u32) = (64, 48);
 
-/// A map, its slopes, and what is baked of it.
+/// A map, its slopes, and its baked textures.
 struct Map {
     pattern: Pattern,
     slopes: SlopeDetail,
@@ -109,7 +109,7 @@ fn flat() -> Map {
 }
 
 #[test]
-fn on_a_flat_map_every_method_is_its_truth() {
+fn on_a_flat_map_every_method_matches_its_ground_truth() {
     // Within a pixel a highlight of s = 32 is nearly even; what the pixel filter rounds off at its top is this much of it.
     const WITHIN_A_PIXEL: f64 = 2e-3;
     let map = flat();
@@ -129,7 +129,7 @@ fn on_a_flat_map_every_method_is_its_truth() {
 }
 
 #[test]
-fn truth_converges_faster_than_chance() {
+fn ground_truth_converges_faster_than_random_sampling() {
     let (map, scene) = figure_14();
     let options = power(2048.0, Form::Paper);
     let render =
@@ -142,7 +142,7 @@ fn truth_converges_faster_than_chance() {
 }
 
 #[test]
-fn truth_is_the_mean_over_the_pixel_filter() {
+fn ground_truth_is_the_mean_over_the_pixel_filter() {
     // A plane whose background is seen through no pixel, and one whose edge runs through some: coverage is the integral
     // of the filter over the half plane, which is the normal distribution.
     let mut scene = plane(1.0);
@@ -177,7 +177,7 @@ fn normal_distribution(deviations: f64) -> f64 {
 }
 
 #[test]
-fn the_number_of_threads_does_not_change_a_bit() {
+fn the_number_of_threads_does_not_change_any_bit() {
     let (map, scene) = figure_14();
     let options = power(2048.0, Form::Paper);
     let render = |threads: usize| {
@@ -190,7 +190,7 @@ fn the_number_of_threads_does_not_change_a_bit() {
 }
 
 #[test]
-fn far_away_lean_is_nearer_to_the_truth_than_the_ordinary_way() {
+fn far_away_lean_has_smaller_errors_than_conventional_bump_mapping() {
     // Random bumps, many under each pixel: the case that LEAN's Gaussian describes.
     let map = Map::new(pattern::random_bumps(256, 0.1, 5));
     let (scene, options) = (plane(32.0), power(2048.0, Form::Normalised));
@@ -217,14 +217,14 @@ fn a_raised_checker_in_the_distance_needs_lean() {
     let unfiltered = error(Shading::BlinnPhong, Filter::Nearest);
     let [trilinear, anisotropic, ewa] =
         [Filter::Trilinear, Filter::Anisotropic, Filter::Ewa].map(|filter| error(Shading::Lean, filter));
-    // 0.12, 0.14 and 0.12 were measured; what is left with the elliptical average, which has the very filter of the
-    // truth, is LEAN's own error and the noise of the truth.
+    // 0.12, 0.14 and 0.12 were measured; the rest with the elliptical average, which has exactly the filter of the
+    // ground truth, is LEAN's own error and the noise of the ground truth.
     assert!(trilinear.max(anisotropic) < unfiltered / 3.0, "{unfiltered} {trilinear} {anisotropic}");
     assert!(ewa < anisotropic, "{ewa} {anisotropic}");
 }
 
 #[test]
-fn the_ordinary_way_flickers() {
+fn conventional_bump_mapping_flickers() {
     let ((map, scene), options) = (figure_14(), power(2048.0, Form::Paper));
     let frames = slow_move(&scene, 8);
     let truth = map.truth(Shading::OffCentre, options, 256);
@@ -239,7 +239,7 @@ fn the_ordinary_way_flickers() {
 }
 
 #[test]
-fn curved_shapes_shade_without_a_number_that_is_none() {
+fn curved_shapes_give_finite_radiance() {
     let map = Map::new(pattern::random_bumps(64, 0.5, 6));
     let shapes =
         [Shape::Sphere(Sphere), Shape::Torus(Torus::new(0.4).unwrap()), Shape::Plane(Plane::default())];
@@ -296,7 +296,7 @@ fn packed_roughness_shades_as_roughness_alone() {
 }
 
 #[test]
-fn what_cannot_be_rendered_is_refused() {
+fn invalid_renders_are_refused() {
     let (map, scene) = (flat(), plane(1.0));
     let options = power(32.0, Form::Paper);
     let truth =
@@ -319,7 +319,7 @@ fn what_cannot_be_rendered_is_refused() {
 }
 
 #[test]
-fn truths_that_share_their_rays_are_those_of_each_model() {
+fn ground_truths_with_shared_rays_match_those_of_each_model() {
     const SMALL: (u32, u32) = (24, 16);
     let (map, scene) = figure_14();
     let truth = map.truth(Shading::Lean, power(64.0, Form::Normalised), 9);
@@ -334,7 +334,7 @@ fn truths_that_share_their_rays_are_those_of_each_model() {
 }
 
 #[test]
-fn progress_is_told_of_every_row_and_can_stop() {
+fn progress_is_reported_per_row_and_can_stop() {
     let (map, scene) = (flat(), plane(1.0));
     let truth = map.truth(Shading::OffCentre, power(32.0, Form::Paper), 1);
     let (calls, most) = (AtomicUsize::new(0), AtomicUsize::new(0));

@@ -144,7 +144,7 @@ fn the_nearest_hit_is_the_first_where_the_ray_enters() {
 }
 
 #[test]
-fn grazing_rays_hold() {
+fn grazing_rays_are_accurate() {
     // Rays across the top of the torus, at heights just below and just above it.
     let torus = Shape::Torus(Torus::new(0.4).unwrap());
     for exponent in 1..=14 {
@@ -164,7 +164,7 @@ fn grazing_rays_hold() {
 }
 
 #[test]
-fn far_eyes_hold() {
+fn distant_eyes_are_accurate() {
     for (name, shape) in shapes().into_iter().take(3) {
         let origin = DVec3::new(1.0, 0.7, 0.9) * 1e6;
         let target = point(&shape, DVec2::new(0.55, 0.4));
@@ -414,7 +414,7 @@ fn vertices_are_exact_and_fronts_turn_counter_clockwise() {
 }
 
 #[test]
-fn detail_is_cut_to_its_range() {
+fn detail_is_clamped_to_its_range() {
     let sphere = Shape::Sphere(Sphere);
     assert_eq!(sphere.triangles(0), sphere.triangles(1));
     assert_eq!(sphere.triangles(u32::MAX).positions.len() as u32, (2 * MAX_DETAIL + 1) * (MAX_DETAIL + 1));

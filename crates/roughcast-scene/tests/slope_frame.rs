@@ -215,7 +215,7 @@ fn on_curved_shapes_slopes_give_the_normal_of_the_displaced_surface() {
 }
 
 #[test]
-fn moments_travel_with_their_slopes() {
+fn moments_transform_like_their_slopes() {
     /// Of second moments of slopes of up to ten.
     const ROUNDING: f32 = 1e-4;
     let mut numbers = Numbers(17);
@@ -246,7 +246,7 @@ fn distance(a: [[f32; 2]; 2], b: [[f32; 2]; 2]) -> f64 {
 }
 
 #[test]
-fn texels_that_are_square_and_as_high_as_they_are_wide_keep_their_slopes() {
+fn square_texels_with_matching_height_keep_their_slopes() {
     const IDENTITY: [[f32; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
     let square = Quad::square().hit(points()[0], 1.0);
     let plane = Shape::Plane(Plane::new(2.5).unwrap());
@@ -328,7 +328,7 @@ fn every_set_has_its_own_derivatives_and_footprint() {
 }
 
 #[test]
-fn a_mirrored_quad_is_the_reflected_one() {
+fn a_mirrored_quad_matches_the_reflected_one() {
     for (quad, set) in [(Quad::square(), 0), (Quad::sheared(), 0), (Quad::sheared(), 1)] {
         for at in points() {
             let (hit, mirrored) = (quad.hit(at, 1.0), quad.reflected().hit(at, 1.0));
@@ -373,7 +373,7 @@ fn picture(quad: Quad, mirror: fn(DVec3) -> DVec3) -> Picture {
 }
 
 #[test]
-fn the_picture_of_a_mirrored_quad_is_the_reflected_picture() {
+fn the_picture_of_a_mirrored_quad_matches_the_reflected_picture() {
     /// Of radiance around one: single floats, after a lobe that multiplies their roundings by its exponent.
     const ROUNDING: f32 = 1e-3;
     let quad = Quad::sheared();

@@ -1,4 +1,4 @@
-//! With the options' defaults LEAN is as good as stored variance: no real map's few steep texels may spoil its range.
+//! With default options LEAN is as good as stored variance: the few steep texels of real maps must not spoil the range.
 
 mod common;
 
@@ -17,10 +17,10 @@ use roughcast_scene::{
 const SIZE: (u32, u32) = (48, 36);
 const SAMPLES: u32 = 64;
 
-/// The most that LEAN's error may be of stored variance's, both in 16 bits.
+/// The largest error of LEAN relative to stored variance, both in 16 bits.
 const LARGEST_RATIO: f64 = 1.15;
 
-/// A map seen from far, with its truth.
+/// A map seen from far away, with its ground truth.
 struct Far {
     image: Image,
     source: SourceOptions,
@@ -66,7 +66,7 @@ impl Far {
         Self { image, source, scene, truth }
     }
 
-    /// The root mean square error of a model with maps baked by the default options but for the largest slope.
+    /// The root mean square error of a model with maps baked by the default options, except for the maximum slope.
     fn error(&self, model: usize, max_slope: MaxSlope) -> (f64, BakeReport) {
         let options = BakeOptions { layout: MODELS[model].layout(), ..BakeOptions::default() };
         let source = SourceOptions { max_slope, ..self.source };
@@ -119,7 +119,7 @@ fn lean_is_as_good_as_variance_on_every_real_map() {
 /// The counterpart of the test above: a map that needs the limit.
 #[test]
 fn five_steep_texels_spoil_lean_only_without_the_limit() {
-    // z is the least that 8 bits can say above zero.
+    // z is the smallest that 8 bits can represent above zero.
     let steep = [[255, 128, 128], [128, 0, 128], [20, 60, 128], [200, 200, 128], [60, 255, 128]];
     let far = Far::of("crops/rock020_normal_256.jpg", Green::Down, &steep);
     let (variance, (lean, report)) = (far.error(1, MaxSlope::Auto).0, far.error(0, MaxSlope::Auto));

@@ -8,8 +8,10 @@ use roughcast_gpu::GpuError;
 
 /// An error in one line, with the option to change, if there is one.
 pub fn with_options(error: &(dyn Error + 'static)) -> String {
-    if let Some(GpuError::Bake(error)) = error.downcast_ref() {
-        return of_bake(error);
+    match error.downcast_ref() {
+        Some(GpuError::Bake(error)) => return of_bake(error),
+        Some(GpuError::Format { .. }) => return format!("{error} (--bits half)"),
+        _ => {}
     }
     match (error.downcast_ref(), error.downcast_ref()) {
         (Some(error), _) => of_bake(error),

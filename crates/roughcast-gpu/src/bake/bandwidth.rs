@@ -1,4 +1,4 @@
-//! How close a bake comes to a plain copy of the same bytes, which nothing that moves them can beat.
+//! Compares the bandwidth of a bake with that of a plain copy of the same bytes, an upper bound.
 
 use roughcast::{BakeOptions, Image, Samples, SourceOptions};
 
@@ -14,10 +14,10 @@ const COPY: &str = include_str!("wgsl/copy.wgsl");
 const COPY_TEXEL: u64 = 16;
 const COPY_TILE: u64 = 16;
 
-/// Runs that are measured, after one that warms up; the middle one counts.
+/// Runs that are measured, after one for warming up; the median counts.
 const RUNS: u32 = 9;
 
-/// Bytes moved and the time that it took, by the GPU's own clock.
+/// Bytes moved and the time taken, by the GPU's own clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bandwidth {
     /// Time of one run.
@@ -27,7 +27,7 @@ pub struct Bandwidth {
 }
 
 impl Bandwidth {
-    /// Bytes a second.
+    /// Bytes per second.
     pub fn bytes_per_second(&self) -> f64 {
         self.bytes as f64 / (self.nanoseconds * 1e-9)
     }
@@ -97,7 +97,7 @@ pub async fn copy_bandwidth(gpu: &Gpu, bytes: u64) -> Result<Bandwidth, GpuError
     Ok(Bandwidth { nanoseconds, bytes: 2 * width * height * COPY_TEXEL })
 }
 
-/// The middle time of several runs, each submitted on its own.
+/// The median time of several runs, each submitted separately.
 async fn measure(gpu: &Gpu, encode: impl Fn(&mut wgpu::CommandEncoder, &Span)) -> Result<f64, GpuError> {
     let coarse = GpuError::Feature {
         feature: "clock that is fine enough to measure this",
@@ -129,7 +129,7 @@ fn washboard(side: usize) -> Result<Image, GpuError> {
 }
 
 impl GpuBaker {
-    /// Bytes that no bake can help moving: the map read once, every level of every texture written once.
+    /// Bytes that every bake has to move: the map read once, every level of every texture written once.
     pub fn moved_bytes(&self) -> u64 {
         let written = self
             .textures()

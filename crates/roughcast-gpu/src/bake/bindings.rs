@@ -1,4 +1,4 @@
-//! Bindings of a pass, declared once: to WGSL as text, to wgpu as a layout, and filled in the same order.
+//! Bindings of a pass, declared once: to WGSL as source, to wgpu as a layout, and filled in the same order.
 
 /// The first group of one pass.
 pub(super) struct Bindings<'a> {
@@ -113,7 +113,7 @@ impl<'a> Bindings<'a> {
     }
 }
 
-/// WGSL of a constant, whose value is given as WGSL writes it.
+/// WGSL of a constant, whose value is in WGSL syntax.
 pub(super) fn constant(name: &str, value: impl std::fmt::Display) -> String {
     format!("const {name} = {value};\n")
 }

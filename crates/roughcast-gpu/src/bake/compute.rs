@@ -1,4 +1,4 @@
-//! The compute path: all levels in two dispatches where sides stay even and the device binds enough storage textures.
+//! The compute path: all levels in two dispatches if sides stay even and the device binds enough storage textures.
 
 use roughcast::wgsl::renamed;
 
@@ -13,12 +13,12 @@ const COMMON: &str = include_str!("wgsl/common.wgsl");
 const FUSED: &str = include_str!("wgsl/fused.wgsl");
 const WEIGHTED: &str = include_str!("wgsl/weighted.wgsl");
 
-/// A footprint in a buffer: two vec4f.
-const FOOTPRINT_BYTES: u64 = 32;
+/// The averages of a texel in a buffer: two vec4f.
+const AVERAGES_BYTES: u64 = 32;
 
-/// Texels of the level that is read, along each side of what a workgroup takes in.
+/// Texels of the level that is read, along each side of a workgroup's input.
 const FUSED_TILE: u32 = 64;
-/// Texels of the level that is written, along each side of what a workgroup makes.
+/// Texels of the level that is written, along each side of a workgroup's output.
 const WEIGHTED_TILE: u32 = 8;
 
 /// Pipelines and bindings of every dispatch.
@@ -80,12 +80,12 @@ pub(super) fn begin_pass<'e>(
     })
 }
 
-/// Where dispatches leave their last level as floats for the next one, in turn: the first writes into the first.
+/// The buffers in which dispatches leave their last level as floats for the next one, alternately: the first writes into the first.
 async fn states(gpu: &Gpu, job: &Job, steps: &[Step]) -> Result<[wgpu::Buffer; 2], GpuError> {
     let bytes = |turn: usize| {
         let handed_on = steps.iter().take(steps.len() - 1).enumerate();
         let in_turn = handed_on.filter(|(index, step)| index % 2 == turn && step.last > 0);
-        in_turn.map(|(_, step)| job.texels(step.last) * FOOTPRINT_BYTES).max().unwrap_or(FOOTPRINT_BYTES)
+        in_turn.map(|(_, step)| job.texels(step.last) * AVERAGES_BYTES).max().unwrap_or(AVERAGES_BYTES)
     };
     let descriptor = |turn| wgpu::BufferDescriptor {
         label: Some("levels as floats"),
@@ -177,7 +177,7 @@ fn input_from_map<'a>(job: &'a Job, bindings: &mut Bindings<'a>, counts: bool) -
     job.map_wgsl() + input
 }
 
-/// A later level is read as the dispatch before left it.
+/// A later level is read as the previous dispatch left it.
 fn input_from_state<'a>(bindings: &mut Bindings<'a>, state: &'a wgpu::Buffer) -> String {
     bindings.storage("state_in", "array<vec4f>", Access::Read, state);
     include_str!("wgsl/input_buffer.wgsl").to_owned()
@@ -187,7 +187,7 @@ fn texture_name(layer: usize, halvings: u32) -> String {
     format!("texture_{layer}_{halvings}")
 }
 
-/// `store_N`: what becomes of a texel of the level N halvings after the one that is read.
+/// `store_N`: stores a texel of the level N halvings after the one that is read.
 fn store(job: &Job, halvings: u32, written: bool, state: bool) -> String {
     let texels = if written { job.target.store_wgsl() } else { include_str!("wgsl/store_no_texels.wgsl") };
     let state =
@@ -201,7 +201,7 @@ fn store(job: &Job, halvings: u32, written: bool, state: bool) -> String {
     constant(&numbered("HALVINGS"), format_args!("{halvings}u")) + &renamed(&wgsl, &names)
 }
 
-/// The kernel's text, its entry point, and the workgroups that it takes.
+/// The kernel's source, its entry point, and its number of workgroups.
 fn kernel(job: &Job, step: &Step) -> (String, &'static str, (u32, u32)) {
     let (width, height) = job.level_size(step.input);
     let quad = match step.average {

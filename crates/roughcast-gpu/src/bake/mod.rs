@@ -1,7 +1,7 @@
-//! LEAN and CLEAN maps made on the GPU, fast enough for bumps that move every frame.
+//! LEAN and CLEAN maps baked on the GPU, fast enough for bumps that move every frame.
 //!
-//! The result is that of [`roughcast::bake`] to within one step of the format on every texel of every level: the same
-//! options, the same order of additions, quotients and roots rounded as the CPU rounds them.
+//! The result matches that of [`roughcast::bake`] within one step of the format on every texel of every level: the same
+//! options, the same order of additions, quotients and roots rounded as on the CPU.
 
 mod bandwidth;
 mod bindings;
@@ -42,16 +42,16 @@ const SLOPE_LIMIT: &str = include_str!("wgsl/slope_limit.wgsl");
 /// How a map is baked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BakePath {
-    /// Compute shaders where the device has them, else render passes.
+    /// Compute shaders if the device has them, otherwise render passes.
     #[default]
     Fastest,
     /// Compute shaders.
     Compute,
-    /// Render passes, the LEAN text's own way.
+    /// Render passes, the method of the LEAN paper (section 3).
     Raster,
 }
 
-/// Bakes a map of one size and format, again and again: pipelines, bindings and textures are made once.
+/// Bakes a map of one size and format repeatedly: pipelines, bindings and textures are created once.
 pub struct GpuBaker {
     gpu: Gpu,
     job: Job,
@@ -76,20 +76,20 @@ struct Job {
     textures: Vec<wgpu::Texture>,
     /// WGSL's `PackedStores`.
     stores: wgpu::Buffer,
-    /// Mended texels, in the order of [`SourceCounts`].
+    /// Repaired texels, in the order of [`SourceCounts`].
     counts: wgpu::Buffer,
 }
 
-/// Floats of WGSL's `PackedStores`, and the places of the scale and the largest slope among them.
+/// Floats of WGSL's `PackedStores`, and the indices of the scale and the largest slope among them.
 const STORES_FLOATS: usize = 12;
 const SCALE_AT: usize = 10;
 const LIMIT_AT: usize = 11;
 
 impl GpuBaker {
-    /// For images like this one, which is uploaded as the first. Nothing is baked yet.
+    /// A baker for images like this one, which is uploaded. Nothing is baked yet.
     ///
     /// # Errors
-    /// [`GpuError`] if options do not go together or not on a GPU, the map is too large, or a format is not there.
+    /// [`GpuError`] if options contradict each other or are unsupported on a GPU, the map is too large, or a format is missing.
     pub async fn for_image(
         gpu: &Gpu,
         image: &Image,
@@ -120,7 +120,7 @@ impl GpuBaker {
         Self::for_texture(gpu, &map, source, roughness, options, path).await
     }
 
-    /// For a texture that is on the GPU already, such as bumps drawn every frame; its level 0 is read whenever the bake
+    /// A baker for a texture that is already on the GPU, such as bumps drawn every frame; its level 0 is read whenever the bake
     /// runs. It needs the usage `TEXTURE_BINDING`.
     ///
     /// # Errors
@@ -174,9 +174,9 @@ impl GpuBaker {
         Ok(())
     }
 
-    /// Encodes the bake of what the map's texture will hold by then. Nothing new is made on the GPU.
+    /// Encodes the bake of what the map's texture will contain by then. It creates nothing on the GPU.
     ///
-    /// `span` measures it: a compute bake as a whole; of one by render passes all but the search for a scale.
+    /// `span` measures it: a compute bake as a whole; with render passes, all but the search for a scale.
     pub fn encode(&self, encoder: &mut wgpu::CommandEncoder, span: Option<&Span>) {
         encoder.clear_buffer(&self.job.counts, 0, None);
         if let Some(auto_scale) = &self.auto_scale {
@@ -211,7 +211,7 @@ impl GpuBaker {
         &self.job.textures
     }
 
-    /// Dispatches that a bake takes, without those that find a scale; none where it takes render passes.
+    /// Dispatches of a bake, without those that find a scale; 0 with render passes.
     pub fn dispatch_count(&self) -> usize {
         match &self.work {
             Work::Compute(compute) => compute.dispatch_count(),
@@ -219,7 +219,7 @@ impl GpuBaker {
         }
     }
 
-    /// A buffer of which the eleventh float is the scale, and the twelfth the largest slope, for shaders: see `bake/common.wgsl`, `PackedStores`.
+    /// A buffer whose eleventh float is the scale, and whose twelfth is the largest slope, for shaders: see `bake/common.wgsl`, `PackedStores`.
     pub fn scale_buffer(&self) -> &wgpu::Buffer {
         &self.job.stores
     }
@@ -249,7 +249,7 @@ impl GpuBaker {
         Ok(bytemuck::pod_collect_to_vec(&read_buffer(&self.gpu, &self.job.stores).await?))
     }
 
-    /// Texels that the last bake had to mend; nothing where it was made by render passes, which do not count.
+    /// Texels that the last bake repaired; `None` with render passes, which do not count them.
     ///
     /// # Errors
     /// [`GpuError::ReadBack`] if the device was lost.
@@ -288,7 +288,7 @@ impl Job {
         map_format.check_channels(&plan.source)?;
         if map.dimension() != wgpu::TextureDimension::D2 || map.sample_count() != 1 {
             return Err(GpuError::Shape(
-                "a map is a two-dimensional texture of one sample a texel".to_owned(),
+                "a map is a two-dimensional texture of one sample per texel".to_owned(),
             ));
         }
         if !map.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
@@ -331,7 +331,7 @@ impl Job {
         u64::from(width) * u64::from(height)
     }
 
-    /// Zero where the largest slope is known.
+    /// Zero if the largest slope is known.
     fn survey_stride(&self) -> u32 {
         match self.plan.source.max_slope {
             MaxSlope::Auto => {
@@ -352,9 +352,9 @@ impl Job {
         bindings.sampled_texture("map", format.wgsl_type(), format.sample_type(), &self.map_view);
     }
 
-    /// WGSL of `map_slope` and of `footprint_of_slope`, once the map is declared.
+    /// WGSL of `map_slope` and of `averages_of_slope`, once the map is declared.
     fn map_wgsl(&self) -> String {
-        self.map_format.wgsl(&self.plan.source) + self.target.footprint_wgsl()
+        self.map_format.wgsl(&self.plan.source) + self.target.averages_wgsl()
     }
 
     /// WGSL's `Params` for a pass that reads this level.
@@ -385,7 +385,7 @@ impl Job {
     }
 }
 
-/// WGSL's `PackedStores`: for a scale, or for floats and until a scale is found the identity; and the largest slope.
+/// WGSL's `PackedStores`: for a scale, or the identity for floats and until a scale is found; and the largest slope.
 fn stores_buffer(gpu: &Gpu, scale: Option<f32>, max_slope: f32) -> wgpu::Buffer {
     let mut floats: [f32; STORES_FLOATS] = match scale {
         None => [1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0],
@@ -414,11 +414,11 @@ async fn counts_buffer(gpu: &Gpu) -> Result<wgpu::Buffer, GpuError> {
         usage |= wgpu::BufferUsages::STORAGE;
     }
     let descriptor =
-        wgpu::BufferDescriptor { label: Some("mended texels"), size: 16, usage, mapped_at_creation: false };
+        wgpu::BufferDescriptor { label: Some("repaired texels"), size: 16, usage, mapped_at_creation: false };
     gpu.create_buffer("counts", &descriptor).await
 }
 
-/// Bakes one image and waits for nothing: the textures are there as soon as anything that reads them runs.
+/// Bakes one image without waiting: the textures are ready before any later command reads them.
 ///
 /// # Errors
 /// As [`GpuBaker::for_image`].

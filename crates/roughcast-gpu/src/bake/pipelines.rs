@@ -1,4 +1,4 @@
-//! Pipelines by their text: levels that are made in the same way share one.
+//! Pipelines by their source: levels that are made in the same way share one.
 
 /// Pipelines made so far.
 pub(super) struct Pipelines<P> {
@@ -10,7 +10,7 @@ impl<P: Clone> Pipelines<P> {
         Self { made: Vec::new() }
     }
 
-    /// The pipeline of this text, made where there is none. Texts say all that makes pipelines differ.
+    /// Returns the pipeline for this shader source, creating it if needed. The source alone identifies a pipeline.
     pub fn of(&mut self, source: String, make: impl FnOnce(&str) -> P) -> P {
         if let Some((_, pipeline)) = self.made.iter().find(|(known, _)| *known == source) {
             return pipeline.clone();

@@ -1,19 +1,19 @@
 //! Which levels each dispatch makes.
 //!
-//! A dispatch writes as many levels as the device binds storage textures (four a stage by WebGPU's defaults, many more
-//! natively) and as workgroup memory reaches. Averages are taken in the order in which the CPU takes them.
+//! A dispatch writes as many levels as the device binds storage textures (four per stage by WebGPU's defaults, many more
+//! natively) and as workgroup memory allows. Averages are computed in the same order as on the CPU.
 
 use roughcast::{level_sizes, levels_of_four};
 
 /// Halvings that one workgroup makes: two in the registers of a thread, four in workgroup memory.
 pub(super) const MOST_HALVINGS: u32 = 6;
 
-/// How a level comes from the one before.
+/// How a level is computed from the previous one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Average {
-    /// Equal averages of four, rows first, as the CPU's fused pass.
+    /// Equal averages of four, rows first, as in the CPU's fused pass.
     OfFour,
-    /// Equal averages of four, columns first, as the CPU's weighted pass where both sides are even.
+    /// Equal averages of four, columns first, as in the CPU's weighted pass if both sides are even.
     OfFourWeighted,
     /// Coverage weights of any size.
     Weighted,
@@ -24,7 +24,7 @@ pub(super) enum Average {
 pub(super) struct Step {
     /// The level that is read: 0 is the map itself.
     pub input: u32,
-    /// The first level that is written: the input where this is the first dispatch, else the one after.
+    /// The first level that is written: the input for the first dispatch, otherwise the next one.
     pub first: u32,
     /// The last level that is written.
     pub last: u32,
@@ -43,12 +43,12 @@ impl Step {
     }
 }
 
-/// The dispatches for a map of this size where each may write so many levels, at least one.
+/// The dispatches for a map of this size if each may write this many levels, at least one.
 pub(super) fn steps(width: u32, height: u32, levels_a_step: u32) -> Vec<Step> {
     let sizes = level_sizes(width as usize, height as usize);
     let last = sizes.len() as u32 - 1;
     let of_four = levels_of_four(width as usize, height as usize) as u32;
-    // The first dispatch writes level 0 as well.
+    // The first dispatch also writes level 0.
     let first_end = of_four.min(levels_a_step - 1).min(MOST_HALVINGS);
     let mut steps = vec![Step { input: 0, first: 0, last: first_end, average: Average::OfFour }];
     let mut made = first_end;

@@ -1,8 +1,8 @@
-//! The text's own way, for devices without compute shaders: one render pass from the map into level 0 of both textures,
+//! The method of the LEAN paper (section 3), for devices without compute shaders: one render pass from the map into level 0 of both textures,
 //! further render passes for the mips.
 //!
 //! Every level after the first is averaged into textures of single floats and rounded from there, so that rounding does
-//! not pile up from level to level.
+//! not accumulate from level to level.
 
 use roughcast::levels_of_four;
 
@@ -37,7 +37,7 @@ enum Input<'a> {
     State(&'a [wgpu::TextureView; 2]),
 }
 
-/// What a pass makes.
+/// What a pass writes.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Output {
     /// Texels of the level that is read.
@@ -93,7 +93,7 @@ impl Pass {
         timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) {
         let attachment = |view| {
-            // Every texel that is read later is drawn, so what was there before does not matter.
+            // Every texel that is read later is drawn, so earlier contents do not matter.
             let ops = wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store };
             wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
         };

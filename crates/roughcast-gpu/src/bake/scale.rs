@@ -1,4 +1,4 @@
-//! The scale of unsigned texels, and the largest slope where it follows from the map: chosen by the caller, or found on the GPU
+//! The scale of unsigned texels, and the largest slope if it follows from the map: chosen by the caller, or found on the GPU
 //! by one more pass over the map, and kept there.
 
 use super::bindings::{Access, Bindings};
@@ -9,7 +9,7 @@ use crate::{Gpu, GpuError};
 const COMMON: &str = include_str!("wgsl/common.wgsl");
 const SCALE: &str = include_str!("wgsl/scale.wgsl");
 
-/// Texels along each side of what a workgroup looks at.
+/// Texels along each side of a workgroup's input.
 const TILE: u32 = 64;
 
 /// Bytes of WGSL's `Survey`: two counts and the bins of a histogram.
@@ -17,7 +17,7 @@ const SURVEY_BYTES: u64 = 4 * (2 + SLOPE_BINS);
 /// Of the histogram, as in limit.wgsl.
 const SLOPE_BINS: u64 = 1089;
 
-/// Finds the smallest scale that holds every slope.
+/// Finds the smallest scale that represents every slope.
 pub(super) struct AutoScale {
     survey: wgpu::Buffer,
     look: Dispatch,
@@ -27,7 +27,7 @@ pub(super) struct AutoScale {
 impl AutoScale {
     pub async fn new(gpu: &Gpu, job: &Job) -> Result<Self, GpuError> {
         if !gpu.has_compute() {
-            let instead = "choose the scale yourself (--scale), or store half floats (--bits half)";
+            let instead = "choose the scale, or store half floats";
             return Err(GpuError::Feature { feature: "compute shaders, which find a scale", instead });
         }
         let descriptor = wgpu::BufferDescriptor {
@@ -44,7 +44,7 @@ impl AutoScale {
         Ok(Self { survey, look, set_scale })
     }
 
-    /// Forgets the slopes of the frame before.
+    /// Clears the slopes of the previous frame.
     pub fn encode_reset(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.clear_buffer(&self.survey, 0, None);
     }

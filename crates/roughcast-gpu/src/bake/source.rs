@@ -20,7 +20,7 @@ enum Texel {
     Value,
 }
 
-/// What shaders have to know of a map.
+/// What shaders need to know about a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct MapFormat {
     format: wgpu::TextureFormat,
@@ -29,7 +29,7 @@ pub(super) struct MapFormat {
 }
 
 impl MapFormat {
-    /// Of a texture of the caller's.
+    /// For a texture of the caller.
     pub fn of_texture(format: wgpu::TextureFormat) -> Result<Self, GpuError> {
         use wgpu::TextureFormat as F;
         let (texel, channels) = match format {
@@ -56,7 +56,7 @@ impl MapFormat {
         Ok(Self { format, texel, channels })
     }
 
-    /// Of the texture into which an image is copied. Unsigned samples go in as codes, which every device reads exactly.
+    /// For the texture that an image is copied into. Unsigned samples are stored as codes, which every device reads exactly.
     pub fn of_image(image: &Image) -> Result<Self, GpuError> {
         use wgpu::TextureFormat as F;
         let formats = match image.samples().sample_type() {
@@ -87,7 +87,7 @@ impl MapFormat {
 
     /// Channels that the options need and this format lacks are an error.
     pub fn check_channels(self, options: &SourceOptions) -> Result<(), GpuError> {
-        // The third of three channels is the third of a texture's four.
+        // A texture of three channels has four; the third stays the third.
         let needed = match options.kind {
             Kind::Height => 1,
             Kind::Normal => options.normal_channels.needed(),
@@ -164,7 +164,7 @@ pub(super) fn code_of_wrap(wrap: Wrap) -> u32 {
     }
 }
 
-/// What a stored height is multiplied by to give texels.
+/// The factor from a stored height to texels.
 pub(super) fn texels_from_height(options: &SourceOptions, width: u32) -> f32 {
     let sign = match options.height_sense {
         HeightSense::WhiteHigh => 1.0,

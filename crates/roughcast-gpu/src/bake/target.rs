@@ -1,4 +1,4 @@
-//! What is baked: a layout's textures with all their levels, and the WGSL that turns a footprint into their texels.
+//! What is baked: a layout's textures with all their levels, and the WGSL that encodes averages as their texels.
 
 use roughcast::texture::{self, Layout, Texture, TextureArray, TextureInfo};
 use roughcast::{
@@ -41,7 +41,7 @@ impl Target {
             SampleType::F32 => {
                 return refuse(
                     "the GPU bakes 8 bits, 16 bits and half floats: single floats cannot be filtered everywhere; \
-                     say --bits half, or bake on the CPU"
+                     store half floats, or bake on the CPU"
                         .to_owned(),
                 );
             }
@@ -58,7 +58,7 @@ impl Target {
         self.sample_type.is_float()
     }
 
-    /// Makes the textures with all their levels.
+    /// Creates the textures with all their levels.
     pub async fn textures(
         self,
         gpu: &Gpu,
@@ -110,11 +110,11 @@ impl Target {
         }
     }
 
-    /// WGSL of `footprint_of_slope(slope)`, a texel of level 0.
-    pub fn footprint_wgsl(self) -> &'static str {
+    /// WGSL of `averages_of_slope(slope)`, a texel of level 0.
+    pub fn averages_wgsl(self) -> &'static str {
         match self.layout {
-            Layout::Lean => include_str!("wgsl/footprint_with_normal.wgsl"),
-            _ => include_str!("wgsl/footprint_without_normal.wgsl"),
+            Layout::Lean => include_str!("wgsl/averages_with_normal.wgsl"),
+            _ => include_str!("wgsl/averages_without_normal.wgsl"),
         }
     }
 

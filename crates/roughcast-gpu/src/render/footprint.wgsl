@@ -1,12 +1,12 @@
-// What the pixel sees of the variance under the sampler. Fine derivatives: the difference to the one neighbour, as the CPU renderer
-// has it.
+// The part of the variance under the sampler that is under the pixel. Fine derivatives: the difference to one neighbour, as in the CPU
+// renderer.
 fn pixel_ratio(mean: vec2f, at: DetailPoint) -> FootprintRatio {
     let size = vec2f(textureDimensions(map0));
     let texels_dx = dpdxFine(at.uv) * size;
     let texels_dy = dpdyFine(at.uv) * size;
     let mean_dx = dpdxFine(mean);
     let mean_dy = dpdyFine(mean);
-    // The nearest texel alone has no filter.
+    // Nearest sampling has no filter.
     if sampling.max_anisotropy == 0.0 {
         return whole_footprint();
     }

@@ -24,7 +24,7 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// Uploads a shape. `detail` is that of [`Shape::triangles`]; meshes are taken as they are.
+    /// Uploads a shape. `detail` is that of [`Shape::triangles`]; meshes are used unchanged.
     ///
     /// # Errors
     /// [`GpuError::BufferTooLarge`], [`GpuError::OutOfMemory`].

@@ -19,7 +19,7 @@ pub async fn render(
     size: (u32, u32),
 ) -> Result<Picture, GpuError> {
     if renderer.target() != RenderTarget::Parts {
-        let line = "pictures are read back from a renderer for RenderTarget::Parts: make one";
+        let line = "pictures are read back from a renderer for RenderTarget::Parts: create one";
         return Err(GpuError::Shape(line.to_owned()));
     }
     let gpu = renderer.gpu();
@@ -47,7 +47,7 @@ pub async fn render(
     })
 }
 
-/// Refuses what is no picture, or too large a one.
+/// Refuses pictures without pixels, and too large ones.
 pub(super) fn check_size((width, height): (u32, u32)) -> Result<(), GpuError> {
     let pixels = u64::from(width) * u64::from(height);
     if (1..=MAX_PIXELS).contains(&pixels) { Ok(()) } else { Err(RenderError::Size(width, height).into()) }

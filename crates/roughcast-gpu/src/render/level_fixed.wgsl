@@ -1,4 +1,4 @@
-// A level of detail that is given.
+// A fixed level of detail.
 
 fn filtered(map: texture_2d<f32>, uv: vec2f) -> vec4f {
     return textureSampleLevel(map, map_sampler, uv, sampling.detail);

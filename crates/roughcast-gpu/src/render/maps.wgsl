@@ -1,9 +1,9 @@
-// How maps are sampled: what all detail modules of textures need of their host.
+// How maps are sampled: the host functions for all detail modules of textures.
 
 struct Sampling {
-    detail: f32,            // levels added to the hardware's; or the level, where it is fixed
+    detail: f32,            // levels added to the hardware's; or the level, if it is fixed
     roughness_channel: u32, // of the second texture
-    max_anisotropy: f32,    // taps along the footprint; 0 where only the nearest texel is taken
+    max_anisotropy: f32,    // taps along the footprint; 0 for nearest sampling
 }
 
 @group(1) @binding(0) var<uniform> options: LobeOptions;

@@ -1,7 +1,7 @@
 //! The real-time renderer: the scenes and the shading models of the CPU's, with the GPU's own texture filters.
 //!
 //! A [`Renderer`] draws into one kind of target: a window's surface, an offscreen texture, or a [`Picture`] that is read
-//! back. What it draws is put together of a [`Geometry`] and [`GpuTextures`], each uploaded once, into a [`Drawing`], whose
+//! back. It combines a [`Geometry`] and [`GpuTextures`], each uploaded once, into a [`Drawing`], whose
 //! view may change every frame.
 //!
 //! ```text
@@ -45,9 +45,9 @@ use uniforms::{VIEW_WORDS, light_words, room_for, view_words};
 /// What is rendered to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RenderTarget {
-    /// One colour target of this format: radiance, and coverage as alpha. Nothing is clipped or encoded but by the format.
+    /// One colour target of this format: radiance, and coverage as alpha. Only the format clips or encodes.
     Colour(wgpu::TextureFormat),
-    /// Two colour targets of single floats: radiance and coverage, and the part of the radiance that specular lobes made.
+    /// Two colour targets of single floats: radiance and coverage, and the part of the radiance from specular lobes.
     Parts,
 }
 
@@ -78,7 +78,7 @@ impl RenderTarget {
 pub struct DrawOptions {
     /// The texture filter. Hardware has three of them: nearest, trilinear and anisotropic with up to 16 taps.
     pub sampler: Sampler,
-    /// The lobe. What the textures say of themselves goes before what is said here.
+    /// The lobe. Properties stored with the textures take precedence.
     pub lobe: LobeOptions,
 }
 
@@ -87,7 +87,7 @@ pub struct DrawOptions {
 pub struct Renderer {
     gpu: Gpu,
     target: RenderTarget,
-    /// Of the view; those of the maps depend on their number.
+    /// The layout of the view; those of the maps depend on their number.
     view_layout: wgpu::BindGroupLayout,
     map_layouts: Vec<wgpu::BindGroupLayout>,
     pipelines: HashMap<ShaderKey, wgpu::RenderPipeline>,
@@ -136,7 +136,7 @@ impl Renderer {
         self.target
     }
 
-    /// Makes a shape and textures ready to be drawn. [`Drawing::set_view`] has to follow.
+    /// Prepares a shape and textures for drawing. Call [`Drawing::set_view`] next.
     ///
     /// # Errors
     /// [`GpuError::OnlyOnCpu`] for a filter that hardware does not have; [`GpuError::Refused`] if the driver does not
@@ -196,17 +196,17 @@ impl Renderer {
     }
 }
 
-/// The shader that samples these textures so.
+/// The key of the shader that samples these textures with this sampler.
 fn key(textures: &GpuTextures, sampling: &Sampling) -> ShaderKey {
     ShaderKey { shading: textures.shading, reader: textures.reader, level: sampling.level }
 }
 
 impl Drawing {
-    /// Changes lobe and texture filter of the next frames. Nothing is uploaded again; a shader is compiled only where the renderer
+    /// Changes lobe and texture filter of the next frames. Nothing is uploaded again; a shader is compiled only if the renderer
     /// has none yet for this kind of filter.
     ///
     /// # Errors
-    /// As [`Renderer::prepare`]. The drawing is then as it was.
+    /// As [`Renderer::prepare`]. The drawing is then unchanged.
     pub async fn set_options(
         &mut self,
         renderer: &mut Renderer,
@@ -225,10 +225,10 @@ impl Drawing {
     }
 
     /// Sets camera, lights, material, repeats and background of the next frames, in a target of `size` pixels. The scene's
-    /// shape is that of the geometry; it only tells here where the depths lie.
+    /// shape is that of the geometry; here it only determines the range of depths.
     ///
     /// # Errors
-    /// [`GpuError::Scene`] if the camera shows nothing or the size is zero; and where so many lights do not fit.
+    /// [`GpuError::Scene`] if the camera is invalid or the size is zero; an error, too, if there are too many lights.
     pub async fn set_view(
         &mut self,
         renderer: &Renderer,
@@ -254,8 +254,8 @@ impl Drawing {
         Ok(())
     }
 
-    /// Encodes a pass that draws into the views, in the [order](Views::order) that they state. The time it takes is written where
-    /// `timestamps` says, such as [`crate::Span::of_render_pass`].
+    /// Encodes a pass that draws into the views, in the [order](Views::order) that they state. Its time is written where
+    /// `timestamps` specifies, such as [`crate::Span::of_render_pass`].
     pub fn draw(
         &self,
         encoder: &mut wgpu::CommandEncoder,

@@ -7,7 +7,7 @@ use super::textures::GpuTextures;
 use super::{DEPTH_FORMAT, DrawOptions, RenderTarget};
 use crate::{Gpu, GpuError};
 
-/// No source of bumps has more textures.
+/// The most textures of a source of bumps.
 const MAX_TEXTURES: u32 = 3;
 
 /// The layout of the view's group, and those of the maps' groups with one texture and more.
@@ -106,7 +106,7 @@ impl BindGroups<'_> {
         self.group("the view of a scene", self.view_layout, resources).await
     }
 
-    /// The textures, a sampler, and the uniforms that say how they are read.
+    /// The textures, a sampler, and the uniforms that specify how to read them.
     pub async fn maps(
         &self,
         layout: &wgpu::BindGroupLayout,

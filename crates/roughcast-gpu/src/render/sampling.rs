@@ -7,21 +7,21 @@ use super::shader::LevelOfDetail;
 use super::textures::GpuTextures;
 use crate::GpuError;
 
-/// Taps that anisotropic filtering may take: as many as WebGPU knows.
+/// Taps of anisotropic filtering: WebGPU's maximum.
 const MAX_TAPS: u16 = 16;
-/// The biases that WGSL's `textureSampleBias` takes.
+/// The range of biases of WGSL's `textureSampleBias`.
 const BIASES: (f64, f64) = (-16.0, 15.99);
 /// Beyond the last level of any texture.
 const LAST_LEVEL: f64 = 32.0;
 
-/// A sampler of the CPU's as the hardware has it.
+/// A sampler of the CPU renderer in terms of the hardware.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sampling {
     /// Where the level of detail comes from.
     pub level: LevelOfDetail,
-    /// The level, or what is added to it.
+    /// The level, or the bias.
     pub value: f32,
-    /// Taps along the footprint that the sampler may take; 0 for the nearest texel alone.
+    /// Taps along the footprint; 0 for nearest sampling.
     pub max_anisotropy: u16,
     filter: Filter,
     wrap: Wrap,
@@ -31,7 +31,7 @@ impl Sampling {
     pub fn new(sampler: &Sampler) -> Result<Self, GpuError> {
         let Sampler { filter, level, mip_bias, wrap } = *sampler;
         let level = match filter {
-            // The CPU's, which has no footprint: of level 0, or of the level nearest to the one given.
+            // As on the CPU, without a footprint: level 0, or the level nearest to the given one.
             Filter::Nearest => Some(level.unwrap_or(0.0).round()),
             Filter::Trilinear | Filter::Anisotropic => level,
             Filter::Ewa | Filter::SummedArea => {
@@ -42,7 +42,7 @@ impl Sampling {
             }
         };
         let (level, value) = match level {
-            // As on the CPU, what is not a number is the finest level.
+            // As on the CPU, NaN is the finest level.
             Some(level) => (LevelOfDetail::Fixed, if level > 0.0 { level.min(LAST_LEVEL) } else { 0.0 }),
             None => (LevelOfDetail::Derivatives, mip_bias.clamp(BIASES.0, BIASES.1)),
         };
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn the_filters_of_the_cpu_are_refused_by_name() {
+    fn filters_of_the_cpu_are_refused_by_name() {
         for filter in [Filter::Ewa, Filter::SummedArea] {
             let sampler = Sampler { filter, ..Sampler::default() };
             let line = Sampling::new(&sampler).expect_err("no hardware has it").to_string();
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn levels_and_biases_are_those_that_the_hardware_takes() {
+    fn levels_and_biases_are_clamped_to_the_hardware_range() {
         let nearest = sampling(Filter::Nearest, None, 3.0);
         assert_eq!((nearest.level, nearest.value), (LevelOfDetail::Fixed, 0.0));
         assert_eq!(sampling(Filter::Nearest, Some(1.6), 0.0).value, 2.0);

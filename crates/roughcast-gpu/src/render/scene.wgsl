@@ -1,5 +1,5 @@
 // The shaders of a scene, for any source of bumps and any model. The host composes them with a detail module
-// (`detail_distribution`), and puts the model's functions in the places of `model_surface` and `model_lobe`.
+// (`detail_distribution`), and replaces `model_surface` and `model_lobe` by the model's functions.
 
 struct SceneView {
     clip_from_world: mat4x4f,   // depth falls from 1 at the near plane to 0 at the far one
@@ -38,7 +38,7 @@ fn project(
     return Varyings(clip, position, normal, tangent, uv * scene_view.repeats);
 }
 
-// Unit vector, or another where the vector is zero.
+// Unit vector, or `other` if the vector is zero.
 fn unit_or(v: vec3f, other: vec3f) -> vec3f {
     let squared = dot(v, v);
     // Smaller ones may be flushed to zero, whose inverse root is infinite.
@@ -67,10 +67,10 @@ struct LightAt {
     irradiance: vec3f,
 }
 
-// Square of the distance below which a point light's irradiance does not grow any more.
+// Square of the distance below which a point light's irradiance is constant.
 const LEAST_SQUARED_DISTANCE: f32 = 1e-12;
 
-// Unit vector towards a light and the irradiance of a surface that faces it, at a point. The vector is zero at the place
+// Unit vector towards a light and the irradiance of a surface that faces it, at a point. The vector is zero at the position
 // of a point light, which therefore gives no light there.
 fn light_at(light: SceneLight, position: vec3f) -> LightAt {
     if light.place.w == 0.0 {
@@ -83,7 +83,7 @@ fn light_at(light: SceneLight, position: vec3f) -> LightAt {
 
 struct Parts {
     @location(0) radiance: vec4f,   // alpha: coverage
-    @location(1) specular: vec4f,   // the part of the radiance that the specular lobes made
+    @location(1) specular: vec4f,   // the part of the radiance from specular lobes
 }
 
 fn shaded(fragment: Varyings, front: bool) -> Parts {

@@ -1,11 +1,11 @@
-//! The shader of a scene: the library's functions, a source of bumps, and a model, put together from WGSL files.
+//! The shader of a scene: the library's functions, a source of bumps, and a model, composed from WGSL files.
 
 use roughcast::UnknownName;
 use roughcast::shading::Shading;
 use roughcast::texture::{Part, TexelReader};
 use roughcast::wgsl;
 
-/// Where the textures begin among the bindings of the map's group.
+/// The first binding of textures in the map's group.
 pub(super) const FIRST_TEXTURE: u32 = 4;
 
 const SCENE: &str = include_str!("scene.wgsl");
@@ -16,12 +16,12 @@ const MAP1: &str = include_str!("map1.wgsl");
 const MAP1_ROUGHNESS: &str = include_str!("map1_roughness.wgsl");
 const MAP2: &str = include_str!("map2.wgsl");
 
-/// Where a sampler's level of detail comes from.
+/// The source of a sampler's level of detail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LevelOfDetail {
     /// From the derivatives of the texture coordinates between pixels, as the hardware takes them, plus a bias.
     Derivatives,
-    /// It is given.
+    /// It is fixed.
     Fixed,
 }
 
@@ -37,14 +37,14 @@ impl LevelOfDetail {
     }
 }
 
-/// What tells one shader from another.
+/// What identifies a shader.
 #[derive(Clone, Copy, Debug)]
 pub struct ShaderKey {
     /// The model.
     pub shading: Shading,
     /// The source of bumps: textures of a layout.
     pub reader: &'static TexelReader,
-    /// Where the level of detail comes from.
+    /// The source of the level of detail.
     pub level: LevelOfDetail,
 }
 
@@ -63,7 +63,7 @@ impl std::hash::Hash for ShaderKey {
 }
 
 impl ShaderKey {
-    /// A reader is told by its module.
+    /// The module identifies a reader.
     fn parts(&self) -> (Shading, &'static str, LevelOfDetail) {
         (self.shading, self.reader.module, self.level)
     }
@@ -72,7 +72,7 @@ impl ShaderKey {
 /// The WGSL of a model on a source of bumps: the vertex shader `project`, and the fragment shaders `radiance` (for one colour target,
 /// alpha is coverage) and `parts` (that, and the specular part for a second target).
 ///
-/// Group 0 holds what changes with the view: 0 the view and the material's colours, 1 the lights. Group 1 holds the maps:
+/// Group 0 contains what changes with the view: 0 the view and the material's colours, 1 the lights. Group 1 contains the maps:
 /// 0 [`roughcast::shading::LobeOptions`], 1 [`roughcast::texture::Packing`], 2 the sampling, 3 a sampler, and from 4 on the
 /// textures in the order of [`TexelReader::inputs`].
 ///

@@ -1,4 +1,4 @@
-//! A model's textures in the GPU's memory, in the format in which they are stored.
+//! A model's textures in the GPU's memory, in their stored format.
 
 use roughcast::shading::{LobeOptions, Shading};
 use roughcast::texture::{Packing, TexelReader, Texture, TextureArray, TextureInfo};
@@ -7,7 +7,7 @@ use roughcast_scene::{DetailError, model_inputs};
 
 use crate::{Gpu, GpuError};
 
-/// The textures that a shading model samples, and what their texels mean. Cheap to clone: they are shared.
+/// The textures that a shading model samples, and the meaning of their texels. Cheap to clone: they are shared.
 #[derive(Clone, Debug)]
 pub struct GpuTextures {
     pub(super) shading: Shading,
@@ -19,7 +19,7 @@ pub struct GpuTextures {
 }
 
 impl GpuTextures {
-    /// Uploads the model's textures out of the files of its [layout](Shading::layout), all levels, as they are stored:
+    /// Uploads the model's textures from the files of its [layout](Shading::layout), all levels, in their stored type:
     /// 8-bit and 16-bit unsigned, half or single floats. Three channels become four.
     ///
     /// # Errors
@@ -41,7 +41,7 @@ impl GpuTextures {
         })
     }
 
-    /// Takes textures that are on the GPU already, such as those that a bake fills every frame: one for each layer of the
+    /// Uses textures that are already on the GPU, such as those that a bake fills every frame: one for each layer of the
     /// layout, in their order. They need the usage `TEXTURE_BINDING`.
     ///
     /// # Errors
@@ -90,13 +90,13 @@ impl GpuTextures {
         self.reader
     }
 
-    /// The options with what the textures say of themselves.
+    /// The options, with the properties stored with the textures.
     pub(super) fn options(&self, options: LobeOptions) -> LobeOptions {
         options.for_maps(&self.info)
     }
 }
 
-/// How a baked texture's texels are to be read; only integers are scaled.
+/// How to read a baked texture's texels; only integers are scaled.
 fn sample_type(format: wgpu::TextureFormat) -> SampleType {
     use wgpu::TextureFormat::{R8Unorm, R16Unorm, Rg8Unorm, Rg16Unorm, Rgba8Unorm, Rgba16Unorm};
     match format {

@@ -1,4 +1,4 @@
-//! What the shaders are told of a scene, as the words of their structs.
+//! The uniforms of a scene, as the words of the shaders' structs.
 
 use roughcast_scene::{Bounds, Light, Scene};
 
@@ -39,7 +39,7 @@ fn clip_from_world(scene: &Scene, (width, height): (u32, u32)) -> [f32; 16] {
     let (near, far) = depth_range(scene.shape.bounds(), scene);
     let aspect = f64::from(width) / f64::from(height);
     let mut columns = scene.camera.clip_from_world(aspect, near, far).to_cols_array();
-    // In f64, before rounding: w - z of single floats would have lost what the reversal is for.
+    // In f64, before rounding: w - z of single floats would lose the precision that the reversal is for.
     for column in columns.chunks_exact_mut(4) {
         column[2] = column[3] - column[2];
     }
@@ -51,7 +51,7 @@ fn depth_range(bounds: Bounds, scene: &Scene) -> (f64, f64) {
     let forward = (scene.camera.target - scene.camera.eye).normalize();
     let middle = (bounds.centre - scene.camera.eye).dot(forward);
     let radius = bounds.radius * (1.0 + MARGIN);
-    // Where the shape lies behind the eye nothing is seen, with whatever planes.
+    // If the shape lies behind the eye, nothing is visible with any planes.
     let far = (middle + radius).max(radius);
     ((middle - radius).max(NEAREST * far), far)
 }
@@ -71,7 +71,7 @@ pub(super) fn light_words(lights: &[Light]) -> Vec<u32> {
     words
 }
 
-/// Words of a buffer for lights of this many words: twice as many where the device's limit allows it, so that lights added
+/// Words of a buffer for lights of this many words: twice as many if the device's limit allows it, so that lights added
 /// one by one do not cost a buffer each.
 pub(super) fn room_for(words: usize, limit_bytes: u64) -> usize {
     let limit = usize::try_from(limit_bytes / size_of::<u32>() as u64).unwrap_or(usize::MAX);
@@ -100,12 +100,12 @@ mod tests {
     }
 
     #[test]
-    fn spare_room_does_not_refuse_lights_that_fit() {
+    fn spare_room_does_not_exceed_the_limit() {
         let limit = 100 * LIGHT_WORDS;
         let bytes = (limit * size_of::<u32>()) as u64;
         assert_eq!(room_for(limit, bytes), limit);
         assert_eq!(room_for(limit - LIGHT_WORDS, bytes + 5), limit);
-        // What does not fit stays what it is, to be refused with its own size.
+        // What does not fit is unchanged, to be refused with its own size.
         assert_eq!(room_for(limit + LIGHT_WORDS, bytes), limit + LIGHT_WORDS);
     }
 }

@@ -1,4 +1,4 @@
-// What interpolation at a given level covers.
+// The variances of interpolation at a given level.
 fn sampler_variances(axes: FootprintAxes) -> FilterVariances {
     return level_variances(sampling.detail);
 }

@@ -6,9 +6,9 @@ pub enum Order {
     /// The target is cleared to the background, and nothing else is drawn into it with these depths.
     #[default]
     Only,
-    /// The target is cleared to the background, and its depths are kept for what follows.
+    /// The target is cleared to the background, and its depths are kept for later drawings.
     First,
-    /// What is there stays, but for what is hidden.
+    /// Earlier contents stay, except where they are hidden.
     Next,
 }
 

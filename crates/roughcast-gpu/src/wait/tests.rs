@@ -111,7 +111,7 @@ fn an_executor_that_polls_without_reason_starts_no_more_threads() {
 }
 
 #[test]
-fn an_answer_that_is_there_needs_no_thread() {
+fn a_ready_answer_needs_no_thread() {
     let (work, _ends) = Work::new();
     assert_eq!(counted(called_back(&work, |answer| answer.send(3))), (Ok(3), 1, 0));
     assert_eq!(work.polls(), 0);

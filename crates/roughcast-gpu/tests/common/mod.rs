@@ -9,7 +9,7 @@ pub mod scenes;
 
 use roughcast_gpu::{Gpu, GpuOptions, LimitChoice};
 
-/// A device with all that the adapter has. Without an adapter every test fails: none is skipped in silence.
+/// A device with all features of the adapter. Without an adapter every test fails: none is skipped silently.
 pub fn gpu() -> Gpu {
     gpu_with(&GpuOptions::default())
 }

@@ -58,7 +58,7 @@ pub fn options(sampler: Sampler, lobe: LobeOptions) -> DrawOptions {
     DrawOptions { sampler, lobe }
 }
 
-/// How far two pictures are apart.
+/// The difference of two pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Apart {
     /// Largest difference of a channel, in parts of the larger of the value and of a hundredth of the brightest value.

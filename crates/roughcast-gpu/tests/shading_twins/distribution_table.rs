@@ -1,4 +1,4 @@
-//! Distributions and what models make of them: the functions in WGSL beside their Rust twins.
+//! Distributions and the surfaces of models: the functions in WGSL beside their Rust twins.
 
 use roughcast::shading::*;
 use roughcast::texture::Base;

@@ -1,4 +1,4 @@
-//! Runs functions of the WGSL library on the GPU and compares what they give with their Rust twins.
+//! Runs functions of the WGSL library on the GPU and compares their results with those of their Rust twins.
 
 use std::fmt::Write;
 
@@ -159,11 +159,11 @@ const RELATIVE: f32 = 1e-4;
 /// to a product with an exponent of up to 16384.
 const FLUSHED: f32 = 2e-34;
 
-/// The first result that is not what the Rust twin gives, in words.
+/// The first result that differs from the Rust twin's, in words.
 pub fn first_difference(twin: &Twin, cases: &[Case], results: &[Vec<f32>]) -> Option<String> {
     cases.iter().zip(results).find_map(|(case, got)| {
         let (wanted, allowed) = wanted_and_allowed(twin, case);
-        // Not a number is never close, and what may be anything is not tested.
+        // NaN is never close, and arbitrary results are not tested.
         let close = |i: &usize| (got[*i] - wanted[*i]).abs() <= allowed[*i] && allowed[*i].is_finite();
         let wrong = (0..wanted.len()).find(|i| !close(i))?;
         Some(format!(
@@ -173,7 +173,7 @@ pub fn first_difference(twin: &Twin, cases: &[Case], results: &[Vec<f32>]) -> Op
     })
 }
 
-/// What the Rust twin gives, and how far from it each result may be.
+/// The results of the Rust twin, and their tolerances.
 pub fn wanted_and_allowed(twin: &Twin, case: &Case) -> (Vec<f32>, Vec<f32>) {
     let rust = |arguments: &[f32]| (twin.rust)(arguments, &case.options, &case.packing);
     let wanted = rust(&case.arguments);

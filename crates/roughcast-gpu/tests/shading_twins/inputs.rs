@@ -1,4 +1,4 @@
-//! Arguments for the twins: what shading meets, and the extremes of it.
+//! Arguments for the twins: typical values of shading, and extremes.
 
 use roughcast::Slope;
 use roughcast::shading::{

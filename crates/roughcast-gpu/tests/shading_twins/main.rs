@@ -69,7 +69,7 @@ fn every_function_gives_what_its_rust_twin_gives() {
 }
 
 #[test]
-fn the_cases_of_every_lobe_see_its_highlight() {
+fn the_cases_of_every_lobe_include_its_highlight() {
     // Else a twin that is always zero would do.
     const LEAST: f64 = 0.2;
     for twin in twins().iter().filter(|twin| twin.name.ends_with("_lobe")) {
@@ -130,8 +130,8 @@ fn far_results(twin: &Twin) -> f64 {
 }
 
 #[test]
-fn few_results_may_be_far_off() {
-    /// A limit this many times what is measured says nothing.
+fn few_results_have_loose_tolerances() {
+    /// A limit this many times the measured value is too loose.
     const LOOSEST: f64 = 4.0;
     let mut faults = Vec::new();
     for twin in twins() {
@@ -147,7 +147,7 @@ fn few_results_may_be_far_off() {
 }
 
 #[test]
-fn wrong_twins_are_caught() {
+fn wrong_twins_are_detected() {
     let (gpu, right) = (gpu(), library());
     // The kinds of mistake that one makes: a sign, a factor, a swapped axis, a forgotten normalisation, a wrong form, a
     // missing clamp, and a rounding that is too coarse.

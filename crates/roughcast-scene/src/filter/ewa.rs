@@ -1,7 +1,7 @@
 //! Elliptical weighted average: P. Heckbert, "Fundamentals of Texture Mapping and Image Warping", 1989, section 3.
 //!
-//! The pixel filter is a Gaussian with a deviation of half a pixel, the one of the truth. Its image in the texture is a
-//! Gaussian with an elliptical contour, which weighs the texels of one level.
+//! The pixel filter is a Gaussian with a standard deviation of half a pixel, that of the ground truth. Its image in the texture is a
+//! Gaussian with an elliptical contour, which weights the texels of one level.
 
 use glam::DVec2;
 use roughcast::Wrap;
@@ -11,29 +11,29 @@ use super::footprint::Ellipse;
 use crate::Footprint;
 use crate::mipmap::{Level, Mipmap, wrapped};
 
-/// Deviations at which the Gaussian ends; beyond lies 1 % of its weight, which the texels within get instead.
+/// Standard deviations at which the Gaussian ends; beyond lies 1 % of its weight, which is distributed over the texels within.
 const RADIUS: f64 = 3.0;
 /// Variance of a plane Gaussian over that of the same Gaussian ended at [`RADIUS`], `1 / (1 - x / (e^x - 1))` with
-/// `x = RADIUS^2 / 2`. Widened by it, what is left has the variance that was wanted.
+/// `x = RADIUS^2 / 2`. Widened by it, the truncated Gaussian has the wanted variance.
 const WIDENING: f64 = 1.053244;
-/// The shorter deviation has at least this many texels of the level, and less than twice as many: enough that a sum over
-/// texels is the integral to a hundredth.
+/// The shorter standard deviation has at least this many texels of the level, and less than twice as many: enough that a sum over
+/// texels matches the integral to one per cent.
 const TEXELS: f64 = 1.0;
 /// Largest ratio of the axes. Beyond it the shorter is lengthened, so that a sample costs at most some 4000 texels.
 pub(super) const MAX_ECCENTRICITY: f64 = 32.0;
-/// Smallest variance, in texels squared: that of bilinear interpolation, into which a magnified texture fades.
+/// Smallest variance, in texels squared: that of bilinear interpolation, to which magnified textures converge.
 const INTERPOLATION_VARIANCE: f64 = 1.0 / 6.0;
-/// On the last level deviations grow no further than this many times its longer side: all has long been averaged.
+/// On the last level standard deviations grow to at most this many times its longer side: everything has been averaged long before.
 const LAST_LEVEL_SIDES: f64 = 2.0;
 
-/// Deviations along the axes of the ellipse, in texels of level 0: the longer, and the shorter, which is no less than the largest ratio
+/// Standard deviations along the axes of the ellipse, in texels of level 0: the longer, and the shorter, which is at least what the largest ratio
 /// of axes allows.
 fn deviations(ellipse: &Ellipse) -> [f64; 2] {
     let [major, minor] = [ellipse.major, ellipse.minor].map(|axis| f64::from(PIXEL_DEVIATION) * axis);
     [major, minor.max(major / MAX_ECCENTRICITY)]
 }
 
-/// The level at which the shorter deviation has its texels.
+/// The level at which the shorter standard deviation has its texels.
 fn level_of(minor: f64) -> usize {
     (minor / TEXELS).max(1.0).log2() as usize
 }
@@ -47,7 +47,7 @@ pub(super) fn sample(mipmap: &Mipmap, uv: DVec2, texels: &Footprint, wrap: Wrap)
     let level = &mipmap.levels()[number];
 
     let (width, height) = mipmap.size();
-    // Texels of this level in one of level 0; not the same both ways where sizes were odd.
+    // Texels of this level in one of level 0; the two directions differ if sizes were odd.
     let shrink = DVec2::new(level.width() as f64 / width as f64, level.height() as f64 / height as f64);
     let longest =
         if number == last { LAST_LEVEL_SIDES * level.width().max(level.height()) as f64 } else { f64::MAX };
@@ -112,7 +112,7 @@ impl Gaussian {
                 weights += weight;
             }
         }
-        // The smallest contour has a radius of 1.22 texels; it holds at least one centre.
+        // The smallest contour has a radius of 1.22 texels; it contains at least one centre.
         sum.map(|sum| sum / weights)
     }
 }

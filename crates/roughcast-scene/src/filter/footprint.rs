@@ -1,16 +1,16 @@
-//! A pixel's footprint in texels, safe to compute with.
+//! A pixel's footprint in texels, limited to finite values.
 
 use glam::DVec2;
 use roughcast::Wrap;
 
 use crate::Footprint;
 
-/// Texels beyond which a footprint is not told apart from a larger one: any texture has long been averaged as a whole.
+/// Texels beyond which footprints are equivalent: any texture has been averaged as a whole long before.
 const HUGE: f64 = 1e9;
-/// Distance in textures beyond which a clamped coordinate is not told apart: its texel is the edge's.
+/// Distance in textures beyond which clamped coordinates are equivalent: the texel is the edge's.
 const FAR: f64 = 1e6;
 
-/// The footprint in texels of level 0. What is not finite is as large as footprints get.
+/// The footprint in texels of level 0. Non-finite values become the largest footprint.
 pub(super) fn in_texels(footprint: &Footprint, (width, height): (usize, usize)) -> Footprint {
     let size = DVec2::new(width as f64, height as f64);
     let texels = |axis: DVec2| {
@@ -20,7 +20,7 @@ pub(super) fn in_texels(footprint: &Footprint, (width, height): (usize, usize)) 
     Footprint { dx: texels(footprint.dx), dy: texels(footprint.dy) }
 }
 
-/// Texture coordinates within the period of their wrap mode, so that they keep their digits. What is not finite is 0.
+/// Texture coordinates within the period of their wrap mode, so that they keep their digits. Non-finite values become 0.
 pub(super) fn reduced(uv: DVec2, wrap: Wrap) -> DVec2 {
     let reduce = |x: f64| {
         let x = finite(x, 0.0);
@@ -37,7 +37,7 @@ fn finite(x: f64, otherwise: f64) -> f64 {
     if x.is_finite() { x } else { otherwise }
 }
 
-/// The ellipse into which a footprint turns a circle of one pixel's diameter.
+/// The ellipse that is the image of a circle of one pixel's diameter under a footprint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ellipse {
     /// Unit vector along the longer axis.

@@ -1,11 +1,11 @@
-//! Point sampling: the texel that lies nearest, of a single level.
+//! Point sampling: the nearest texel of a single level.
 
 use glam::DVec2;
 use roughcast::Wrap;
 
 use crate::mipmap::{Level, wrapped};
 
-/// The texel whose area holds `uv`.
+/// The texel whose area contains `uv`.
 pub(super) fn sample(level: &Level, uv: DVec2, wrap: Wrap) -> [f64; 4] {
     let x = wrapped((uv.x * level.width() as f64).floor() as i64, level.width(), wrap);
     let y = wrapped((uv.y * level.height() as f64).floor() as i64, level.height(), wrap);

@@ -9,7 +9,7 @@ use roughcast::shading::FilterVariances;
 use crate::Footprint;
 use crate::mipmap::Level;
 
-/// Periods of the texture beyond which a box is cut: the mean over more of them is the texture's.
+/// Periods of the texture at which a box is cut: the mean over more of them is the texture's.
 const MAX_PERIODS: f64 = 64.0;
 
 /// Sums of all texels above and to the left of each corner of a texel.
@@ -67,7 +67,7 @@ pub(super) fn variances(texels: &Footprint, direction: DVec2) -> FilterVariances
     FilterVariances { moments, variances: [0.0; 2] }
 }
 
-/// An integral along one axis, as weights of the corners that the table knows.
+/// An integral along one axis, as weights of the table's corners.
 struct Difference {
     terms: [(usize, f64); 6],
     length: f64,
@@ -78,7 +78,7 @@ fn difference(centre: f64, length: f64, texels: usize, wrap: Wrap) -> Difference
     let n = texels as f64;
     let length = length.clamp(1.0, MAX_PERIODS * n);
     let centre = match wrap {
-        // Further out there is nothing but the edge's texel, and large coordinates would cost digits.
+        // Further out there is only the edge's texel, and large coordinates would cost digits.
         Wrap::Clamp => centre.clamp(-0.5 * length, n + 0.5 * length),
         Wrap::Repeat | Wrap::Mirror => centre,
     };
@@ -91,7 +91,7 @@ fn difference(centre: f64, length: f64, texels: usize, wrap: Wrap) -> Difference
     Difference { terms, length }
 }
 
-/// The integral from 0 to `at`, in texels, with what the wrap mode has beyond the edges.
+/// The integral from 0 to `at`, in texels, continued beyond the edges by the wrap mode.
 fn antiderivative(at: f64, texels: usize, wrap: Wrap) -> [(usize, f64); 3] {
     let n = texels as f64;
     let inside = |at: f64, sign: f64| {
@@ -112,7 +112,7 @@ fn antiderivative(at: f64, texels: usize, wrap: Wrap) -> [(usize, f64); 3] {
             let [a, b] = if mirrored { inside(2.0 * n - rest, -1.0) } else { inside(rest, 1.0) };
             [a, b, (texels, 2.0 * periods + if mirrored { 2.0 } else { 0.0 })]
         }
-        // Beyond the edges the outermost texel goes on: its integral is the difference of two corners.
+        // Beyond the edges the outermost texel continues: its integral is the difference of two corners.
         Wrap::Clamp => {
             let within = at.clamp(0.0, n);
             let [a, b] = inside(within, 1.0);

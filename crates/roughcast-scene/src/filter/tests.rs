@@ -141,7 +141,7 @@ fn filtered_moments_have_a_covariance() {
 }
 
 #[test]
-fn whatever_the_footprint_the_result_is_finite_and_within_the_texture() {
+fn results_are_finite_and_within_the_texture_for_any_footprint() {
     let texture = noise(20, 12, 4);
     let odd = [0.0, 1.0, -1.0, 1e-300, 1e300, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
     let mut random = Random(5);
@@ -163,7 +163,7 @@ fn whatever_the_footprint_the_result_is_finite_and_within_the_texture() {
 }
 
 #[test]
-fn a_huge_footprint_sees_the_mean_of_the_texture() {
+fn a_huge_footprint_gives_the_mean_of_the_texture() {
     // Fewer than all texels count equally in the last levels of odd sizes; a power of two has no such remainder.
     let texture = noise(32, 16, 6);
     let top = &texture.levels()[0];
@@ -213,7 +213,7 @@ fn magnified_textures_are_interpolated_bilinearly() {
 }
 
 #[test]
-fn nearest_is_the_texel_that_holds_the_point() {
+fn nearest_is_the_texel_that_contains_the_point() {
     let texture = noise(5, 3, 9);
     let sampler = Sampler { filter: Filter::Nearest, ..Sampler::default() };
     let huge = Footprint { dx: DVec2::X, dy: DVec2::Y };
@@ -289,7 +289,7 @@ fn wave(size: usize, periods: DVec2) -> Mipmap {
 
 #[test]
 fn elliptical_weights_are_the_gaussian_of_the_footprint() {
-    /// What ending the Gaussian at 3 deviations does to a wave, its variance mended, and interpolation where a
+    /// What truncating the Gaussian at 3 standard deviations, with corrected variance, does to a wave, and interpolation if a
     /// footprint is no wider than a texel.
     const TRUNCATION: f64 = 0.02;
     let size = 256;
@@ -319,7 +319,7 @@ fn elliptical_weights_are_the_gaussian_of_the_footprint() {
 }
 
 #[test]
-fn elliptical_weights_are_those_of_a_naive_sum() {
+fn elliptical_weights_match_a_naive_sum() {
     // Footprints whose shorter axis is below four texels use level 0: then every texel can be summed up.
     let size = 24_i64;
     let texture = noise(24, 24, 14);

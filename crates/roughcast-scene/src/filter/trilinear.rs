@@ -15,7 +15,7 @@ pub(super) fn level_of(texels: &Footprint) -> f64 {
     Ellipse::of(texels).major.max(f64::MIN_POSITIVE).log2()
 }
 
-/// The texture at a level of detail between 0 and the last; others are brought within.
+/// The texture at a level of detail, clamped to 0 and the last level.
 pub(super) fn sample(mipmap: &Mipmap, uv: DVec2, level: f64, wrap: Wrap) -> [f64; 4] {
     let levels = mipmap.levels();
     let last = levels.len() - 1;

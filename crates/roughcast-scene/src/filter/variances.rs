@@ -1,4 +1,4 @@
-//! What a pixel sees of the variance under a texture filter, for every filter of the CPU renderer.
+//! The part of the variance under a texture filter that is under the pixel, for every filter of the CPU renderer.
 
 use glam::DVec2;
 use roughcast::shading::{
@@ -10,7 +10,7 @@ use super::footprint::{Ellipse, in_texels, reduced};
 use super::{Filter, Sampler, anisotropic, ewa, summed_area};
 use crate::{DetailPoint, Footprint, Mipmap};
 
-/// The place of a pixel among the four whose differences graphics hardware takes for derivatives: the sign of the way to its
+/// The position of a pixel among the four whose differences graphics hardware uses as derivatives: the sign of the step to its
 /// neighbour in the row, and in the column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Quad {
@@ -19,7 +19,7 @@ pub(crate) struct Quad {
 }
 
 impl Quad {
-    /// Of the pixel in this column and row.
+    /// For the pixel in this column and row.
     pub fn of(x: u32, y: u32) -> Self {
         let sign = |i: u32| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
         Self { x: sign(x), y: sign(y) }
@@ -27,9 +27,9 @@ impl Quad {
 }
 
 impl Sampler {
-    /// What the pixel sees of the variance of a texture whose first two channels hold the mean slope, as `slope` unpacks it.
-    /// `mean` is that texture's texel at this place. Derivatives of the mean are differences of samples, as graphics hardware
-    /// has them.
+    /// The part of the variance that is under the pixel, for a texture whose first two channels contain the mean slope, as `slope` unpacks it.
+    /// `mean` is that texture's texel at this point. Derivatives of the mean are differences of samples, as in graphics
+    /// hardware.
     pub(crate) fn footprint_ratio(
         &self,
         texture: &Mipmap,

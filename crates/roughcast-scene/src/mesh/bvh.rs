@@ -1,7 +1,7 @@
 //! The nearest triangle on a ray.
 //!
-//! The `obvhs` crate's bounding volume hierarchy finds candidates in single floats; each is then intersected in f64. So
-//! that rounding of the former loses none of the latter, the hierarchy is built in units of the mesh's bounding sphere,
+//! The `obvhs` crate's bounding volume hierarchy finds candidates in single floats; each is then intersected in f64. To
+//! avoid losing candidates by rounding, the hierarchy is built in units of the mesh's bounding sphere,
 //! rays are started close to it, and boxes are padded.
 
 use glam::Vec3A;
@@ -21,7 +21,7 @@ const PADDING: f32 = 4e-6;
 /// Rays start this many radii before the point nearest to the mesh's middle, if their eye is farther away.
 const START: f64 = 2.0;
 
-/// The hierarchy of a mesh's triangles, one a leaf.
+/// The hierarchy of a mesh's triangles, one per leaf.
 #[derive(Clone)]
 pub(super) struct TriangleBvh {
     bvh: Bvh2,
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn the_hierarchy_finds_what_all_triangles_have() {
+    fn the_hierarchy_finds_the_nearest_of_all_triangles() {
         for (scale, shift) in
             [(1.0, [0.0; 3]), (1e-6, [0.0; 3]), (1e6, [3e6, -2e6, 0.0]), (1.0, [500.0, 0.0, 0.0])]
         {

@@ -1,6 +1,6 @@
 //! Why a mesh cannot be used.
 
-/// What is wrong with a mesh, and what helps.
+/// What is wrong with a mesh, and the remedy.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshFault {
@@ -12,19 +12,19 @@ pub enum MeshFault {
         /// The most there may be.
         limit: usize,
     },
-    /// Nothing to be hit.
+    /// No triangle can be hit.
     #[error("no triangle with an area: give a mesh with a surface")]
     NoTriangles,
-    /// A triangle names a vertex that is not there.
-    #[error("a triangle names vertex {index}, but there are {vertices}: export the mesh anew")]
+    /// A triangle refers to a missing vertex.
+    #[error("a triangle names vertex {index}, but there are {vertices}: export the mesh again")]
     IndexOutOfRange {
         /// The index, counted from zero.
         index: u32,
         /// Vertices of that part.
         vertices: usize,
     },
-    /// Indices that are no triples, or attributes of different numbers.
-    #[error("{count} {what} do not fit {expected}: export the mesh anew")]
+    /// Indices that are not triples, or attributes of different lengths.
+    #[error("{count} {what} do not fit {expected}: export the mesh again")]
     Count {
         /// Which.
         what: &'static str,
@@ -34,7 +34,7 @@ pub enum MeshFault {
         expected: String,
     },
     /// NaN or infinity.
-    #[error("vertex {vertex} has {what} that are not finite numbers: export the mesh anew")]
+    #[error("vertex {vertex} has {what} that are not finite numbers: export the mesh again")]
     NotFinite {
         /// Positions, normals, tangents or texture coordinates.
         what: &'static str,

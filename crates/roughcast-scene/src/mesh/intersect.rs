@@ -17,8 +17,8 @@ pub(super) struct Found {
     pub weights: DVec3,
 }
 
-/// The nearest triangle on a ray, found by looking at all of them: what there is without the feature `render`, and what the
-/// hierarchy is tested against.
+/// The nearest triangle on a ray, found by testing all of them: used without the feature `render`, and as the reference for
+/// the hierarchy.
 #[cfg(any(test, not(feature = "render")))]
 #[derive(Clone)]
 pub(super) struct AllTriangles;
@@ -40,7 +40,7 @@ impl AllTriangles {
     }
 }
 
-/// A ray made ready to be intersected with triangles.
+/// A ray prepared for intersection with triangles.
 ///
 /// After Woop, Benthin and Wald, Watertight Ray/Triangle Intersection, 2013: space is sheared so that the ray is its z
 /// axis, and a point is inside where it lies on the same side of three edges. An edge that two triangles share is
@@ -78,7 +78,7 @@ impl Intersector {
         let sum = sides.x + sides.y + sides.z;
         let weights = sides / sum;
         let distance = weights.dot(DVec3::new(a.z, b.z, c.z));
-        // False for NaN: a triangle seen edge on, whose sides are all zero.
+        // False for NaN: a triangle viewed edge-on, whose sides are all zero.
         (distance > 0.0 && distance.is_finite()).then_some((distance, weights))
     }
 }
@@ -88,7 +88,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_triangle_is_met_where_it_is() {
+    fn rays_meet_a_triangle_at_the_right_point() {
         let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
         let meet = |x: f64, y: f64, z: f64, d: f64| {
             Intersector::new(&Ray { origin: DVec3::new(x, y, z), direction: DVec3::Z * d }).meet(corners)

@@ -1,4 +1,4 @@
-//! Parts of a mesh become one set of checked arrays. Missing normals, tangents and texture coordinates are zeros in it.
+//! Merges the parts of a mesh into one set of checked arrays, in which missing normals, tangents and texture coordinates are zero.
 
 use std::collections::HashSet;
 
@@ -31,7 +31,7 @@ pub(super) fn merge(parts: Vec<TriangleMesh>) -> Result<TriangleMesh, MeshFault>
     if merged.indices.is_empty() { Err(MeshFault::NoTriangles) } else { Ok(merged) }
 }
 
-/// Appends the attribute of a part with so many vertices, or zeros where it has none.
+/// Appends the attribute of a part with this many vertices, or zeros if it has none.
 fn append<const N: usize>(to: &mut Vec<[f32; N]>, from: Vec<[f32; N]>, vertices: usize) {
     let length = to.len() + vertices;
     to.extend(from);
@@ -43,7 +43,7 @@ pub(super) fn uv_set_count(part: &TriangleMesh) -> usize {
     part.uv_sets.iter().take_while(|set| !set.is_empty()).count()
 }
 
-/// Appends the texture coordinates of a part with so many vertices behind the `before` that are there. Vertices without a
+/// Appends the texture coordinates of a part with this many vertices after the existing `before` ones. Vertices without a
 /// set that another part has get zeros.
 fn append_sets(to: &mut Vec<Vec<[f32; 2]>>, mut from: Vec<Vec<[f32; 2]>>, before: usize, vertices: usize) {
     to.resize(to.len().max(from.len()), vec![[0.0; 2]; before]);
@@ -53,7 +53,7 @@ fn append_sets(to: &mut Vec<Vec<[f32; 2]>>, mut from: Vec<Vec<[f32; 2]>>, before
     }
 }
 
-/// Whether arrays and indices of a part fit together and all numbers are finite.
+/// Checks that the arrays and indices of a part fit together and all numbers are finite.
 fn check(part: &TriangleMesh) -> Result<(), MeshFault> {
     let vertices = part.positions.len();
     if !part.indices.len().is_multiple_of(3) {
@@ -95,7 +95,7 @@ fn drop_unseen_triangles(mesh: &mut TriangleMesh) {
     for triangle in mesh.indices.chunks_exact(3) {
         let vertices: [usize; 3] = std::array::from_fn(|i| triangle[i] as usize);
         let [a, b, c] = vertices.map(|i| position(mesh, i));
-        // The same triangle may start at any of its vertices; the other way round it is another, the back of a sheet.
+        // The same triangle may start at any of its vertices; with reversed order it is a different one, the back of a sheet.
         let mut key = vertices.map(|i| mesh.positions[i].map(f32::to_bits));
         let least = (0..3).min_by_key(|&i| key[i]).unwrap_or(0);
         key.rotate_left(least);

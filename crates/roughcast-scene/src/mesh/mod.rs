@@ -24,18 +24,18 @@ pub const MAX_TRIANGLES: usize = 1 << 22;
 /// The most vertices of a mesh.
 pub const MAX_VERTICES: usize = 3 * MAX_TRIANGLES;
 
-/// Texture coordinates of a triangle whose area is smaller than this part of the product of its sides do not tell where
+/// Texture coordinates of a triangle whose area is smaller than this fraction of the product of its sides do not determine where
 /// u and v grow: single floats do not resolve it.
 const MIN_UV_SINE: f64 = 1e-7;
 
-/// A triangle mesh with a frame and, where it has them, texture coordinates at each vertex.
+/// A triangle mesh with a frame and, if it has them, texture coordinates at each vertex.
 #[derive(Clone)]
 pub struct Mesh {
     triangles: TriangleMesh,
-    /// Those that every part has.
+    /// The number of sets that every part has.
     uv_set_count: usize,
     bounds: Bounds,
-    /// Finds the one that a ray meets.
+    /// Finds the triangle that a ray hits.
     finder: Triangles,
 }
 
@@ -55,9 +55,9 @@ impl Mesh {
     ///
     /// Each part needs positions and indices; its other arrays may be empty. Missing normals are computed, smooth across
     /// all triangles that meet at a position and weighted by their areas; missing tangents by MikkTSpace. A triangle that
-    /// turns clockwise seen from the side to which its normals point is turned over. Triangles without an area,
-    /// and those that repeat another, are dropped. The mesh counts as having the sets of texture coordinates that all parts
-    /// have: none, where one part has none.
+    /// turns clockwise seen from the side that its normals point to is reversed. Triangles without an area,
+    /// and duplicates, are dropped. The mesh has the sets of texture coordinates that all parts
+    /// have: none, if one part has none.
     pub fn new(parts: Vec<TriangleMesh>) -> Result<Self, MeshFault> {
         let uv_set_count = parts.iter().map(merge::uv_set_count).min().unwrap_or(0);
         let mut triangles = merge::merge(parts)?;
@@ -69,8 +69,8 @@ impl Mesh {
         Ok(Self { triangles, uv_set_count, bounds, finder })
     }
 
-    /// Whether every part has texture coordinates. Without them hits have no set of them, and a frame whose tangent is
-    /// any one.
+    /// Whether every part has texture coordinates. Without them hits have no set of them, and a frame with an arbitrary
+    /// tangent.
     pub fn has_texture_coordinates(&self) -> bool {
         self.uv_set_count > 0
     }
@@ -90,12 +90,12 @@ impl Mesh {
         &self.triangles
     }
 
-    /// A sphere about the middle of the bounding box that holds all vertices of triangles.
+    /// A sphere about the middle of the bounding box that contains all vertices of triangles.
     pub fn bounds(&self) -> Bounds {
         self.bounds
     }
 
-    /// See [`crate::Shape::hit`]. It takes time that grows with the logarithm of the number of triangles; without the feature `render`,
+    /// See [`crate::Shape::hit`]. Its time grows with the logarithm of the number of triangles; without the feature `render`,
     /// which has the hierarchy for it, with their number. The point, the texture coordinates and the geometric normal are those of the flat triangle;
     /// the frame is interpolated between its vertices.
     pub fn hit(&self, ray: &Ray) -> Option<Hit> {
@@ -146,7 +146,7 @@ fn position(mesh: &TriangleMesh, vertex: usize) -> DVec3 {
     Vec3::from(mesh.positions[vertex]).as_dvec3()
 }
 
-/// The edges of a triangle in texture coordinates; zero where they have no area.
+/// The edges of a triangle in texture coordinates; zero if they have no area.
 fn resolved([t1, t2]: [DVec2; 2]) -> (DVec2, DVec2) {
     let has_area = t1.perp_dot(t2).abs() > MIN_UV_SINE * t1.length() * t2.length();
     if has_area { (t1, t2) } else { (DVec2::ZERO, DVec2::ZERO) }

@@ -1,4 +1,4 @@
-//! Vertex normals: triangles made to face the way of the file's, and smooth ones where the file has none.
+//! Vertex normals: orients triangles by the file's normals, and computes smooth ones if the file has none.
 
 use std::collections::HashMap;
 
@@ -7,8 +7,8 @@ use glam::{DVec3, Vec3};
 use super::{corners, position};
 use crate::TriangleMesh;
 
-/// Turns over the triangles that turn clockwise seen from where their vertices' normals point, so that the geometric
-/// normal and the handedness of tangents agree with the side that the file calls outside.
+/// Reverses the triangles that turn clockwise seen from where their vertices' normals point, so that the geometric
+/// normal and the handedness of tangents agree with the outer side of the file.
 pub(super) fn turn_towards_normals(mesh: &mut TriangleMesh) {
     for triangle in 0..mesh.indices.len() / 3 {
         let k = corners(mesh, triangle);
@@ -46,7 +46,7 @@ fn sums_by_position(mesh: &TriangleMesh) -> HashMap<[u32; 3], DVec3> {
     sums
 }
 
-/// A position as a key; both zeros are the same one.
+/// A position as a key; both zeros are equal.
 fn key(position: [f32; 3]) -> [u32; 3] {
     position.map(|x| (x + 0.0).to_bits())
 }

@@ -1,6 +1,6 @@
-//! Vertex tangents, by MikkTSpace where the file has none: Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008.
+//! Vertex tangents, by MikkTSpace if the file has none: Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008.
 //!
-//! MikkTSpace's bitangent is along growing v. Ours is along falling v, so it is given (u, 1 - v).
+//! MikkTSpace's bitangent is along growing v. Ours is along falling v, so we pass (u, 1 - v).
 
 use std::collections::HashMap;
 
@@ -10,15 +10,15 @@ use glam::{Vec3, Vec4};
 use super::corners;
 use crate::TriangleMesh;
 
-/// Makes all tangents unit and orthogonal to their normals; triangles with a vertex without a tangent get new ones, for
-/// which vertices are split where triangles disagree.
+/// Makes all tangents unit and orthogonal to their normals; triangles with a vertex without a tangent get new ones,
+/// for which vertices are split if triangles disagree.
 pub(super) fn complete(mesh: &mut TriangleMesh) {
     let faces: Vec<usize> = (0..mesh.indices.len() / 3)
         .filter(|&triangle| corners(mesh, triangle).iter().any(|&i| mesh.tangents[i][..3] == [0.0; 3]))
         .collect();
     if !faces.is_empty() {
         let mut generated = Generated { tangents: vec![[0.0; 4]; 3 * faces.len()], faces, mesh };
-        // Its error has no variants. Were one to come, the tangents would stay zero, and any ones be taken.
+        // Its error has no variants. If one is added, the tangents would stay zero and arbitrary ones would be used.
         let _ = generate_tangents(&mut generated);
         let Generated { tangents, faces, .. } = generated;
         split_vertices(mesh, &faces, &tangents);
@@ -95,7 +95,7 @@ fn split_vertices(mesh: &mut TriangleMesh, faces: &[usize], tangents: &[[f32; 4]
     }
 }
 
-/// The tangent made unit and orthogonal to the normal, with a handedness of one or minus one; any one where it is zero.
+/// The tangent made unit and orthogonal to the normal, with a handedness of one or minus one; an arbitrary one if it is zero.
 fn orthonormal(tangent: [f32; 4], normal: [f32; 3]) -> [f32; 4] {
     let (tangent, normal) = (Vec4::from(tangent), Vec3::from(normal));
     let along = tangent.truncate().reject_from_normalized(normal);

@@ -4,10 +4,10 @@ use super::{MetricError, covered};
 use crate::Picture;
 
 /// Relative error of the energy of the highlights: the sum of the specular radiance over covered pixels and all channels,
-/// over the truth's, minus one. Negative where the picture is too dark.
+/// divided by the ground truth's, minus one. Negative if the picture is too dark.
 ///
 /// # Errors
-/// [`MetricError::NoHighlight`] if the truth has no specular light; [`MetricError::Sizes`],
+/// [`MetricError::NoHighlight`] if the ground truth has no specular light; [`MetricError::Sizes`],
 /// [`MetricError::NothingCovered`].
 pub fn energy_error(picture: &Picture, truth: &Picture) -> Result<f64, MetricError> {
     let pixels = covered(truth, [picture])?;
@@ -32,7 +32,7 @@ mod tests {
     }
 
     #[test]
-    fn only_specular_light_counts_and_there_must_be_some() {
+    fn only_specular_light_counts_and_it_is_required() {
         let truth = picture(2, 2, |_, _| [1.0; 3]);
         let mut brighter = truth.clone();
         brighter.radiance.fill([9.0; 3]);

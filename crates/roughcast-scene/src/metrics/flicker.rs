@@ -1,15 +1,15 @@
-//! Flicker: change over time that the truth does not have.
+//! Flicker: change over time that the ground truth does not have.
 
 use super::{MetricError, covered};
 use crate::Picture;
 
-/// Temporal variance in excess of the truth's, over the frames of a slow camera move.
+/// Temporal variance in excess of the ground truth's, over the frames of a slow camera move.
 ///
 /// For each pixel and channel, `max(0, var(picture) - var(truth))` with the population variance over the frames; then the
 /// mean over all channels and over the pixels that are covered in every frame of both. The unit is radiance squared; no
-/// root is taken, so that the flicker of parts of a picture adds up, and a ratio of two flickers is one of energies.
+/// root is taken, so that the flicker of parts of a picture adds up, and a ratio of two flickers is a ratio of energies.
 ///
-/// What the truth's own bumps do as they pass a pixel is thus allowed, also where a method shows less of it.
+/// The changes in the ground truth itself, as bumps pass a pixel, are thus allowed, even if a method shows less of them.
 ///
 /// # Errors
 /// [`MetricError::Frames`] for fewer than two frames or different numbers; [`MetricError::Sizes`],
@@ -50,13 +50,13 @@ mod tests {
         let still = sequence(|_, x| x as f32);
         let blinking = sequence(|frame, x| x as f32 + if frame % 2 == 0 { 0.5 } else { -0.5 });
         assert_eq!(flicker(&blinking, &still), Ok(0.25));
-        // The truth may blink, and a method may blink less.
+        // The ground truth may blink, and a method may blink less.
         assert_eq!(flicker(&still, &blinking), Ok(0.0));
         assert_eq!(flicker(&blinking, &blinking), Ok(0.0));
     }
 
     #[test]
-    fn less_flicker_in_one_place_does_not_make_up_for_more_in_another() {
+    fn flicker_does_not_cancel_between_pixels() {
         let left = sequence(|frame, x| if x < 2 { (frame % 2) as f32 } else { 0.0 });
         let right = sequence(|frame, x| if x < 2 { 0.0 } else { (frame % 2) as f32 });
         assert_eq!(flicker(&left, &right), Ok(0.125));

@@ -1,4 +1,4 @@
-//! FLIP, the difference that a viewer sees who flips between two pictures.
+//! FLIP, the difference that a viewer sees when flipping between two pictures.
 //!
 //! Source: P. Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", 2020 (LDR), and P. Andersson,
 //! J. Nilsson, P. Shirley, T. Akenine-Möller, "Visualizing Errors in Rendered High Dynamic Range Images", 2021 (HDR).
@@ -28,12 +28,12 @@ const WHITE: [f32; 3] = [0.950_428_55, 1.0, 1.088_900_4];
 /// exposure of 0.6 within.
 const TONE_NUMERATOR: [f32; 3] = [0.6 * 0.6 * 2.51, 0.6 * 0.03, 0.0];
 const TONE_DENOMINATOR: [f32; 3] = [0.6 * 0.6 * 2.43, 0.6 * 0.59, 0.14];
-/// The exposures lie between the one that shows the brightest pixel at this value, and the one that shows the median so.
+/// The exposures lie between the one that shows the brightest pixel at this value, and the one that shows the median at it.
 const TONE_TARGET: f32 = 0.85;
-/// Most stops that are looked at. The paper sets no bound; without one a truth that is mostly black would ask for all.
+/// The most stops that are used. The paper sets no bound; without one, a mostly black ground truth would need all.
 const MAX_STOPS: f32 = 20.0;
 
-/// The errors of all pixels, and what they come to.
+/// The errors of all pixels, and their mean.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlipMap {
     /// Pixels in a row.
@@ -44,7 +44,7 @@ pub struct FlipMap {
     pub mean: f64,
 }
 
-/// LDR-FLIP of two pictures of linear RGB within 0 ..= 1; what lies outside is brought within.
+/// LDR-FLIP of two pictures of linear RGB within 0 ..= 1; other values are clamped.
 ///
 /// # Errors
 /// [`MetricError::Sizes`], [`MetricError::NothingCovered`].
@@ -56,7 +56,7 @@ pub fn ldr_flip(picture: &Picture, truth: &Picture, pixels_per_degree: f32) -> R
     Ok(FlipMap::over(&pixels, truth.width, errors))
 }
 
-/// HDR-FLIP of two pictures of linear radiance: the largest LDR-FLIP over exposures that the truth's covered pixels set.
+/// HDR-FLIP of two pictures of linear radiance: the largest LDR-FLIP over exposures that the ground truth's covered pixels determine.
 ///
 /// # Errors
 /// [`MetricError::Sizes`], [`MetricError::NothingCovered`].
@@ -82,7 +82,7 @@ impl FlipMap {
     }
 }
 
-/// The picture, made like the truth where either is not covered fully: the filters reach over from there.
+/// The picture, with the ground truth's pixels where either is not fully covered: the filters would spread them.
 fn alike(picture: &Picture, truth: &Picture) -> Picture {
     let mut picture = picture.clone();
     for i in 0..truth.len() {
@@ -93,21 +93,21 @@ fn alike(picture: &Picture, truth: &Picture) -> Picture {
     picture
 }
 
-/// Brings a number within 0 ..= 1; none at all is 0.
+/// Clamps a number to 0 ..= 1; NaN becomes 0.
 fn unit(x: f32) -> f32 {
     if x > 0.0 { x.min(1.0) } else { 0.0 }
 }
 
 /// The tone curve.
 fn toned(x: f32) -> f32 {
-    /// From here on the curve is at its end, and squares would leave the range of f32.
+    /// Beyond this the curve is constant, and squares would leave the range of f32.
     const BRIGHTEST: f32 = 1e9;
     let x = if x > 0.0 { x.min(BRIGHTEST) } else { 0.0 };
     let polynomial = |[a, b, c]: [f32; 3]| (a * x + b) * x + c;
     unit(polynomial(TONE_NUMERATOR) / polynomial(TONE_DENOMINATOR))
 }
 
-/// The factors by which the truth is exposed (HDR-FLIP, section 3.2).
+/// The exposure factors, from the ground truth (HDR-FLIP, section 3.2).
 pub(super) fn exposures(mut luminances: Vec<f32>) -> Vec<f32> {
     luminances.retain(|y| y.is_finite());
     luminances.sort_by(f32::total_cmp);
@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_does_not_differ_from_itself_and_black_and_white_differ_most() {
+    fn equal_pictures_have_no_error_and_black_on_white_the_largest() {
         let noise = |x: usize, y: usize| [((x * 7 + y * 13) % 10) as f32 / 10.0; 3];
         let textured = picture(20, 20, noise);
         assert_eq!(ldr_flip(&textured, &textured, DEFAULT_PIXELS_PER_DEGREE).unwrap().mean, 0.0);
@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_covered_does_not_count_nor_reach_over() {
+    fn uncovered_pixels_neither_count_nor_spread() {
         let truth = picture(16, 16, |_, _| [0.5; 3]);
         let mut other = picture(16, 16, |x, _| [if x < 8 { 0.5 } else { 0.9 }; 3]);
         assert!(hdr_flip(&other, &truth, DEFAULT_PIXELS_PER_DEGREE).unwrap().mean > 0.05);

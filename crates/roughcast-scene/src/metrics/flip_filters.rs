@@ -25,19 +25,19 @@ pub(super) const RED_GREEN: &[Term] = &[(1.0, 0.0053)];
 pub(super) const BLUE_YELLOW: &[Term] = &[(34.1, 0.04), (13.5, 0.025)];
 /// The widest b of all: it sets the reach of all kernels.
 const WIDEST: f32 = 0.04;
-/// Distance from peak to trough of the eye's edge detector, in degrees: twice the deviation of its Gaussian.
+/// Distance from peak to trough of the eye's edge detector, in degrees: twice the standard deviation of its Gaussian.
 const FEATURE_WIDTH: f32 = 0.082;
-/// Deviations at which kernels end.
-const DEVIATIONS: f32 = 3.0;
+/// Standard deviations at which kernels end.
+const STANDARD_DEVIATIONS: f32 = 3.0;
 
 /// A kernel of odd length, its middle in the middle.
 fn kernel(radius: i32, weight: impl Fn(f32) -> f32) -> Vec<f32> {
     (-radius..=radius).map(|i| weight(i as f32)).collect()
 }
 
-/// A plane as the eye resolves it: filtered by a contrast sensitivity function, normalised to a sum of one.
+/// A plane as perceived by the eye: filtered by a contrast sensitivity function, normalised to a sum of one.
 pub(super) fn seen(plane: &Plane, terms: &[Term], pixels_per_degree: f32) -> Plane {
-    let radius = (DEVIATIONS * (WIDEST / (2.0 * PI * PI)).sqrt() * pixels_per_degree).ceil() as i32;
+    let radius = (STANDARD_DEVIATIONS * (WIDEST / (2.0 * PI * PI)).sqrt() * pixels_per_degree).ceil() as i32;
     // A Gaussian in the plane is the product of two along the axes; a sum of two is filtered in two parts.
     let parts: Vec<(f32, Vec<f32>)> = terms
         .iter()
@@ -56,10 +56,10 @@ pub(super) fn seen(plane: &Plane, terms: &[Term], pixels_per_degree: f32) -> Pla
     result
 }
 
-/// How strongly each place of a luminance plane (0 ..= 1) is an edge, and how strongly a point.
+/// How strongly each pixel of a luminance plane (0 ..= 1) is an edge, and how strongly a point.
 pub(super) fn features(plane: &Plane, pixels_per_degree: f32) -> [Plane; 2] {
     let deviation = 0.5 * FEATURE_WIDTH * pixels_per_degree;
-    let radius = (DEVIATIONS * deviation).ceil() as i32;
+    let radius = (STANDARD_DEVIATIONS * deviation).ceil() as i32;
     let gauss = |x: f32| (-x * x / (2.0 * deviation * deviation)).exp();
     let smooth = kernel(radius, gauss);
     let total: f32 = smooth.iter().sum();
@@ -84,8 +84,8 @@ fn balanced(mut weights: Vec<f32>) -> Vec<f32> {
     weights
 }
 
-/// A plane correlated with a kernel that is the product of one along the rows and one down the columns. Beyond the edges
-/// the edge goes on.
+/// A plane correlated with a separable kernel, one along the rows and one down the columns. Beyond the edges
+/// the edge pixels repeat.
 fn separable(plane: &Plane, along: &[f32], down: &[f32]) -> Plane {
     let (width, height) = (plane.width, plane.values.len() / plane.width);
     let at =
@@ -115,7 +115,7 @@ mod tests {
     const ROUNDING: f32 = 1e-5; // f32 sums over a few hundred products
 
     #[test]
-    fn an_even_plane_is_seen_as_it_is_and_has_no_features() {
+    fn a_constant_plane_is_unchanged_and_has_no_features() {
         let plane = Plane { width: 9, values: vec![0.7; 45] };
         for terms in [ACHROMATIC, RED_GREEN, BLUE_YELLOW] {
             assert!(seen(&plane, terms, PIXELS_PER_DEGREE).values.iter().all(|v| (v - 0.7).abs() < ROUNDING));

@@ -1,6 +1,6 @@
 //! HDR-FLIP against NVIDIA's own, `flip-evaluator` 1.7 from PyPI, whose numbers `tools/hdr_flip.py` writes.
 //!
-//! The pictures are made by a formula whose values single floats hold exactly, so that both see the same.
+//! The pictures follow a formula whose values are exact in single floats, so that both read the same.
 
 use super::flip::exposures;
 use super::test_pictures::picture;
@@ -11,7 +11,7 @@ use crate::picture::luminance;
 const WIDTH: usize = 48;
 const HEIGHT: usize = 40;
 
-/// Pixels of which [`Expected`] has the error.
+/// Pixels whose error [`Expected`] lists.
 const PIXELS: [(usize, usize); 8] =
     [(0, 0), (47, 39), (12, 8), (23, 20), (24, 20), (31, 7), (40, 30), (5, 33)];
 
@@ -46,7 +46,7 @@ const EXPECTED: [Expected; 3] = [
 
 /// Stops: their coefficients of luminance differ from ours in the fifth digit. Largest measured: 2.4e-5.
 const STOPS: f32 = 1e-4;
-/// Error of a pixel: both compute in f32, with roots that make much of a rounding, as in LDR-FLIP.
+/// Error of a pixel: both compute in f32, with roots that amplify rounding, as in LDR-FLIP.
 const PIXEL: f32 = 2e-4;
 /// Error of the mean, as in LDR-FLIP.
 const MEAN: f64 = 3e-5;
@@ -84,7 +84,7 @@ fn test(name: &str) -> Picture {
     test
 }
 
-/// What is not as expected.
+/// Deviations from the expected values.
 fn fault(map: &FlipMap, expected: &Expected) -> Option<String> {
     let mean = (map.mean - expected.mean).abs();
     if mean.is_nan() || mean > MEAN {
@@ -102,7 +102,7 @@ fn ours(name: &str) -> FlipMap {
 }
 
 #[test]
-fn errors_are_nvidias() {
+fn errors_match_nvidias() {
     for expected in &EXPECTED {
         let fault = fault(&ours(expected.name), expected);
         assert_eq!(fault, None, "{}", expected.name);
@@ -110,7 +110,7 @@ fn errors_are_nvidias() {
 }
 
 #[test]
-fn exposures_are_nvidias() {
+fn exposures_match_nvidias() {
     for Expected { name, exposures: (start, stop, count), .. } in EXPECTED {
         let factors = exposures(reference(name).radiance.iter().map(|rgb| luminance(*rgb)).collect());
         let (first, last) = (factors[0].log2(), factors[factors.len() - 1].log2());
@@ -121,7 +121,7 @@ fn exposures_are_nvidias() {
 }
 
 #[test]
-fn a_wrong_error_is_found() {
+fn a_wrong_error_is_detected() {
     let expected = &EXPECTED[0];
     // Another picture, one pixel that is off, a viewer who is nearer, and LDR-FLIP's answer.
     let mut one = ours("steps");

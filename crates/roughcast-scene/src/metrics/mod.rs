@@ -1,5 +1,5 @@
-//! Measures of how far a picture is from the truth, one per file. All take linear radiance, and look only at pixels that a
-//! surface covers fully in both pictures: how a silhouette is antialiased is not what is measured.
+//! Image metrics, one per file: how far a picture is from the ground truth. All take linear radiance, and use only pixels that a
+//! surface covers fully in both pictures: the antialiasing of silhouettes is not measured.
 
 mod energy;
 mod flicker;
@@ -28,8 +28,10 @@ pub enum MetricError {
     /// No pixel is covered by the surface in both.
     #[error("no pixel is covered by the surface in both pictures; move the camera so that it sees it")]
     NothingCovered,
-    /// The truth has no specular light to compare with.
-    #[error("the truth has no specular radiance; give the scene a light whose highlight the camera sees")]
+    /// The ground truth has no specular light to compare with.
+    #[error(
+        "the ground truth has no specular radiance; give the scene a light whose highlight the camera sees"
+    )]
     NoHighlight,
     /// A sequence is too short for a variance.
     #[error(

@@ -20,7 +20,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_known_difference_is_found_and_none_is_none() {
+    fn a_known_difference_is_measured_and_equal_pictures_give_zero() {
         let truth = picture(4, 2, |x, y| [x as f32, y as f32, 0.0]);
         assert_eq!(rmse(&truth, &truth), Ok(0.0));
         // Two channels off by 3 and 4, in every second pixel: mean of squares (9 + 16) / 3 / 2.
@@ -32,7 +32,7 @@ mod tests {
     }
 
     #[test]
-    fn what_one_picture_does_not_cover_does_not_count() {
+    fn uncovered_pixels_do_not_count() {
         let truth = picture(2, 1, |_, _| [1.0; 3]);
         let mut other = picture(2, 1, |x, _| [1.0 + x as f32; 3]);
         assert!(rmse(&other, &truth).unwrap() > 0.5);

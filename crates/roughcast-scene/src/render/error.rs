@@ -1,4 +1,4 @@
-//! Why nothing is rendered.
+//! Why a picture or a texture is refused.
 
 use super::{MAX_PIXELS, MAX_SAMPLES};
 use crate::CameraError;
@@ -15,8 +15,8 @@ pub enum RenderError {
     /// The camera shows nothing.
     #[error(transparent)]
     Camera(#[from] CameraError),
-    /// A number of samples that is no square, or too large.
-    #[error("{0} samples a pixel cannot be stratified; choose a square number from 1 to {MAX_SAMPLES}")]
+    /// A number of samples that is not a square, or too large.
+    #[error("{0} samples per pixel cannot be stratified; choose a square number from 1 to {MAX_SAMPLES}")]
     Samples(u32),
     /// The caller asked to stop.
     #[error("rendering was stopped")]
@@ -35,7 +35,7 @@ pub enum MipmapError {
         /// Its channels.
         channels: usize,
     },
-    /// No level, or a level whose texels are not as many as its size says.
+    /// No level, or a level whose number of texels does not match its size.
     #[error(
         "level {level} of {width}x{height} has {got} texels; a texture needs at least one level, and every texel of it"
     )]

@@ -13,8 +13,8 @@ pub struct Method<'a> {
     pub shading: Shading,
     /// The source of the bumps.
     pub detail: &'a dyn Detail,
-    /// The lobe. What the detail states of itself, such as an exponent that is baked into its textures, goes before what is
-    /// said here.
+    /// The lobe. Properties that the detail states itself, such as an exponent that is baked into its textures, take precedence over
+    /// these options.
     pub options: LobeOptions,
 }
 

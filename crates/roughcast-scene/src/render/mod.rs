@@ -1,6 +1,6 @@
-//! The CPU renderer: shading methods as a GPU runs them, and the supersampled truth that they are compared with.
+//! The CPU renderer: shading methods as a GPU runs them, and the supersampled ground truth that they are compared with.
 //!
-//! Without the feature `render` only what renderers share is left: limits and errors.
+//! Without the feature `render` it contains only what renderers share: limits and errors.
 
 mod error;
 #[cfg(feature = "render")]
@@ -28,17 +28,17 @@ pub use truth::{PIXEL_FILTER_DEVIATION, PIXEL_FILTER_RADIUS, Truth};
 #[cfg(feature = "render")]
 use rows::{render_rows, render_rows_of_each};
 
-/// Most pixels of a picture; 2 GB.
+/// The most pixels of a picture; 2 GB.
 pub const MAX_PIXELS: u64 = 1 << 26;
-/// Most samples of a pixel.
+/// The most samples per pixel.
 pub const MAX_SAMPLES: u32 = 4096;
 
-/// Told how many rows are done, and of how many; called from any thread, once a row. Where it breaks, rendering ends soon
+/// Receives how many rows are done, and of how many; called from any thread, once per row. If it breaks, rendering ends soon
 /// with [`RenderError::Cancelled`].
 #[cfg(feature = "render")]
 pub type Progress<'a> = &'a (dyn Fn(usize, usize) -> ControlFlow<()> + Sync);
 
-/// A [`Progress`] that lets everything go on.
+/// A [`Progress`] that never stops rendering.
 #[cfg(feature = "render")]
 pub fn unwatched(_done: usize, _rows: usize) -> ControlFlow<()> {
     ControlFlow::Continue(())

@@ -32,7 +32,7 @@ const TAIL_DENOMINATOR: [f64; 5] =
 /// Probability where the tails begin.
 const TAIL: f64 = 0.024_25;
 
-/// The number that a normally distributed one of deviation one stays below with this probability, between 0 and 1.
+/// The value that a standard normal variable stays below with this probability, between 0 and 1.
 pub(super) fn normal_quantile(probability: f64) -> f64 {
     let tail = |p: f64| {
         let q = (-2.0 * p.ln()).sqrt();
@@ -58,8 +58,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_is_the_inverse_of_the_integral_of_the_density() {
-        /// Error of the approximation, at four deviations, and of the sum.
+    fn the_quantile_inverts_the_integral_of_the_density() {
+        /// Error of the approximation, at four standard deviations, and of the sum.
         const TOLERANCE: f64 = 1e-7;
         let density = |x: f64| (-0.5 * x * x).exp() / std::f64::consts::TAU.sqrt();
         // Midpoint rule from far out.

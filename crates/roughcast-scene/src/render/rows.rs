@@ -1,4 +1,4 @@
-//! Pictures filled row by row, on all threads.
+//! Fills pictures row by row, on all threads.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -8,7 +8,7 @@ use super::shade::Shaded;
 use super::{MAX_PIXELS, Progress, RenderError};
 use crate::{Picture, Scene};
 
-/// Fills a picture. The same bits come out for any number of them, since no pixel looks at
+/// Fills a picture. The result is bitwise the same for any number of threads, since no pixel depends on
 /// another.
 pub(super) fn render_rows(
     scene: &Scene,
@@ -20,7 +20,7 @@ pub(super) fn render_rows(
     Ok(pictures.remove(0))
 }
 
-/// Fills `count` pictures at once, as [`render_rows`] does one; `pixel` is given a place for each.
+/// Fills `count` pictures at once, as [`render_rows`] does for one; `pixel` gets a slot for each.
 pub(super) fn render_rows_of_each(
     count: usize,
     scene: &Scene,

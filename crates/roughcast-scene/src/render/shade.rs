@@ -1,4 +1,4 @@
-//! What one ray sees.
+//! Shades one ray.
 
 use roughcast::shading::{LightSample, LobeOptions, Surface, ambient_radiance, reflect};
 
@@ -9,9 +9,9 @@ use crate::{Hit, Ray, Scene};
 pub(super) struct Shaded {
     /// Radiance towards the viewer.
     pub radiance: [f32; 3],
-    /// The part of it that specular lobes made.
+    /// The part of it from specular lobes.
     pub specular: [f32; 3],
-    /// Whether there was a surface, as a part of the pixel.
+    /// Whether there was a surface, as a fraction of the pixel.
     pub coverage: f32,
 }
 
@@ -21,9 +21,9 @@ impl Shaded {
         Self { radiance: scene.background, ..Self::default() }
     }
 
-    /// The light of all lights and from everywhere that a surface sends back along a ray.
+    /// The light of all lights, and ambient light, that a surface reflects back along a ray.
     ///
-    /// On a mesh the shading frame may face away from a viewer who sees the triangle: such a point has no highlight.
+    /// On a mesh the shading frame may face away from a viewer of the triangle: such a point has no highlight.
     #[inline]
     pub fn lit(scene: &Scene, ray: &Ray, hit: &Hit, surface: &Surface, options: &LobeOptions) -> Self {
         let tangent = |v| hit.frame.tangent_from_world(v).as_vec3().to_array();

@@ -1,4 +1,4 @@
-//! The truth: many rays per pixel, each shaded with the model's base lobe at level 0.
+//! Ground truth: many rays per pixel, each shaded with the model's base lobe at level 0.
 //!
 //! Source: LEAN mapping, Figure 14: supersampling with a Gaussian pixel filter.
 
@@ -11,14 +11,14 @@ use super::{MAX_SAMPLES, Progress, RenderError, render_rows_of_each};
 use crate::split_mix::{GOLDEN_RATIO, scrambled};
 use crate::{Detail, DetailPoint, Picture, Ray, Scene};
 
-/// Deviation of the pixel filter, in pixels.
+/// Standard deviation of the pixel filter, in pixels.
 pub const PIXEL_FILTER_DEVIATION: f64 = PIXEL_DEVIATION as f64;
 /// Where the pixel filter ends, in pixels.
 pub const PIXEL_FILTER_RADIUS: f64 = 2.0;
-/// The part of a normal distribution below minus four deviations, where the pixel filter ends.
+/// The fraction of a normal distribution below minus four standard deviations, where the pixel filter ends.
 const BEYOND: f64 = 3.167_124_183_311_998e-5;
 
-/// The supersampled truth for a base lobe, in one form and with one energy.
+/// The supersampled ground truth for a base lobe, in one form and with one energy.
 ///
 /// Samples are drawn from the pixel filter itself by its inverse distribution, so that all have the same weight: a square
 /// number of them, one in each cell of a square grid of probabilities, jittered by a hash of pixel and sample. The same
@@ -27,11 +27,11 @@ const BEYOND: f64 = 3.167_124_183_311_998e-5;
 pub struct Truth<'a> {
     /// The model under test; its [base lobe](Shading::base_lobe) is shaded.
     pub shading: Shading,
-    /// Where the bumps come from; only its exact slopes are asked for.
+    /// The source of the bumps; only its exact slopes are used.
     pub detail: &'a dyn Detail,
-    /// The lobe. Roughness that maps may hold does not matter here.
+    /// The lobe. Roughness in the maps does not matter here.
     pub options: LobeOptions,
-    /// Samples a pixel: a square number, 1 ..= [`MAX_SAMPLES`].
+    /// Samples per pixel: a square number, 1 ..= [`MAX_SAMPLES`].
     pub samples: u32,
 }
 
@@ -49,8 +49,8 @@ impl Truth<'_> {
         Ok(self.render_each(&[self.shading], scene, size, progress)?.remove(0))
     }
 
-    /// The truths of several models, in their order, each bit for bit as [`Truth::render`] has it: rays are traced and
-    /// slopes are looked up once for all. [`Truth::shading`] is not looked at.
+    /// The ground truths of several models, in their order, each bitwise equal to that of [`Truth::render`]: rays are traced and
+    /// slopes are looked up once for all. [`Truth::shading`] is ignored.
     ///
     /// # Errors
     /// As [`Truth::render`].
@@ -75,7 +75,7 @@ impl Truth<'_> {
         })
     }
 
-    /// Adds what a ray sees, shaded by each model, to its sum.
+    /// Adds a ray, shaded by each model, to its sum.
     #[inline]
     fn add_sample(&self, sums: &mut [Sum], shadings: &[Shading], scene: &Scene, ray: &Ray) {
         let Some(hit) = scene.shape.hit(ray) else {
@@ -117,7 +117,7 @@ impl Sum {
     }
 }
 
-/// Where the samples of a pixel lie, `side` times `side` of them, in pixels of the picture.
+/// The positions of a pixel's samples, `side` times `side` of them, in pixels of the picture.
 fn sample_places((x, y): (u32, u32), side: u32) -> impl Iterator<Item = DVec2> {
     let centre = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
     let cells = (0..side).flat_map(move |row| (0..side).map(move |column| (column, row)));
@@ -128,7 +128,7 @@ fn sample_places((x, y): (u32, u32), side: u32) -> impl Iterator<Item = DVec2> {
     })
 }
 
-/// The place, in pixels from the centre, that the pixel filter stays below with this probability.
+/// The position, in pixels from the centre, that the pixel filter stays below with this probability.
 pub(crate) fn pixel_filter_quantile(probability: f64) -> f64 {
     PIXEL_FILTER_DEVIATION * normal_quantile(BEYOND + probability * (1.0 - 2.0 * BEYOND))
 }
@@ -155,7 +155,7 @@ mod tests {
         let variance =
             (0..count).map(|i| pixel_filter_quantile((f64::from(i) + 0.5) / f64::from(count)).powi(2));
         let variance = variance.sum::<f64>() / f64::from(count);
-        // What lies beyond four deviations is missing: a thousandth of the variance.
+        // The part beyond four standard deviations is missing: a thousandth of the variance.
         assert!((variance / PIXEL_FILTER_DEVIATION.powi(2) - 1.0).abs() < 2e-3, "{variance}");
     }
 
@@ -165,7 +165,7 @@ mod tests {
         let all: Vec<DVec2> = (0..64).flat_map(|x| (0..64).map(move |s| jitter(x, 7, s))).collect();
         let mean = all.iter().copied().sum::<DVec2>() / f64::from(count);
         let product = all.iter().map(|j| (j.x - 0.5) * (j.y - 0.5)).sum::<f64>() / f64::from(count);
-        // Deviations of these means: 1 / sqrt(12 * 4096) = 0.0045, and 1 / 12 / 64 = 0.0013.
+        // Standard deviations of these means: 1 / sqrt(12 * 4096) = 0.0045, and 1 / 12 / 64 = 0.0013.
         assert!((mean - 0.5).abs().max_element() < 0.02 && product.abs() < 0.005, "{mean} {product}");
         assert!(all.iter().all(|j| j.min_element() > 0.0 && j.max_element() < 1.0));
         assert_ne!(jitter(0, 1, 0), jitter(1, 0, 0));

@@ -1,4 +1,4 @@
-//! What a scene is made of: one shape a file.
+//! The shapes of scenes, one per file.
 
 mod plane;
 mod quartic;
@@ -29,7 +29,7 @@ pub enum Shape {
     Mesh(Arc<Mesh>),
 }
 
-/// A sphere that holds a shape.
+/// A sphere that contains a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// The sphere's centre.
@@ -38,13 +38,13 @@ pub struct Bounds {
     pub radius: f64,
 }
 
-/// Why a shape cannot be.
+/// Why a shape is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ShapeError {
     /// A plane without extent.
     #[error("a plane's half size must be positive and finite, not {0}")]
     HalfSize(f64),
-    /// A torus that is a circle, or one that meets itself.
+    /// A torus that is a circle, or that intersects itself.
     #[error("a torus' minor radius must lie between 0 and 1, the major radius, not at {0}")]
     MinorRadius(f64),
 }
@@ -56,17 +56,17 @@ pub struct TriangleMesh {
     pub positions: Vec<[f32; 3]>,
     /// Unit normals.
     pub normals: Vec<[f32; 3]>,
-    /// Unit tangents (growing u) and the handedness w, as glTF has them: the bitangent (falling v) is w cross(normal,
+    /// Unit tangents (growing u) and the handedness w, as in glTF: the bitangent (falling v) is w cross(normal,
     /// tangent).
     pub tangents: Vec<[f32; 4]>,
-    /// Sets of texture coordinates, each with one entry per vertex; tangents go by the first. No set, where the surface is not
+    /// Sets of texture coordinates, each with one entry per vertex; tangents go by the first. No set if the surface is not
     /// textured.
     pub uv_sets: Vec<Vec<[f32; 2]>>,
-    /// Three vertices a triangle.
+    /// Three vertices per triangle.
     pub indices: Vec<u32>,
 }
 
-/// The largest `detail` of [`Shape::triangles`]; larger ones are cut to it. A sphere then has half a million triangles.
+/// The largest `detail` of [`Shape::triangles`]; larger ones are clamped to it. A sphere then has half a million triangles.
 pub const MAX_DETAIL: u32 = 512;
 
 impl Shape {
@@ -84,7 +84,7 @@ impl Shape {
         }
     }
 
-    /// A sphere that holds the shape, to frame it with a camera.
+    /// A sphere that contains the shape, to frame it with a camera.
     pub fn bounds(&self) -> Bounds {
         match self {
             Self::Plane(plane) => plane.bounds(),

@@ -3,12 +3,12 @@
 //! Between two neighbouring roots of its derivative a polynomial is monotone, so each such stretch holds one root if the
 //! signs at its ends differ, and none if they are the same. No root is lost to cancellation, as with the closed formulas.
 
-/// Steps of bisection and Newton's method: bisection alone halves an interval to neighbouring numbers in about 60, and
-/// far fewer are taken where Newton's steps hold.
+/// Steps of bisection and Newton's method: bisection alone reduces an interval to neighbouring numbers in about 60, and
+/// far fewer are needed if Newton's steps converge.
 const MAX_STEPS: usize = 128;
 
 /// The real roots of `t^4 + c[2] t^2 + c[1] t + c[0]` in `from ..= to` (`from < to`), in growing order, each computed when it is asked
-/// for. A root of even order may be missing or there twice, as rounding has it.
+/// for. Rounding decides whether a root of even order is missing or doubled.
 pub(super) fn roots(c: [f64; 3], from: f64, to: f64) -> impl Iterator<Item = f64> {
     let quartic = [c[0], c[1], c[2], 0.0, 1.0];
     let derivative = [c[1], 2.0 * c[2], 0.0, 4.0];
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn no_root_is_invented() {
+    fn no_spurious_roots() {
         assert_eq!(roots([1.0, 0.0, 0.0], -2.0, 2.0).count(), 0);
         assert_eq!(roots([1.0, 0.1, 1.0], -2.0, 2.0).count(), 0);
         assert_eq!(roots(expand([-9.0, -4.0, 3.0, 10.0]), -2.0, 2.0).count(), 0);

@@ -17,7 +17,7 @@ pub struct Torus {
     minor: f64,
 }
 
-/// Roots are sought within a sphere this much larger than the torus, so that none lies on the end of the interval.
+/// Roots are searched within a sphere this much larger than the torus, so that none lies at the end of the interval.
 const BOUND: f64 = 1.01;
 
 impl Default for Torus {

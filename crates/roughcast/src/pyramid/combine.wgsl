@@ -2,7 +2,7 @@
 // of the means. Twin of combine.rs, in the same order of additions.
 
 // What the pyramid carries of a texel.
-struct Footprint {
+struct Averages {
     // Mean slope.
     mean: vec2f,
     // Covariance of the slopes: xx, yy, xy.
@@ -12,10 +12,10 @@ struct Footprint {
 }
 
 // The equal average of two.
-fn average_of_two(a: Footprint, b: Footprint) -> Footprint {
+fn average_of_two(a: Averages, b: Averages) -> Averages {
     let halved = 0.5 * (a.mean - b.mean);
     let between = rounded3(vec3f(halved * halved, halved.x * halved.y));
-    return Footprint(
+    return Averages(
         0.5 * (a.mean + b.mean),
         0.5 * (a.covariance + b.covariance) + between,
         0.5 * (a.normal + b.normal),
@@ -24,11 +24,11 @@ fn average_of_two(a: Footprint, b: Footprint) -> Footprint {
 
 // The equal average of four, rows first.
 fn average_of_four(
-    top_left: Footprint,
-    top_right: Footprint,
-    bottom_left: Footprint,
-    bottom_right: Footprint,
-) -> Footprint {
+    top_left: Averages,
+    top_right: Averages,
+    bottom_left: Averages,
+    bottom_right: Averages,
+) -> Averages {
     return average_of_two(average_of_two(top_left, bottom_left), average_of_two(top_right, bottom_right));
 }
 
@@ -38,7 +38,7 @@ fn weighted_deviation(member: vec2f, mean: vec2f, weight: f32) -> vec3f {
     return rounded3(weight * vec3f(d * d, d.x * d.y));
 }
 
-fn sum_of_deviations(a: Footprint, b: Footprint, c: Footprint, weights: vec3f, average: Footprint) -> Footprint {
+fn sum_of_deviations(a: Averages, b: Averages, c: Averages, weights: vec3f, average: Averages) -> Averages {
     var out = average;
     out.covariance = out.covariance + weighted_deviation(a.mean, average.mean, weights.x);
     out.covariance = out.covariance + weighted_deviation(b.mean, average.mean, weights.y);
@@ -47,8 +47,8 @@ fn sum_of_deviations(a: Footprint, b: Footprint, c: Footprint, weights: vec3f, a
 }
 
 // The weighted average of up to three columns. Weights sum to one; where one is zero, its texel may be anything finite.
-fn average_columns(a: Footprint, b: Footprint, c: Footprint, weights: vec3f) -> Footprint {
-    let average = Footprint(
+fn average_columns(a: Averages, b: Averages, c: Averages, weights: vec3f) -> Averages {
+    let average = Averages(
         a.mean + (rounded2(weights.y * (b.mean - a.mean)) + rounded2(weights.z * (c.mean - a.mean))),
         a.covariance
             + (rounded3(weights.y * (b.covariance - a.covariance)) + rounded3(weights.z * (c.covariance - a.covariance))),
@@ -58,8 +58,8 @@ fn average_columns(a: Footprint, b: Footprint, c: Footprint, weights: vec3f) -> 
 }
 
 // The weighted average of up to three rows, as `average_columns`.
-fn average_rows(a: Footprint, b: Footprint, c: Footprint, weights: vec3f) -> Footprint {
-    let average = Footprint(
+fn average_rows(a: Averages, b: Averages, c: Averages, weights: vec3f) -> Averages {
+    let average = Averages(
         (a.mean + rounded2(weights.y * (b.mean - a.mean))) + rounded2(weights.z * (c.mean - a.mean)),
         (a.covariance + rounded3(weights.y * (b.covariance - a.covariance)))
             + rounded3(weights.z * (c.covariance - a.covariance)),
@@ -70,11 +70,11 @@ fn average_rows(a: Footprint, b: Footprint, c: Footprint, weights: vec3f) -> Foo
 
 // The equal average of four by `average_columns` and `average_rows`.
 fn weighted_average_of_four(
-    top_left: Footprint,
-    top_right: Footprint,
-    bottom_left: Footprint,
-    bottom_right: Footprint,
-) -> Footprint {
+    top_left: Averages,
+    top_right: Averages,
+    bottom_left: Averages,
+    bottom_right: Averages,
+) -> Averages {
     let weights = vec3f(0.5, 0.5, 0.0);
     let top = average_columns(top_left, top_right, top_left, weights);
     let bottom = average_columns(bottom_left, bottom_right, bottom_left, weights);

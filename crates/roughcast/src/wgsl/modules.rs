@@ -40,7 +40,7 @@ pub const MODULES: &[Module] = &[
         name: "combine",
         source: include_str!("../pyramid/combine.wgsl"),
         needs: &["exact"],
-        summary: "averages of footprints",
+        summary: "averages of texels",
         citation: "Schilling, Antialiasing of Bump-Maps, 1997",
         role: Role::Bake,
     },

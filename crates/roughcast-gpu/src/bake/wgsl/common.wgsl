@@ -1,25 +1,25 @@
-// What every pass of a bake is told.
+// The parameters of every pass of a bake.
 
 struct Params {
     // Of the level that is read.
     size: vec2u,
     zero: u32,
-    // 0: what lies beyond the edge is the other side of the map; else the edge goes on.
+    // 0: the map repeats beyond its edges; otherwise the edge texels do.
     wrap: u32,
     // The largest slope before anything is known of the map; slope_limit() is the one that counts.
     max_slope: f32,
-    // What a stored height is multiplied by to give texels.
+    // The factor from a stored height to texels.
     height_scale: f32,
-    // Slope variance of a base roughness that is folded in (LEAN Eq. 6), else zero.
+    // Slope variance of a base roughness that is folded in (LEAN Eq. 6), otherwise zero.
     base_variance: f32,
-    // What x and y of a normal are multiplied by.
+    // The factor of x and y of a normal.
     normal_factor_x: f32,
     normal_factor_y: f32,
-    // Columns between the texels of a row that an automatic limit of slopes samples; zero where the limit is known.
+    // Columns between the texels of a row that an automatic limit of slopes samples; zero if the limit is known.
     survey_stride: u32,
 }
 
-// `Stores`, the scale and the largest slope behind them.
+// `Stores`, followed by the scale and the largest slope.
 struct PackedStores {
     slope_second: vec4f,
     mixed_trace: vec4f,

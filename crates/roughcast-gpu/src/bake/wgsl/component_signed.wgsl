@@ -1,4 +1,4 @@
-// A normal's component as it is.
+// A normal's component, unchanged.
 fn map_component(stored: f32) -> f32 {
     return stored;
 }

@@ -1,54 +1,54 @@
-// Several levels in one dispatch, each a quarter of the one before: a thread averages 4x4 texels in its registers, then
-// the 16x16 threads of a workgroup average what they have in workgroup memory.
+// Several levels in one dispatch, each a quarter of the previous one: a thread averages 4x4 texels in its registers, then
+// the 16x16 threads of a workgroup average their results in workgroup memory.
 //
-// Defined elsewhere: HALVINGS, params, input_footprint(at), average_of_quad(...), store_0(at, footprint) ... store_6, each of
-// which knows its level's size and lets pass what lies outside or is not wanted.
+// Defined elsewhere: HALVINGS, params, input_averages(at), average_of_quad(...), store_0(at, averages) ... store_6, each of
+// which knows its level's size and ignores texels that lie outside or are not wanted.
 
-// 256 footprints of 32 bytes: 8 KiB.
+// 256 averages of 32 bytes: 8 KiB.
 var<workgroup> held_low: array<vec4f, 256>;
 var<workgroup> held_high: array<vec4f, 256>;
 
-fn hold(index: u32, footprint: Footprint) {
-    held_low[index] = vec4f(footprint.mean, footprint.covariance.xy);
-    held_high[index] = vec4f(footprint.covariance.z, footprint.normal);
+fn hold(index: u32, averages: Averages) {
+    held_low[index] = vec4f(averages.mean, averages.covariance.xy);
+    held_high[index] = vec4f(averages.covariance.z, averages.normal);
 }
 
-fn held(index: u32) -> Footprint {
+fn held(index: u32) -> Averages {
     let low = held_low[index];
     let high = held_high[index];
-    return Footprint(low.xy, vec3f(low.zw, high.x), high.yzw);
+    return Averages(low.xy, vec3f(low.zw, high.x), high.yzw);
 }
 
-fn finest(at: vec2u) -> Footprint {
+fn finest(at: vec2u) -> Averages {
     if any(at >= params.size) {
-        return Footprint();
+        return Averages();
     }
-    let footprint = input_footprint(at);
-    store_0(at, footprint);
-    return footprint;
+    let averages = input_averages(at);
+    store_0(at, averages);
+    return averages;
 }
 
-fn quad(at: vec2u) -> Footprint {
-    var four: array<Footprint, 4>;
+fn quad(at: vec2u) -> Averages {
+    var four: array<Averages, 4>;
     for (var i = 0u; i < 4u; i++) {
         four[i] = finest(2u * at + vec2u(i & 1u, i >> 1u));
     }
-    let footprint = average_of_quad(four[0], four[1], four[2], four[3]);
-    store_1(at, footprint);
-    return footprint;
+    let averages = average_of_quad(four[0], four[1], four[2], four[3]);
+    store_1(at, averages);
+    return averages;
 }
 
-// The average of four held footprints that lie `stride` threads apart, held in the place of the first.
-fn average_of_held(at: vec2u, stride: u32) -> Footprint {
+// The average of four held averages that lie `stride` threads apart, held in place of the first.
+fn average_of_held(at: vec2u, stride: u32) -> Averages {
     let first = 2u * stride * (16u * at.y + at.x);
-    let footprint = average_of_quad(
+    let averages = average_of_quad(
         held(first),
         held(first + stride),
         held(first + 16u * stride),
         held(first + 17u * stride),
     );
-    hold(first, footprint);
-    return footprint;
+    hold(first, averages);
+    return averages;
 }
 
 @compute @workgroup_size(16, 16)
@@ -59,16 +59,16 @@ fn fused(
 ) {
     opaque_zero = params.zero;
     let at = 16u * group.xy + local.xy;
-    var four: array<Footprint, 4>;
+    var four: array<Averages, 4>;
     for (var i = 0u; i < 4u; i++) {
         four[i] = quad(2u * at + vec2u(i & 1u, i >> 1u));
     }
-    let footprint = average_of_quad(four[0], four[1], four[2], four[3]);
-    store_2(at, footprint);
+    let averages = average_of_quad(four[0], four[1], four[2], four[3]);
+    store_2(at, averages);
     if HALVINGS <= 2u {
         return;
     }
-    hold(index, footprint);
+    hold(index, averages);
     workgroupBarrier();
     if index < 64u {
         let inner = vec2u(index % 8u, index / 8u);

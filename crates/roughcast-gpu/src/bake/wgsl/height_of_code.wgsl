@@ -1,4 +1,4 @@
-// Heights of codes.
+// Heights from codes.
 fn map_height(at: vec2i) -> f32 {
     return quotient(map_texel(at).x, MAP_STEPS);
 }

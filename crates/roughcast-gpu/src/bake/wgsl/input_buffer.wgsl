@@ -1,7 +1,7 @@
-// What a dispatch reads: a level as floats, as the dispatch before left it.
-fn input_footprint(at: vec2u) -> Footprint {
+// What a dispatch reads: a level as floats, as the previous dispatch left it.
+fn input_averages(at: vec2u) -> Averages {
     let index = 2u * (at.y * params.size.x + at.x);
     let low = state_in[index];
     let high = state_in[index + 1u];
-    return Footprint(low.xy, vec3f(low.zw, high.x), high.yzw);
+    return Averages(low.xy, vec3f(low.zw, high.x), high.yzw);
 }

@@ -1,4 +1,4 @@
 // What a pass reads: the map.
-fn input_footprint(at: vec2u) -> Footprint {
-    return footprint_of_slope(map_slope(at).slope);
+fn input_averages(at: vec2u) -> Averages {
+    return averages_of_slope(map_slope(at).slope);
 }

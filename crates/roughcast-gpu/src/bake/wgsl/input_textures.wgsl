@@ -1,6 +1,6 @@
 // What a pass reads: a level as floats, in two textures.
-fn input_footprint(at: vec2u) -> Footprint {
+fn input_averages(at: vec2u) -> Averages {
     let low = textureLoad(state_low, at, 0);
     let high = textureLoad(state_high, at, 0);
-    return Footprint(low.xy, vec3f(low.zw, high.x), high.yzw);
+    return Averages(low.xy, vec3f(low.zw, high.x), high.yzw);
 }

@@ -1,4 +1,4 @@
 // A texel of the next level, by coverage.
-fn next_footprint(at: vec2u) -> Footprint {
-    return weighted_footprint(at);
+fn next_averages(at: vec2u) -> Averages {
+    return weighted_averages(at);
 }

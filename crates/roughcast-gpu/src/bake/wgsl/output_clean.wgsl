@@ -1,7 +1,7 @@
-// What a pass makes: CLEAN's texels of the level that is read.
+// What a pass writes: CLEAN's texels of the level that is read.
 @fragment
 fn fragment(corner: Corner) -> @location(0) vec4f {
     opaque_zero = params.zero;
-    let footprint = input_footprint(vec2u(corner.position.xy));
-    return nearest(clean_from_footprint(footprint, unpacked_stores(packed_stores)));
+    let averages = input_averages(vec2u(corner.position.xy));
+    return nearest(clean_from_averages(averages, unpacked_stores(packed_stores)));
 }

@@ -1,4 +1,4 @@
-// What a pass makes: LEAN's texels of the level that is read.
+// What a pass writes: LEAN's texels of the level that is read.
 
 struct Output {
     @location(0) lean1: vec4f,
@@ -8,10 +8,10 @@ struct Output {
 @fragment
 fn fragment(corner: Corner) -> Output {
     opaque_zero = params.zero;
-    let footprint = input_footprint(vec2u(corner.position.xy));
+    let averages = input_averages(vec2u(corner.position.xy));
     let stores = unpacked_stores(packed_stores);
     return Output(
-        nearest(lean1_from_footprint(footprint, stores)),
-        nearest(lean2_from_footprint(footprint, stores)),
+        nearest(lean1_from_averages(averages, stores)),
+        nearest(lean2_from_averages(averages, stores)),
     );
 }

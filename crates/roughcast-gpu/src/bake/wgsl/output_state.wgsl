@@ -1,4 +1,4 @@
-// What a pass makes: the next level as floats. Defined elsewhere: next_footprint.
+// What a pass writes: the next level as floats. Defined elsewhere: next_averages.
 
 struct Output {
     @location(0) low: vec4f,
@@ -8,9 +8,9 @@ struct Output {
 @fragment
 fn fragment(corner: Corner) -> Output {
     opaque_zero = params.zero;
-    let footprint = next_footprint(vec2u(corner.position.xy));
+    let averages = next_averages(vec2u(corner.position.xy));
     return Output(
-        vec4f(footprint.mean, footprint.covariance.xy),
-        vec4f(footprint.covariance.z, footprint.normal),
+        vec4f(averages.mean, averages.covariance.xy),
+        vec4f(averages.covariance.z, averages.normal),
     );
 }

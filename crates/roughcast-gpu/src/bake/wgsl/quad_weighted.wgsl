@@ -1,3 +1,3 @@
-fn average_of_quad(a: Footprint, b: Footprint, c: Footprint, d: Footprint) -> Footprint {
+fn average_of_quad(a: Averages, b: Averages, c: Averages, d: Averages) -> Averages {
     return weighted_average_of_four(a, b, c, d);
 }

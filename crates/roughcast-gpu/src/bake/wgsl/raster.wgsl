@@ -1,4 +1,4 @@
-// The text's own way: render passes. One triangle covers the target.
+// The method of the LEAN paper: render passes. One triangle covers the target.
 
 struct Corner {
     @builtin(position) position: vec4f,

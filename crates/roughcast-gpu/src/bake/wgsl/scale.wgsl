@@ -1,10 +1,10 @@
-// The smallest scale that holds every slope of a map, and the automatic limit of slopes: one look at the map, and one
-// workgroup that draws the conclusions.
+// The smallest scale that represents every slope of a map, and the automatic limit of slopes: one pass over the map, and one
+// workgroup that evaluates the result.
 //
 // Defined elsewhere: params, map_slope(at), and the bindings survey and packed_stores.
 
 struct Survey {
-    // The largest component, as bits: floats that are not negative are in the order of their bits.
+    // The largest component, as bits: non-negative floats are in the order of their bits.
     peak: atomic<u32>,
     sampled: atomic<u32>,
     histogram: array<atomic<u32>, SLOPE_BINS>,
@@ -13,7 +13,7 @@ struct Survey {
 var<workgroup> group_peak: atomic<u32>;
 var<workgroup> group_histogram: array<atomic<u32>, SLOPE_BINS>;
 
-// Of the pass that looks: nothing is known yet.
+// For the pass over the map: the limit is not known yet.
 fn slope_limit() -> f32 {
     return params.max_slope;
 }

@@ -1,2 +1,2 @@
-fn store_state_n(at: vec2u, footprint: Footprint) {
+fn store_state_n(at: vec2u, averages: Averages) {
 }

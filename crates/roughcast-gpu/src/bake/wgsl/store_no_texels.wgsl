@@ -1,2 +1,2 @@
-fn store_texels_n(at: vec2u, footprint: Footprint) {
+fn store_texels_n(at: vec2u, averages: Averages) {
 }
