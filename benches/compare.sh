@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # Times roughcast against OpenImageIO's maketx at the same work: a 4096x4096 16-bit height map in, a tiled, mip-mapped EXR
-# with the six half channels of bump slopes out, compressed with ZIP. Whole processes, taking turns.
+# with the six half channels of bump slopes out, compressed with ZIP. Whole processes, alternating.
 #
 #   benches/compare.sh [HEIGHTS]      HEIGHTS: a height map, tiled to 4096x4096; default: one of testdata/
 #
 # ROUGHCAST=path  the program to time (default: built here, in release)
 # RUNS=n          turns of each program (default 3)
 #
-# Needs Python 3 with venv and pip; OpenImageIO is installed under target/compare, nowhere else. Ends with an error where
-# the two programs do not agree on level 0, since then they did not do the same work.
+# Needs Python 3 with venv and pip; OpenImageIO is installed under target/compare only. Ends with an error if
+# the two programs disagree about level 0, since then they did not do the same work.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)

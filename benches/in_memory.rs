@@ -1,7 +1,7 @@
-//! How far the bake in memory is from its floor: decoded 16-bit pixels to both LEAN layers in 16 bits, all levels,
+//! Compares the bake in memory with its lower bound: decoded 16-bit pixels to both LEAN layers in 16 bits, all levels,
 //! against a memcpy that moves the same bytes in and out with the same threads.
 //!
-//! `cargo bench -p roughcast --bench in_memory [-- SIZE]`; both are measured in turn in one run, because the machine
+//! `cargo bench -p roughcast --bench in_memory [-- SIZE]`; one run measures both alternately, because the machine
 //! may be shared and noisy.
 
 use std::hint::black_box;
@@ -29,7 +29,7 @@ fn waves(size: usize) -> Image {
     Image::new(size, size, CHANNELS, Samples::U16(samples)).expect("the samples are counted")
 }
 
-/// Median and least.
+/// Median and minimum.
 fn summary(mut times: Vec<Duration>) -> [f64; 2] {
     times.sort();
     [times[times.len() / 2], times[0]].map(|time| time.as_secs_f64())
@@ -39,7 +39,7 @@ fn main() {
     let size = std::env::args().skip(1).find_map(|a| a.parse().ok()).unwrap_or(4096);
     let map = waves(size);
     let threads = rayon::current_num_threads();
-    // Both layers hold four 16-bit channels, and all further levels together a third of level 0.
+    // Both layers have four 16-bit channels, and all further levels together a third of level 0.
     let bytes_in = size * size * CHANNELS * 2;
     let bytes_out = size * size * 2 * 4 * 2 * 4 / 3;
     // A copy reads as much as it writes: half of the traffic each way.

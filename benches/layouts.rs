@@ -1,4 +1,4 @@
-//! Baking in memory, layout by layout and filter by filter, and decoding: `cargo bench -p roughcast --bench layouts`.
+//! Baking in memory, by layout and by filter, and decoding: `cargo bench -p roughcast --bench layouts`.
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
@@ -60,7 +60,7 @@ fn filter(bencher: Bencher, filter: &PyramidFilter) {
         .bench_local(|| bake(black_box(&map), &heights(), None, &options).expect("a plain bake"));
 }
 
-/// Sizes that do not halve evenly take the general way.
+/// Sizes that do not halve evenly use the general code.
 #[divan::bench]
 fn odd_size(bencher: Bencher) {
     let map = hills(SIDE + 1, SIDE + 1);

@@ -21,15 +21,15 @@ ALLOWED = {
     "roughcast-testdata": set(),
 }
 
-# The same for tests alone. All may find fixtures; those of crates above the library may also read real files. The library's may not: cargo
-# would build it twice, and the types of the two would not fit each other.
+# The same for tests only. All may use fixtures; those of crates above the library may also read real files. The library's may not: cargo
+# would build it twice, with incompatible types.
 ALLOWED_IN_TESTS = {
     "roughcast-scene": {"roughcast-io"},
     "roughcast-gpu": {"roughcast-io"},
     "roughcast-py": {"roughcast-io"},
 }
 
-# Who takes the description of a scene must not get the CPU renderer with it: a page in a browser, or a reader of meshes, has no use
+# Users of the description of a scene must not get the CPU renderer with it: a page in a browser, or a reader of meshes, has no use
 # for it. The crate whose default features are left out, and by whom.
 WITHOUT_FEATURES = {
     "roughcast-scene": {"roughcast-io", "roughcast-gpu"},
@@ -37,8 +37,8 @@ WITHOUT_FEATURES = {
 
 FIXTURES = "roughcast-testdata"
 
-# Crates of others that the library may use (tests are free). It is arithmetic on images in memory, and whoever takes it
-# into an engine takes these along.
+# Third-party crates that the library may use (tests are free). It is arithmetic on images in memory, and whoever builds it
+# into an engine gets these too.
 LIBRARY = "roughcast"
 LIBRARY_MAY_USE = {"half", "multiversion", "rayon", "thiserror"}
 

@@ -12,7 +12,7 @@ import flip_evaluator
 import numpy
 
 WIDTH, HEIGHT = 48, 40
-# Pixels of which the test knows the error.
+# Pixels whose error the test knows.
 PIXELS = [(0, 0), (47, 39), (12, 8), (23, 20), (24, 20), (31, 7), (40, 30), (5, 33)]
 
 

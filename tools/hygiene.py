@@ -1,4 +1,4 @@
-"""Checks the tracked files: none too large, the test data within its bounds, lock files that name public registries only, no unfinished code, and no
+"""Checks the tracked files: none too large, the test data within its bounds, lock files that only name public registries, no unfinished code, and no
 paths of somebody's machine."""
 
 import json
@@ -33,14 +33,14 @@ def cargo_lock_faults(text):
 
 
 def foreign_url_faults(urls):
-    """URLs of hosts that are no public registry."""
+    """URLs of hosts that are not public registries."""
     for url in urls:
         if urlsplit(url).hostname not in PUBLIC_HOSTS:
             yield f"names {url}: only {', '.join(sorted(PUBLIC_HOSTS))} are allowed"
 
 
 def resolved_urls(value):
-    """The addresses from which npm gets packages, anywhere in a lock file. Other addresses in it are mere information."""
+    """The addresses from which npm gets packages, anywhere in a lock file. Other addresses in it are only information."""
     if isinstance(value, dict):
         for key, inner in value.items():
             if key == "resolved" and isinstance(inner, str) and "://" in inner:
@@ -53,7 +53,7 @@ def resolved_urls(value):
 
 
 def lock_faults(path, text):
-    """Faults of a file that says where packages come from; none for any other file."""
+    """Faults of a file that specifies the sources of packages; none for any other file."""
     if path.name == "Cargo.lock":
         yield from cargo_lock_faults(text)
     elif path.name in NPM_LOCK_FILES:
@@ -65,7 +65,7 @@ def lock_faults(path, text):
 
 
 def line_faults(path, text):
-    """Faults that single lines show."""
+    """Faults of single lines."""
     for number, line in enumerate(text.splitlines(), start=1):
         if path.suffix in SOURCE_SUFFIXES and (found := UNFINISHED.search(line)):
             yield f"line {number}: unfinished: {found[0]}"

@@ -1,4 +1,4 @@
-"""Checks that every crate and every npm package in the lock files comes under a licence that the project can live with.
+"""Checks that every crate and every npm package in the lock files has a licence that the project accepts.
 
 Reads `cargo metadata`: all dependencies, also those of tests and of build scripts, on all platforms; and npm's lock files.
 A licence is an SPDX expression; it is satisfied if the licences on the list below satisfy it.
@@ -99,12 +99,12 @@ class Parser:
 
 
 def is_satisfied(expression):
-    """Whether licences on the list satisfy the expression. ValueError where it is none."""
+    """Whether licences on the list satisfy the expression. ValueError if it is not one."""
     return Parser(expression).whole()
 
 
 def dependencies(metadata):
-    """Every package that is not of the workspace."""
+    """Every package outside of the workspace."""
     own = {package["id"] for package in members(metadata)}
     return [package for package in metadata["packages"] if package["id"] not in own]
 

@@ -1,4 +1,4 @@
-"""Shows of each tool that it passes what is right and fails what is wrong."""
+"""Shows that each tool accepts what is right and rejects what is wrong."""
 
 import contextlib
 import io

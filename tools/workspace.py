@@ -1,4 +1,4 @@
-"""What the tools know of the repository: where it is, its tracked files, and what cargo says of it."""
+"""What the tools know about the repository: its path, its tracked files, and cargo's metadata."""
 
 import json
 import subprocess
@@ -9,7 +9,7 @@ REPOSITORY = Path(__file__).resolve().parent.parent
 
 
 def run(command):
-    """Standard output of a command in the repository. Ends the program where the command fails."""
+    """Standard output of a command in the repository. Ends the program if the command fails."""
     try:
         return subprocess.run(command, cwd=REPOSITORY, stdout=subprocess.PIPE, check=True).stdout
     except (OSError, subprocess.CalledProcessError) as error:
@@ -33,7 +33,7 @@ def tracked_files():
 
 
 def report(faults, success):
-    """Prints the faults, or what was found to be in order; returns the exit status."""
+    """Prints the faults, or what is in order; returns the exit status."""
     for fault in faults:
         print(fault, file=sys.stderr)
     if not faults:

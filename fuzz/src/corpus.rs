@@ -1,4 +1,4 @@
-//! The files from which hostile ones are made.
+//! The files that hostile ones are derived from.
 
 use std::fs;
 use std::io;

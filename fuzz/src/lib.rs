@@ -1,4 +1,4 @@
-//! Hostile bytes for the readers: each target takes any bytes, and must neither panic nor take long nor much memory.
+//! Hostile bytes for the readers: each target takes any bytes, and must not panic or need much time or memory.
 //!
 //! `cargo run -p roughcast-fuzz --bin short -- --seconds 30` runs all of them on a stable compiler. For a long search
 //! guided by coverage there is cargo-fuzz: `cargo fuzz run ktx2 --features libfuzzer`.
@@ -16,13 +16,13 @@ use roughcast::Moments;
 use roughcast::texture::{Part, TextureArray, TextureInfo, layers_of};
 use roughcast_io::{Decoded, Limits, Payload, ReadError, ReadOptions, Supercompression};
 
-/// Something that takes hostile bytes.
+/// Code that is tested with hostile bytes.
 pub struct Target {
-    /// Its name, which is also that of its folder in `corpus/`.
+    /// Its name, also of its folder in `corpus/`.
     pub name: &'static str,
-    /// Which of the broken files of others concern it.
+    /// Which of the broken files of other projects apply to it.
     pub extensions: &'static [&'static str],
-    /// Runs it once; panics where a promise is broken.
+    /// Runs it once; panics if a guarantee is violated.
     pub run: fn(&[u8]),
 }
 
@@ -38,14 +38,14 @@ pub const TARGETS: &[Target] = &[
     Target { name: "decode", extensions: &["ktx2", "dds", "exr"], run: decode },
 ];
 
-/// Files that the reader of images is given, and some that it must know to be none.
+/// Files for the reader of images, and some that it must reject.
 const IMAGES: &[&str] =
     &["png", "jpg", "jpeg", "tga", "bmp", "webp", "tif", "tiff", "hdr", "exr", "ktx2", "dds", "gltf"];
 
 /// Small, so that a file which may claim a large texture shows up as a slow run at worst.
 const LIMITS: Limits = Limits { max_pixels: 1 << 18 };
 
-/// Both readers of KTX2. What reads as textures must survive being written again.
+/// Both readers of KTX2. What reads as textures must survive a round trip.
 pub fn ktx2(data: &[u8]) {
     check_image(roughcast_io::ktx2::read_image(data, &LIMITS));
     if let Ok(textures) = roughcast_io::ktx2::read_textures(data, &LIMITS) {
@@ -53,7 +53,7 @@ pub fn ktx2(data: &[u8]) {
     }
 }
 
-/// Both readers of DDS. What reads as textures must survive being written again.
+/// Both readers of DDS. What reads as textures must survive a round trip.
 pub fn dds(data: &[u8]) {
     check_image(roughcast_io::dds::read_image(data, &LIMITS));
     if let Ok(textures) = roughcast_io::dds::read_textures(data, &LIMITS) {
@@ -61,7 +61,7 @@ pub fn dds(data: &[u8]) {
     }
 }
 
-/// The reader of our own EXR files. What it reads must survive being written again.
+/// The reader of baked EXR files. What it reads must survive a round trip.
 pub fn exr_textures(data: &[u8]) {
     match roughcast_io::exr::read_textures(data, &LIMITS) {
         Ok(textures) => {
@@ -125,7 +125,7 @@ fn words_of(info: &TextureInfo) -> [u32; 11] {
     TextureInfo { base_variance: if nan { f32::NAN } else { info.base_variance }, ..*info }.to_words()
 }
 
-/// From any file of ours to moments: whatever the texels are, the covariance is one.
+/// From any baked file to moments: for any texels, the covariance is valid.
 pub fn decode(data: &[u8]) {
     let read = [
         roughcast_io::ktx2::read_textures(data, &LIMITS),
@@ -133,7 +133,7 @@ pub fn decode(data: &[u8]) {
         roughcast_io::exr::read_textures(data, &LIMITS),
     ];
     for textures in read.into_iter().flatten() {
-        // For a layout of several files the same texels stand in for the others, whatever they say that they are.
+        // For a layout of several files the same texels replace the others, whatever their metadata says.
         for part in Part::ALL {
             let other =
                 TextureArray { info: TextureInfo { part: *part, ..textures.info }, ..textures.clone() };
@@ -145,7 +145,7 @@ pub fn decode(data: &[u8]) {
     }
 }
 
-/// No variance is negative. Texels that hold NaN or infinity have none to speak of.
+/// No variance is negative. Non-finite texels are exempt.
 fn check_moments(moments: &Moments) {
     let covariance = moments.covariance();
     assert!(!(covariance.xx < 0.0 || covariance.yy < 0.0), "{moments:?}");
@@ -193,7 +193,7 @@ fn dds_header(four_cc: &[u8; 4], width: u32, height: u32) -> Vec<u8> {
     header
 }
 
-/// Blocks hold no infinities: whatever comes out is a number within -1 ..= 1.
+/// Blocks cannot store infinities: every decoded value is within -1 ..= 1.
 fn assert_finite(decoded: &Decoded) {
     let samples = decoded.image.samples();
     assert!(
@@ -202,10 +202,10 @@ fn assert_finite(decoded: &Decoded) {
     );
 }
 
-/// Longer messages would not be one clear line. Some quote a name from the file.
+/// Limit of messages, which must be one clear line. Some quote a name from the file.
 const LONGEST_ERROR: usize = 1000;
 
-/// What an image says of itself fits its pixels; an error is one line.
+/// The information of an image matches its pixels; an error is one line.
 fn check_image(result: Result<Decoded, ReadError>) {
     match result {
         Ok(Decoded { image, info }) => {
@@ -218,7 +218,7 @@ fn check_image(result: Result<Decoded, ReadError>) {
     }
 }
 
-/// An error is one line, or becomes one: the program takes control characters out.
+/// An error is one line, or becomes one: the program removes control characters.
 fn check_error(error: &ReadError) {
     let text = error.to_string();
     assert!(!text.is_empty() && text.len() < LONGEST_ERROR, "{text}");
@@ -242,6 +242,6 @@ fn check_rewritten(textures: &TextureArray) {
     let of_ktx2 = roughcast_io::ktx2::read_textures(&ktx2_file, &LIMITS).expect("it was written");
     let of_dds = roughcast_io::dds::read_textures(&dds_file, &LIMITS).expect("it was written");
     assert!(ktx2(&of_ktx2) == ktx2_file && dds(&of_dds) == dds_file, "a second writing differs");
-    // The other way round the bits of a NaN among the metadata may differ, which KTX2 spells out as text.
+    // In the other direction the bits of a NaN in the metadata may differ, which KTX2 writes as text.
     assert!(ktx2(&of_dds) == ktx2_file, "DDS and KTX2 hold different texels");
 }

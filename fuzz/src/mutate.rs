@@ -1,4 +1,4 @@
-//! Small changes that make a valid file a hostile one.
+//! Small changes that turn a valid file into a hostile one.
 
 /// Random numbers, the same on every machine (Marsaglia's xorshift).
 pub struct Random(u64);
@@ -23,7 +23,7 @@ impl Random {
     }
 }
 
-/// Numbers at which readers go wrong: the ends of every width, and powers of two that overflow when multiplied.
+/// Numbers that break readers: the limits of every width, and powers of two that overflow when multiplied.
 const INTERESTING: [u64; 20] = [
     0,
     1,
@@ -47,9 +47,9 @@ const INTERESTING: [u64; 20] = [
     u64::MAX,
 ];
 
-/// Most formats keep their numbers within so many bytes.
+/// The header of most formats fits into this many bytes.
 const HEADER_BYTES: usize = 256;
-/// A file may grow by splicing, but not without end.
+/// The size to which a file may grow by splicing.
 const MAX_BYTES: usize = 128 * 1024;
 const MAX_CHANGES: usize = 6;
 
@@ -86,7 +86,7 @@ fn position(length: usize, random: &mut Random) -> usize {
     random.below(reach)
 }
 
-/// Overwrites 1, 2, 4 or 8 bytes by an interesting number, or by one near to the number that is there.
+/// Overwrites 1, 2, 4 or 8 bytes by an interesting number, or by one near to the existing number.
 fn put_number(file: &mut [u8], at: usize, random: &mut Random) {
     let width = (1 << random.below(4)).min(file.len() - at);
     let place = &mut file[at..at + width];
@@ -101,7 +101,7 @@ fn put_number(file: &mut [u8], at: usize, random: &mut Random) {
     place.copy_from_slice(&number[..width]);
 }
 
-/// Puts a piece of another file over the bytes at a place, or between them.
+/// Overwrites the bytes at a position with a piece of another file, or inserts it there.
 fn splice(file: &mut Vec<u8>, at: usize, other: &[u8], random: &mut Random) {
     if other.is_empty() {
         return;

@@ -5,7 +5,7 @@ import { chromium } from 'playwright-core';
 
 const EXECUTABLE = process.env.CHROMIUM ?? '/usr/bin/chromium';
 
-// Chromium's remark that reading pixels back waits for them.
+// Chromium's warning that reading pixels back stalls.
 const EXPECTED = /GPU stall due to ReadPixels/;
 
 /**
@@ -43,7 +43,7 @@ export async function openPage(url) {
       throw new Error(`the page did not start:\n${complaints().join('\n')}`);
     });
   } catch (error) {
-    // A browser that nobody closes would keep the process alive.
+    // An open browser would keep the process alive.
     await browser.close();
     throw error;
   }

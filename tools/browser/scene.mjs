@@ -3,12 +3,12 @@
 /** The two views: how often the map repeats over the square. A pixel is 0.2 texels wide and 0.4 long, or 11 and 22. */
 export const VIEWS = { near: { repeats: 0.5 }, far: { repeats: 25 } };
 
-// Low over the ground, turned about the x axis alone: then the footprint of a pixel is a rectangle along the rows and columns of the
-// map but for the perspective, and what this renderer and the hardware each call its size is nearly the same.
+// Low over the ground, turned only about the x axis: then the footprint of a pixel is a rectangle along the rows and columns of the
+// map except for the perspective, and this renderer and the hardware compute nearly the same size for it.
 const VIEW = { eye: [0, 0.95, 1.645], target: [0, 0, 0], fov: 20, width: 192, height: 192 };
-// Aside, so that a mirrored picture would show.
+// Off-centre, so that a mirrored picture would differ.
 const TOWARDS_LIGHT = [0.35, 0.6, -0.75];
-// Reflectance at normal incidence that three.js gives to all dielectrics.
+// Reflectance at normal incidence of all dielectrics in three.js.
 const SPECULAR = 0.04;
 
 /** What page/draw.js draws. */

@@ -1,4 +1,4 @@
-// Baked textures in three.js, in headless Chromium, against `roughcast render` of the same files. CONTRIBUTING.md says how to run it.
+// Baked textures in three.js, in headless Chromium, against `roughcast render` of the same files. CONTRIBUTING.md explains how to run it.
 
 import assert from 'node:assert/strict';
 import { mkdirSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
@@ -19,7 +19,7 @@ const MAP = here('../../testdata/crops/rock020_normal_256.jpg');
 const PICTURES = here('../../target/browser');
 const DIFFERENCE = 10;
 
-// Less contrast than this would be a picture that shows nothing.
+// A picture with less contrast than this shows nothing.
 const LEAST_CONTRAST = 0.2;
 
 const VIEWS = ['near', 'far'];
@@ -46,7 +46,7 @@ after(async () => {
   rmSync(folder, { recursive: true });
 });
 
-/** What our renderer makes of a subject; each picture is rendered once. */
+/** Our renderer's picture of a subject; each is rendered once. */
 function ours(subject, view) {
   const { material, albedo, map, render = [] } = subject;
   const key = [map, view, ...render].join(' ');
@@ -64,7 +64,7 @@ const references = new Map();
 const withFresnelOfThree = (pixels) => pixels.map((value, i) => (i % 4 === 3 ? value : value * FRESNEL_RATIOS[Math.floor(i / 4)]));
 const FRESNEL_RATIOS = fresnelRatios();
 
-/** What three.js is told to draw. */
+/** What three.js draws. */
 function drawing(subject, view, changes = {}) {
   const { material, albedo, textures, options } = { ...subject, ...changes };
   const urls = Object.fromEntries(Object.entries(textures).map(([name, file]) => [name, `/baked/${file}`]));
@@ -72,7 +72,7 @@ function drawing(subject, view, changes = {}) {
   return job(view, albedo, { ...changes, material, ...shader, textures: urls });
 }
 
-// LobeOptions by number, as in the exported text.
+// LobeOptions by number, as in the export.
 const DEFAULT_OPTIONS = { form: 0, base: 0, repair: 0, masking: 0, footprint: 0 };
 
 function shaderInputs(model, others) {
@@ -113,7 +113,7 @@ for (const [name, changes] of Object.entries({ 'tangents in the geometry': { tan
   });
 }
 
-// What pages get wrong, each in a view that shows it.
+// Common mistakes of pages, each in a view that shows it.
 const WRONG = [
   ['pbr without roughness', PBR, 'far', { textures: { normal: PBR.textures.normal } }],
   ['pbr with roughness in red alone', PBR, 'far', { textures: { ...PBR.textures, roughness: 'red.roughness.ktx2' } }],

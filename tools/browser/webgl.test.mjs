@@ -54,7 +54,7 @@ test('the WebGL 2 example draws a highlight', async () => {
   assert.deepEqual(complaints(), []);
 });
 
-// A float of the snippet's test for each pixel: what the manual's code gives, and what the exported functions give.
+// A float of the snippet's test for each pixel: the results of the manual's code and of the exported functions.
 const SIDE = 32;
 
 /** The chapter's GLSL blocks: those before the layouts, and the one of a layout's section. */
@@ -64,7 +64,7 @@ function snippets(chapter) {
   return { common: blocks(chapter.split('\n## lean\n')[0]).join('\n'), of: (layout) => blocks(section(layout))[0] };
 }
 
-// How each layout's snippet is given its texels, and what the exports make of the same.
+// How each layout's snippet gets its texels, and the same with the exports.
 const LAYOUTS = {
   lean: {
     texels: 'vec4 t1 = lean1, t2 = lean2;',
@@ -83,7 +83,7 @@ const LAYOUTS = {
 function shader(chapter, layout, library) {
   const { common, of } = snippets(chapter);
   const { texels, moments } = LAYOUTS[layout];
-  // Sampling is the test's own.
+  // The test samples by itself.
   const code = of(layout).split('\n').filter((line) => !line.includes('texture(')).join('\n');
   return `#version 300 es
 precision highp float;
@@ -171,7 +171,7 @@ function drawPixels([fragment, side]) {
   return [...pixels];
 }
 
-// Single floats: the moments lose up to four digits of the covariance, of which the lobe's flank makes ten times as much.
+// Single floats: the moments lose up to four digits of the covariance, which the lobe's flank amplifies tenfold.
 const SAME = 0.01;
 const LAYOUTS_CHAPTER = readFileSync(here('../../docs/layouts.md'), 'utf8');
 

@@ -23,7 +23,7 @@ import png
 REPOSITORY = Path(__file__).resolve().parent.parent.parent
 ROUGHCAST = os.environ.get("ROUGHCAST", REPOSITORY / "target/release/roughcast")
 
-# Of a panel, in pixels; rendered at twice the size.
+# Size of a panel, in pixels; rendered at twice the size.
 WIDTH, HEIGHT, GAP = 528, 400, 8
 VIEW = "--camera 0,1.7,4.2 --look-at 0,0.42,-1 --fov 36 --repeat 1"
 # A low sun behind the scene, another from the right behind the camera, and the sky from the left.
@@ -45,11 +45,11 @@ LAYERS = [
     ),
 ]
 EXPOSURE = 0.85
-# Radiance of the sky at the top of the picture, and at and below the height, as a part of the picture, where the horizon is.
+# Radiance of the sky at the top of the picture and at the horizon, and the height of the horizon as a fraction of the picture.
 ZENITH, DUSK, HORIZON = (0.06, 0.13, 0.36), (0.75, 0.32, 0.10), 0.16
-# Of the letters, in pixels.
+# Size of the letters, in pixels.
 UNIT, BASELINE = 2.5, 38
-# Codes are rounded to multiples of this, which nobody sees: without it the file is larger than 900 kB.
+# Codes are rounded to multiples of this, which is invisible: without it the file is larger than 900 kB.
 STEP = 2
 
 
@@ -84,7 +84,7 @@ def srgb(linear):
 
 
 def plane_of(layers, channel):
-    """One colour of a panel in sRGB. Each sample is brought into the range of a screen before the average, so that edges of highlights are smooth."""
+    """One colour of a panel in sRGB. Each sample is clamped to the range of a screen before averaging, so that edges of highlights are smooth."""
     width = 2 * WIDTH
     values = [sky(row, channel) for row in range(2 * HEIGHT) for _ in range(width)]
     for layer in layers:
@@ -123,7 +123,7 @@ def difference(a, b):
 
 def main():
     parser = argparse.ArgumentParser(description="Makes the picture of the first page.")
-    parser.add_argument("--rays", type=int, default=400, help="rays a sample of the ground truth, a square number (default 400)")
+    parser.add_argument("--rays", type=int, default=400, help="rays per sample of the ground truth, a square number (default 400)")
     parser.add_argument("-o", "--output", type=Path, default=REPOSITORY / "docs/front.png")
     arguments = parser.parse_args()
     chosen = methods(arguments.rays)

@@ -58,7 +58,7 @@ def distance(x, y, piece):
 
 
 def coverage(words, unit, centre, baseline, grow=0.0):
-    """Which part of each pixel the pen covers, by (column, row); `unit` in pixels, the pen wider by `grow` pixels."""
+    """The fraction of each pixel that the pen covers, by (column, row); `unit` in pixels, the pen wider by `grow` pixels."""
     pieces, width = segments(words)
     left = centre - 0.5 * width * unit
     reach = PEN * unit + grow

@@ -4,8 +4,8 @@ import math
 
 
 def sphere(centre, radius, repeats, floor=0.0):
-    """A sphere as six bulged squares, on each of which the map repeats `repeats` times: no poles, where a map would be pinched. What is
-    below `floor` is pressed flat."""
+    """A sphere as six bulged squares, on each of which the map repeats `repeats` times: no poles, where a map would be pinched. Everything
+    below `floor` is flattened."""
     steps = 48
     return [bulged_square(side, sign, steps, centre, radius, repeats, floor) for side in range(3) for sign in (1, -1)]
 

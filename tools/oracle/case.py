@@ -1,4 +1,4 @@
-"""A generated file, the pixels it stands for, and how files are chosen out of all that a format allows."""
+"""A generated file, the pixels it represents, and how to choose files among all that a format allows."""
 
 import itertools
 import random
@@ -12,12 +12,12 @@ HALF_STEP = 0.5 + 1e-6
 
 
 class GeneratorFault(Exception):
-    """The generator's own idea of a file's pixels is not that of the other decoder: the test itself is wrong."""
+    """The generator and the other decoder disagree about a file's pixels: the test itself is wrong."""
 
 
 @dataclass
 class Reference:
-    """The pixels that a file stands for: values[y, x, channel] in float64, row 0 the top.
+    """The pixels that a file represents: values[y, x, channel] in float64, row 0 the top.
 
     Unsigned integers are 0 ..= 1 and signed ones -1 ..= 1. `full` is the number of steps from 0 to 1 that a reader must
     keep (255, 65535 ...); None stands for floats, which must be the same bits as single floats. `tolerance` is for
@@ -29,11 +29,11 @@ class Reference:
     tolerance: float = 0.0
     mean_tolerance: float | None = None
     channels: tuple | None = None
-    # What the reader must say that the numbers are: Unorm, Snorm or Float.
+    # The meaning of the numbers that the reader must report: Unorm, Snorm or Float.
     range: str = "Unorm"
-    # How many of the last channels a reader may leave out, since nobody knows what they are.
+    # How many of the last channels a reader may leave out, since their meaning is unknown.
     optional: int = 0
-    # Whether the first two channels may be exchanged, since the format does not say which of them is x.
+    # Whether the first two channels may be swapped, since the format does not specify which of them is x.
     either_order: bool = False
     # Signed integers become floats, whose last bit depends on how the division is rounded.
     float_ulps: int = 0
@@ -45,7 +45,7 @@ class Reference:
 
 @dataclass
 class Case:
-    """A file to decode. `traits` say of what kind it is, in words that the table of refusals uses."""
+    """A file to decode. `traits` describe its kind, in the words of the table of refusals."""
 
     format: str
     traits: dict
@@ -63,7 +63,7 @@ class Case:
 @dataclass
 class Family:
     """Files of one format that differ along axes: each has a name and its values. `make(rng, **combination)` returns a
-    Case, or None where the format does not allow the combination."""
+    Case, or None if the format does not allow the combination."""
 
     format: str
     axes: dict
@@ -89,12 +89,12 @@ class Family:
         return int(np.prod([len(values) for values in self.axes.values()], dtype=object))
 
 
-# Random completions of a pair of values that are tried before the pair is taken to be impossible.
+# Random completions of a pair of values that are tried before the pair counts as impossible.
 TRIES = 25
 
 
 def pairs(family, seed):
-    """Cases in which every possible pair of values of two axes occurs: most faults need no more than two things to meet.
+    """Cases in which every possible pair of values of two axes occurs: most faults need at most two coinciding conditions.
     (Kuhn, Wallace, Gallo: Software Fault Interactions and Implications for Software Testing, 2004.)"""
     source = random.Random(seed)
     covered, names = set(), list(family.axes)
@@ -124,7 +124,7 @@ def every(family):
 def at_random(families, seed):
     """Endless random combinations of random families."""
     source = random.Random(seed)
-    # Large families more often, but small ones, too.
+    # Large families more often, but small ones too.
     weights = [float(family.size()) ** 0.25 for family in families]
     while True:
         [family] = source.choices(families, weights)
@@ -134,7 +134,7 @@ def at_random(families, seed):
 
 
 def noise(rng, shape, maximum):
-    """Integers 0 ..= maximum of which every value may occur, the extremes surely where there is room."""
+    """Random integers 0 ..= maximum, including the extremes if there is room."""
     values = rng.integers(0, maximum, shape, endpoint=True)
     flat = values.reshape(-1)
     flat[0] = maximum

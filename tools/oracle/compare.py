@@ -1,4 +1,4 @@
-"""Equal, refused or different: what our reader made of a file, held against its reference."""
+"""Equal, refused or different: compares our reader's result for a file with its reference."""
 
 from dataclasses import dataclass, replace
 
@@ -11,7 +11,7 @@ EQUAL, REFUSED, DIFFERENT, UNEXPECTED = "equal", "refused", "different", "refuse
 
 @dataclass
 class Outcome:
-    """What our reader made of a file: samples[y, x, channel] in their stored type, or the line of its error."""
+    """Our reader's result for a file: samples[y, x, channel] in their stored type, or the line of its error."""
 
     samples: np.ndarray | None = None
     range: str = ""
@@ -23,7 +23,7 @@ class Outcome:
 
 @dataclass
 class Verdict:
-    """The word for it, and what there is to say."""
+    """The verdict in a word, and its details."""
 
     word: str
     detail: str = ""
@@ -35,7 +35,7 @@ FULL = {np.dtype(np.uint8): 255, np.dtype(np.uint16): 65535}
 
 
 def value_of(samples):
-    """Stored samples as float64: unsigned integers as 0 ..= 1, floats as they are."""
+    """Stored samples as float64: unsigned integers as 0 ..= 1, floats unchanged."""
     with np.errstate(invalid="ignore"):
         return samples.astype(np.float64) / FULL.get(samples.dtype, 1)
 
@@ -62,7 +62,7 @@ def exchanged(reference):
 
 
 def difference(reference, outcome):
-    """In what the samples differ from the reference; an empty text where they do not."""
+    """How the samples differ from the reference; empty if they do not."""
     expected, samples = reference.values, outcome.samples
     kept = samples.shape[2]
     if expected.shape[2] - reference.optional <= kept < expected.shape[2]:
@@ -95,7 +95,7 @@ def difference(reference, outcome):
 
 def allowance(reference, stored):
     """How far each value may be from the reference: rounded to the steps of the stored type, of which there must not be
-    fewer than the reference asks for."""
+    fewer than the reference requires."""
     if reference.tolerance:
         # Differences of whole steps are not exact in float64.
         return np.full(reference.values.shape, reference.tolerance * (1 + 1e-9))
@@ -110,7 +110,7 @@ def allowance(reference, stored):
 
 
 def same_non_finite(values, expected):
-    """Where both are NaN, or both the same infinity."""
+    """True where both are NaN, or both the same infinity."""
     with np.errstate(over="ignore", invalid="ignore"):
         expected = expected.astype(np.float32)
     both_nan = np.isnan(values) & np.isnan(expected)

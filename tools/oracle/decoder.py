@@ -21,7 +21,7 @@ def decode(program, cases, folder):
         lines.append("\t".join([str(path), case.layer, ",".join(case.channels)]))
     listing, pixels = folder / "files.tsv", folder / "pixels.bin"
     listing.write_text("".join(line + "\n" for line in lines))
-    # Panics are caught and reported on standard output; their traces on standard error say nothing more.
+    # Panics are caught and reported on standard output; their traces on standard error add nothing.
     done = subprocess.run([program, listing, pixels], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     answers = done.stdout.decode().splitlines()
     if done.returncode != 0 or len(answers) != len(cases):
@@ -34,7 +34,7 @@ def decode(program, cases, folder):
 
 
 def outcomes_of(answers, pixels):
-    """What the program's lines and its file of samples say."""
+    """Parses the program's lines and its file of samples."""
     start = 0
     for answer in answers:
         word, *fields = answer.split("\t")

@@ -16,7 +16,7 @@ def table():
 
 
 def updated(page):
-    """The page with today's table. Raises ValueError where it has no place for it."""
+    """The page with today's table. Raises ValueError if it has no place for it."""
     before, mark, rest = page.partition(BEGIN)
     _, end, after = rest.partition(END)
     if not mark or not end:

@@ -20,13 +20,13 @@ from decoder import decode
 from tally import Tally
 
 REPOSITORY = Path(__file__).resolve().parent.parent.parent
-# Files that one run of the decoder takes.
+# Files per run of the decoder.
 BATCH = 256
-# How often a short run covers all pairs, each time by other files.
+# How often a short run covers all pairs, each time with other files.
 ROUNDS = 4
-# Combinations of one family that --full takes at most, chosen at random where there are more.
+# The most combinations of one family with --full, chosen at random if there are more.
 FULL_LIMIT = 4000
-# Random combinations in a row that bring nothing new, after which there is nothing new.
+# Consecutive random combinations without anything new after which the run stops.
 PATIENCE = 1000
 
 
@@ -35,9 +35,9 @@ def arguments(words=None):
     parser.add_argument("--format", action="append", help="only this format; may be repeated")
     amount = parser.add_mutually_exclusive_group()
     amount.add_argument("--full", action="store_true", help="every combination, up to a bound")
-    amount.add_argument("--random", type=float, metavar="SECONDS", help="random combinations for so long")
+    amount.add_argument("--random", type=float, metavar="SECONDS", help="random combinations for this long")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--decoder", type=Path, help="the program dump of roughcast-fuzz, if it is built already")
+    parser.add_argument("--decoder", type=Path, help="the program dump of roughcast-fuzz, if it is already built")
     parser.add_argument("--keep", type=Path, default=REPOSITORY / "target/oracle-failures", help="where failures go")
     parser.add_argument("--report", type=Path, help="writes all failures and counts of refusals into this file")
     return parser.parse_args(words)
@@ -68,7 +68,7 @@ def of_family(family, options):
 
 
 def distinct(stream):
-    """Each case once; ends where nothing new has come for long."""
+    """Each case once; ends when nothing new has appeared for a while."""
     seen, repeated = set(), 0
     for case in stream:
         repeated = repeated + 1 if case.name in seen else 0

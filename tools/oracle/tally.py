@@ -1,4 +1,4 @@
-"""What became of all files: counts, and failures in words."""
+"""The outcomes of all files: counts, and failures in words."""
 
 import re
 from collections import Counter, defaultdict
@@ -6,16 +6,16 @@ from collections import Counter, defaultdict
 from compare import DIFFERENT, EQUAL, REFUSED, UNEXPECTED, judge
 from refusals import REFUSALS
 
-# Most failures of one format that are kept as files.
+# The most failures per format that are kept as files.
 KEPT = 12
 # Values of the axes that are named as suspects.
 SUSPECTS = 20
-# As much of a failure's words as makes it the same as another.
+# Length of the prefix by which failures count as the same.
 SAME_WORDS = 70
 
 
 class Tally:
-    """What became of the files."""
+    """The outcomes of the files."""
 
     def __init__(self, keep, rules=REFUSALS):
         self.rules = rules
@@ -26,7 +26,7 @@ class Tally:
         self.keep = keep
 
     def add(self, case, outcome):
-        """Judges a case, and keeps its file where it fails."""
+        """Judges a case, and keeps its file if it fails."""
         verdict = judge(case, outcome, self.rules)
         self.counts[case.format][verdict.word] += 1
         if verdict.word == REFUSED:
@@ -47,7 +47,7 @@ class Tally:
         return sum(counts.total() for counts in self.counts.values())
 
     def table(self):
-        """A line a format."""
+        """A line per format."""
         yield f"{'format':<8}{'tried':>8}{'equal':>8}{'refused':>9}{'different':>11}{'unexpected refusals':>21}"
         for name, counts in self.counts.items():
             words = (counts[EQUAL], counts[REFUSED], counts[DIFFERENT], counts[UNEXPECTED])
@@ -61,7 +61,7 @@ class Tally:
         return lines
 
     def stale_rules(self, run):
-        """A line for each row of the table for which no file was refused: it is not true any more."""
+        """A line for each row of the table for which no file was refused: it is outdated."""
         met = {rule for counts in self.refusals.values() for rule in counts}
         for rule in self.rules:
             if rule.format in run and rule not in met:

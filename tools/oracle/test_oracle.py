@@ -1,4 +1,4 @@
-"""The comparison passes what is equal and fails whatever is not, and the generators agree with other decoders."""
+"""The comparison accepts equal pixels and rejects all others, and the generators agree with other decoders."""
 
 import contextlib
 import dataclasses
@@ -29,7 +29,7 @@ def png_case(values, content="pixels", **reference):
 
 
 def outcome_of(case, dtype=np.uint8):
-    """What a perfect reader makes of a case."""
+    """The result of a perfect reader for a case."""
     full = {np.uint8: 255, np.uint16: 65535}.get(dtype, 1)
     values = case.reference.values * full
     samples = np.rint(values).astype(dtype) if full > 1 else values.astype(dtype)

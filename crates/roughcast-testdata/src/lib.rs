@@ -1,11 +1,11 @@
 //! Finds the fixtures of the tests: the small set in the repository, and the extended corpus beside it.
 //!
-//! - The **small set** is `testdata/`: real files, small and licensed, on which every kind of test runs. It is always there.
-//! - The **extended corpus** is `../shared/data`, beside the repository: hundreds of larger files. Where it is there, the same
-//!   tests run over it too; with `CI=true` in the environment it must be.
+//! - The **small set** is `testdata/`: real files, small and licensed, on which every kind of test runs. It always exists.
+//! - The **extended corpus** is `../shared/data`, beside the repository: hundreds of larger files. If it exists, the same
+//!   tests run over it too; with `CI=true` in the environment it must exist.
 //!
-//! Both have the same folders and a `MANIFEST.tsv` with the same columns. A file is known by its path below the corpus, such as
-//! `materials/cheese/texture_cheese_normal.png`; where both have it, the two are equal.
+//! Both have the same folders and a `MANIFEST.tsv` with the same columns. A file is identified by its path below the corpus, such as
+//! `materials/cheese/texture_cheese_normal.png`; if both have it, the two are equal.
 //!
 //! A test that asks for fixtures while the extended corpus is missing runs on the small set only. Its name is then appended to
 //! the file that the environment variable [`SMALL_SET_LOG`] names, so that `./check` can count such tests.
@@ -26,7 +26,7 @@ fn small_set() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../testdata")
 }
 
-/// The folder of the extended corpus, if it is there.
+/// The folder of the extended corpus, if it exists.
 ///
 /// # Panics
 /// If it is missing and the environment has `CI=true`.
@@ -51,7 +51,7 @@ fn log_small_set() {
     let program = program.as_deref().and_then(Path::file_stem).and_then(|stem| stem.to_str()).unwrap_or("?");
     let program = program.rsplit_once('-').map_or(program, |(name, _)| name);
     let thread = std::thread::current();
-    // Threads that a test starts have no names; the test itself has asked before it started them.
+    // Threads that a test starts have no names; the test itself has called this before.
     let Some(test) = thread.name() else { return };
     let line = format!("{program} {test}\n");
     let file = std::fs::OpenOptions::new().create(true).append(true).open(&log);
@@ -59,12 +59,12 @@ fn log_small_set() {
     written.unwrap_or_else(|error| panic!("{}: {error}", log.display()));
 }
 
-/// The folders that are there: the small set, then the extended corpus.
+/// The existing folders: the small set, then the extended corpus.
 pub fn corpora() -> Vec<PathBuf> {
     [Some(small_set()), extended()].into_iter().flatten().collect()
 }
 
-/// Whether the extended corpus is there. Without it, fewer files than usual is no reason to fail.
+/// Whether the extended corpus exists. Without it, fewer files than usual are no reason to fail.
 pub fn is_extended() -> bool {
     extended().is_some()
 }
@@ -83,7 +83,7 @@ pub fn find(path: &str) -> PathBuf {
 /// For the rows of tables; a test of one file uses [`find`], with a file of the small set.
 ///
 /// # Panics
-/// If the extended corpus is there and does not have it either.
+/// If the extended corpus exists and does not have it either.
 #[track_caller]
 pub fn available(path: &str) -> Option<PathBuf> {
     let small = small_set().join(path);
@@ -95,10 +95,10 @@ pub fn available(path: &str) -> Option<PathBuf> {
     Some(large)
 }
 
-/// The rows of a table whose files are there.
+/// The rows of a table whose files exist.
 ///
 /// # Panics
-/// As [`available`], and if none is left: a test of nothing cannot fail.
+/// As [`available`], and if none is left: a test without cases cannot fail.
 #[track_caller]
 pub fn rows_with_files<T>(rows: impl IntoIterator<Item = T>, path: impl Fn(&T) -> &str) -> Vec<T> {
     let rows: Vec<T> = rows.into_iter().filter(|row| available(path(row)).is_some()).collect();
@@ -106,7 +106,7 @@ pub fn rows_with_files<T>(rows: impl IntoIterator<Item = T>, path: impl Fn(&T) -
     rows
 }
 
-/// The rows of all manifests; a file that several corpora have comes once.
+/// The rows of all manifests; a file that several corpora have appears once.
 ///
 /// # Panics
 /// If a manifest cannot be read.

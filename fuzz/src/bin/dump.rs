@@ -1,7 +1,7 @@
 //! Decodes many files for a comparison with other decoders: `dump LIST SAMPLES`.
 //!
-//! LIST has one file a line: path, layer and channels (separated by commas), divided by tabs; the last two may be empty.
-//! Each file gives one line on standard output, its fields divided by tabs: `read`, width, height, channels, sample type,
+//! LIST has one file per line: path, layer and channels (separated by commas), separated by tabs; the last two may be empty.
+//! Each file gives one line on standard output, its fields separated by tabs: `read`, width, height, channels, sample type,
 //! range, warnings; or `refused` and the error; or `panicked` and the message. The samples of the files that were read
 //! are written to SAMPLES, one file after the other, little-endian.
 
@@ -80,7 +80,7 @@ fn description(decoded: &Decoded) -> String {
     )
 }
 
-/// A text without what would divide it into fields or lines.
+/// A text without separators of fields or lines.
 fn plain(text: &str) -> String {
     text.replace(char::is_control, " ")
 }

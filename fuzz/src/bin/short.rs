@@ -1,7 +1,7 @@
 //! A short run of all targets on a stable compiler: `short [--seconds N] [--target NAME] [--seed N]`.
 //!
 //! Targets share the time equally. A seed gives the same sequence of inputs; how far it gets depends on the machine. An
-//! input that breaks a promise is saved to `target/fuzz-failures/`, and the run ends with an error.
+//! input that violates a guarantee is saved to `target/fuzz-failures/`, and the run ends with an error.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -17,7 +17,7 @@ struct Options {
     targets: Vec<&'static Target>,
 }
 
-/// An honest run takes milliseconds, also unoptimised and on a busy machine.
+/// A normal run takes milliseconds, even unoptimised and on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 fn main() -> ExitCode {
@@ -49,7 +49,7 @@ fn options() -> Result<Options, String> {
                     return Err(format!("no target is called {value}: choose one of {}", names.join(", ")));
                 }
             }
-            _ => return Err(format!("{name} is no option: use --seconds, --target or --seed")),
+            _ => return Err(format!("{name} is not an option: use --seconds, --target or --seed")),
         }
     }
     if !(options.seconds > 0.0 && options.seconds < 1e6) {
@@ -67,7 +67,7 @@ fn run(options: &Options) -> Result<String, String> {
     Ok(format!("fuzz: {}, no failure", counts.join(", ")))
 }
 
-/// Runs every file of the corpus as it is, then changed ones until the time is over. Returns the number of runs.
+/// Runs every file of the corpus unchanged, then modified ones until the time is over. Returns the number of runs.
 fn run_target(target: &Target, seed: u64, share: Duration) -> Result<u64, String> {
     let files = corpus::files_of(target).map_err(|error| format!("{}: {error}", target.name))?;
     for file in &files {

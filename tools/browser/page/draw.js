@@ -24,7 +24,7 @@ function square({ repeats, tangents, v = 'down' }) {
   geometry.setAttribute('position', attribute(3, ([x, z]) => [x, 0, z]));
   geometry.setAttribute('normal', attribute(3, () => [0, 1, 0]));
   geometry.setAttribute('uv', attribute(2, ([x, z]) => [(x / 2 + 0.5) * repeats, sign * (z / 2 + 0.5) * repeats]));
-  // As glTF has them: the bitangent cross(normal, tangent) * w points up the texture, to -z.
+  // As in glTF: the bitangent cross(normal, tangent) * w points up the texture, to -z.
   if (tangents === 'attribute') geometry.setAttribute('tangent', attribute(4, () => [1, 0, 0, 1]));
   return geometry;
 }
@@ -43,7 +43,7 @@ function lightOf({ towards, irradiance }) {
   return light;
 }
 
-// The bytes of the floats in base64, which comes through to Node faster than an array of numbers.
+// The bytes of the floats in base64, which reaches Node faster than an array of numbers.
 function packed(floats) {
   const bytes = new Uint8Array(floats.buffer);
   let text = '';

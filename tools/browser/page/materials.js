@@ -12,7 +12,7 @@ function normalScale(job) {
   return new THREE.Vector2(1, job.flipGreen ? -up : up);
 }
 
-/** The layout `pbr` on a black dielectric, so that the highlight is seen alone. */
+/** The layout `pbr` on a black dielectric, so that only the highlight is visible. */
 function pbr({ normal, roughness = null }, job) {
   return new THREE.MeshStandardMaterial({
     color: grey(0),

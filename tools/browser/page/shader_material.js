@@ -28,7 +28,7 @@ in vec2 texture_coordinates;
 in vec3 world_position;
 layout(location = 0) out highp vec4 radiance;`;
 
-// Which part of the filtered variance the pixel sees, for a trilinear filter, and the distribution of slopes that it leaves.
+// The part of the filtered variance that is under the pixel, for a trilinear filter, and the resulting distribution of slopes.
 const FOOTPRINT = `
 const float MAX_ANISOTROPY = 1.0; // texture.anisotropy
 const float MIP_BIAS = 0.0;

@@ -6,9 +6,9 @@ import { KTX2Loader } from 'three/addons/loaders/KTX2Loader.js';
 /** `detectSupport(renderer)` comes before the first file. */
 export const loader = new KTX2Loader();
 
-// `sampling` is for the tests: what goes wrong where a page forgets something.
+// `sampling` is for the tests: it simulates mistakes of a page.
 const SAMPLING = {
-  // What the maps need. KTX2Loader sets nearest filters on all that is not block-compressed.
+  // The filters that the maps need. KTX2Loader sets nearest filters on everything that is not block-compressed.
   right: (texture) => {
     texture.minFilter = THREE.LinearMipmapLinearFilter;
     texture.magFilter = THREE.LinearFilter;
@@ -20,7 +20,7 @@ const SAMPLING = {
   },
 };
 
-/** `v` is 'up' where the geometry's texture coordinates grow upwards: row 0 of a file is the top, and nothing is flipped on upload. */
+/** `v` is 'up' if the geometry's texture coordinates grow upwards: row 0 of a file is the top, and nothing is flipped on upload. */
 export async function loadTexture(url, { sampling = 'right', v = 'down' }) {
   const texture = await loader.loadAsync(url);
   texture.wrapS = texture.wrapT = THREE.RepeatWrapping;

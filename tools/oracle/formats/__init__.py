@@ -1,1 +1,1 @@
-"""Generators: one module a format, each with `families()`."""
+"""Generators: one module per format, each with `families()`."""

@@ -43,7 +43,7 @@ MASKS = {
     "X8L8V8U8": (BUMP_LUMINANCE, 32, (0xFF, 0xFF00, 0xFF0000, 0), "RG"),
     "A2W10V10U10": (BUMP | ALPHA, 32, (0x3FF, 0xFFC00, 0x3FF00000, 0xC0000000), "RGB"),
 }
-# Numbers of Direct3D 9 in the place of a FourCC.
+# Numbers of Direct3D 9 in place of a FourCC.
 NUMBERS = {
     "A16B16G16R16": (36, "unorm16", 4), "Q16W16V16U16": (110, "snorm16", 4), "R16F": (111, "half", 1), "G16R16F": (112, "half", 2),
     "A16B16G16R16F": (113, "half", 4), "R32F": (114, "float", 1), "G32R32F": (115, "float", 2), "A32B32G32R32F": (116, "float", 4),
@@ -76,7 +76,7 @@ DXGI_BLOCKS = {
     "BC3_SRGB": (78, "BC3"), "BC4_UNORM": (80, "BC4"), "BC4_SNORM": (81, "BC4 signed"), "BC5_UNORM": (83, "BC5"),
     "BC5_SNORM": (84, "BC5 signed"), "BC7_UNORM": (98, "BC7"), "BC7_SRGB": (99, "BC7"),
 }  # fmt: skip
-# What is no map: the words of its pixel format or its DXGI number, and the bytes of a texel.
+# Formats that are not maps: the words of its pixel format or its DXGI number, and the bytes of a texel.
 OTHERS = {
     "palette": (PALETTE | RGB, 0, 8, (0, 0, 0, 0)), "YUV": (YUV, 0, 16, (0xFF, 0xFF00, 0, 0)),
     "UYVY": (FOURCC, b"UYVY", 0, (0, 0, 0, 0)), "unknown FourCC": (FOURCC, b"ABCD", 0, (0, 0, 0, 0)),

@@ -104,7 +104,7 @@ def spec_of(data, display, size, names, types, storage, order, compression):
 
 
 def written(specs, pictures, path):
-    """Writes the parts; false where OpenEXR does not."""
+    """Writes the parts; false if OpenEXR cannot."""
     out = oiio.ImageOutput.create(str(path))
     opened = out.open(str(path), specs) if len(specs) > 1 else out.open(str(path), specs[0])
     for index, (spec, picture) in enumerate(zip(specs, pictures)):
@@ -187,7 +187,7 @@ OPEN = {
 
 
 def left_open(rng, names, size):
-    """Channels of which nobody can know without asking which are the map."""
+    """Channels that do not identify the map."""
     spec = spec_of((0, 0, size[1], size[0]), (0, 0), size, OPEN[names], "half", "scan lines", "increasingY", "zip")
     picture = pixels_of(rng, (*size, len(OPEN[names])), "noise")
     with tempfile.TemporaryDirectory() as folder:
@@ -197,7 +197,7 @@ def left_open(rng, names, size):
 
 
 def deep(rng, storage, size):
-    """Several samples a pixel, each with its depth."""
+    """Several samples per pixel, each with its depth."""
     spec = oiio.ImageSpec(size[1], size[0], 2, oiio.FLOAT)
     spec.channelnames = ["Z", "A"]
     spec.deep = True

@@ -93,7 +93,7 @@ def make(rng, size, colour, sampling, scans, restart, quality, coding, smoothnes
 
 
 def pillow(rng, kind, size):
-    """What cjpeg cannot write."""
+    """Files that cjpeg cannot write."""
     picture = smooth(rng, *size, 3)
     out = io.BytesIO()
     if kind == "CMYK":

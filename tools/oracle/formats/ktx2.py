@@ -55,7 +55,7 @@ PACKED = {
     "A2R10G10B10": (58, 32, (0x3FF00000, 0xFFC00, 0x3FF, 0xC0000000)),
     "A2B10G10R10": (64, 32, (0x3FF, 0xFFC00, 0x3FF00000, 0xC0000000)),
 }
-# What no reader of maps has a use for: number, bytes of a texel (or of a block).
+# Formats that readers of maps do not need: number, bytes of a texel (or of a block).
 OTHERS = {
     "8-bit integers": (13, 1), "8-bit signed integers": (14, 1), "16-bit integers": (74, 2), "32-bit integers": (98, 4),
     "doubles": (112, 8), "shared exponent": (123, 4), "11-bit floats": (122, 4), "8-bit integers, packed": (55, 4), "10-bit integers": (62, 4), "scaled 10 bits": (60, 4), "depth": (124, 2), "BC6H": (143, 16),
@@ -159,7 +159,7 @@ def make(rng, format, size, levels, layers, scheme, swizzle, orientation, writer
 
 
 def refused(rng, format, shape):
-    """Formats and shapes that are not maps: whatever a reader makes of them, it must not be pixels."""
+    """Formats and shapes that are not maps: a reader must not return pixels for them."""
     number, unit = OTHERS.get(format, (37, 4))
     layers, faces, depth, height = {"2-D": (0, 1, 0, 8), "cube": (0, 6, 0, 8), "3-D": (0, 1, 2, 8), "1-D": (0, 1, 0, 0)}[shape]
     if (format == "RGBA") == (shape == "2-D") or (format != "RGBA" and shape != "2-D"):

@@ -163,7 +163,7 @@ def check_with_libpng(file, values, depth):
     decoded = decoded[:, :, None] if decoded.ndim == 2 else decoded
     full = 65535 if decoded.dtype == np.uint16 else 255
     if decoded.shape != values.shape:
-        # The wrapper passes over the transparency of some colour types.
+        # The wrapper ignores the transparency of some colour types.
         values = values[:, :, : decoded.shape[2]]
     if decoded.shape != values.shape or not np.array_equal(decoded, np.rint(values * full)):
         raise GeneratorFault(f"libpng reads other pixels from a PNG of depth {depth}")
@@ -187,7 +187,7 @@ def families():
 
 
 def animated(rng, animation, size):
-    """An animated PNG whose default image is its first frame: the reader takes that."""
+    """An animated PNG whose default image is its first frame: the reader returns it."""
     height, width = size
     frames = [noise(rng, (height, width, 3), 255) for _ in range(2)]
     header = struct.pack(">IIBBBBB", width, height, 8, RGB, 0, 0, 0)

@@ -28,7 +28,7 @@ class Texels:
     range: str = "Unorm"
 
     def reference(self, values, optional=0):
-        """What an image of these texels must be, given its values after whatever moved them."""
+        """The expected image of these texels, given its values after any rearrangement."""
         return Reference(
             values, full=self.full, tolerance=self.tolerance, range=self.range, optional=optional, float_ulps=1
         )
@@ -94,7 +94,7 @@ def colour_blocks(blocks, always_four):
 def single_blocks(blocks, signed):
     """BC4 blocks[n, 8] to values[n, 16]."""
     ends = blocks[:, :2].copy().view(np.int8 if signed else np.uint8).astype(np.int64)
-    # Which of the two tables counts is decided by the stored numbers; -128 stands for -127.
+    # The stored numbers decide which of the two tables applies; -128 means -127.
     long = ends[:, 0] > ends[:, 1]
     a, b = (np.maximum(ends[:, i], -127) / 127 if signed else ends[:, i] / 255 for i in (0, 1))
     eight = np.stack([a, b] + [((7 - k) * a + k * b) / 7 for k in range(1, 7)], axis=1)
@@ -136,7 +136,7 @@ def blocks(rng, height, width, code):
     rows, columns = -(-height // 4), -(-width // 4)
     stored = rng.integers(0, 256, (rows * columns, BLOCK_BYTES[code]), dtype=np.uint8)
     if code == "BC7":
-        # The lowest set bit says which of eight modes it is.
+        # The lowest set bit selects one of eight modes.
         mode = rng.integers(0, 8, len(stored)).astype(np.uint8)
         stored[:, 0] = (stored[:, 0] & ~((2 << mode) - 1) | 1 << mode).astype(np.uint8)
         return Texels(stored.tobytes(), bc7_by_pillow(stored.tobytes(), height, width))

@@ -103,7 +103,7 @@ def make(rng, kind, size, compressed, origin, id_field, footer, index_bits, map_
     return "tga", file + (FOOTER if footer else b""), Reference(values)
 
 
-# What Pillow reads as this program does: it takes the fifth bit for alpha, and knows no pixels from the right.
+# What Pillow reads as this program does: it treats the fifth bit as alpha, and does not support pixels from the right.
 PILLOW = {"grey", "grey and alpha", "RGB", "RGBA", "palette of 24 bits"}
 
 
@@ -114,7 +114,7 @@ def check_with_pillow(file, kind, values, origin):
     try:
         image.load()
     except (OSError, ValueError):
-        # Pillow's runs end with the row, and it stumbles over palettes that are not used.
+        # Pillow's runs end with the row, and it fails on unused palettes.
         return
     image = image.convert("RGB") if image.mode == "P" else image
     decoded = np.asarray(image).reshape(values.shape)

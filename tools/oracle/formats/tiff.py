@@ -49,7 +49,7 @@ LAYOUTS = {
     "CMYK": (5, 4, None),
     "L*a*b*": (8, 3, None),
 }
-# Samples that the file does not say the meaning of: a reader may leave them out, with a warning.
+# Samples whose meaning the file does not state: a reader may leave them out, with a warning.
 OPTIONAL = {"RGBA and a sample": 1, "RGB and a sample": 1, "grey and a sample": 0}
 
 
@@ -86,7 +86,7 @@ def meaning(pixels, sample_format, bits, layout, palette):
     if sample_format == tiff.UINT:
         values = pixels / ((1 << bits) - 1)
         if LAYOUTS[layout][0] == 0 and bits <= 16:
-            # Of more bits our reader says that it ignores this, as OpenImageIO does.
+            # For more bits our reader warns that it ignores this, as OpenImageIO does.
             values = 1 - values
         return values, 255 if bits <= 8 else 65535 if bits <= 16 else 1 << 23
     if sample_format == tiff.INT:
@@ -178,7 +178,7 @@ def check_with_tifffile(file, pixels, bits, compression, layout):
 
 
 def by_libtiff(rng, compression, size, content):
-    """What libtiff encodes: fax codes of one bit, and JPEG."""
+    """Files encoded by libtiff: fax codes of one bit, and JPEG."""
     height, width = size
     if compression.startswith("CCITT"):
         grey = smooth(rng, height, width, 1)[:, :, 0]

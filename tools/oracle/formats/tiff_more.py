@@ -1,4 +1,4 @@
-"""TIFF of other writers, and what a TIFF may say beside its pixels: texels without data, several images, more samples."""
+"""TIFF of other writers, and further contents of TIFF: texels without data, several images, more samples."""
 
 import io
 import tempfile
@@ -32,7 +32,7 @@ def reference_of(pixels, **more):
 def by_tifffile(pixels, compression, tiles, predictor):
     out = io.BytesIO()
     tifffile.imwrite(
-        # A third axis of one would be taken for pages.
+        # A third axis of one would be read as pages.
         out, pixels[:, :, 0] if pixels.shape[2] == 1 else pixels, photometric="rgb" if pixels.shape[2] == 3 else "minisblack", compression=compression,
         predictor=predictor and compression in ("lzw", "zlib", "zstd"), tile=(16, 32) if tiles else None, metadata=None,
     )  # fmt: skip
@@ -121,7 +121,7 @@ def of_choice(rng, choice, planar, size):
 
 
 def refused(rng, odd):
-    """What is no map."""
+    """Files that are not maps."""
     photometric, samples, bits, sample_format = {
         "complex": (1, 1, 64, 6), "complex integers": (1, 1, 32, 5), "YCbCr": (6, 3, 8, 1), "filter array": (32803, 1, 8, 1),
         "six samples": (1, 6, 8, 1),
