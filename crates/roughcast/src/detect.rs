@@ -1,6 +1,6 @@
 //! Decides from pixels what a map is: normals or heights, in which channels and range, green up or down.
 //!
-//! The statements are made for the caller to act on or to overrule: where the pixels do not tell, the answer
+//! The caller may act on the answers or overrule them: if the pixels do not decide, the answer
 //! says so. All of it is deterministic; large images are judged by a regular sample of their texels.
 
 mod channels;

@@ -1,4 +1,4 @@
-//! The distribution of slopes under a footprint: what every source of bumps answers, and what every shading model takes.
+//! The distribution of slopes under a footprint: the result of every source of bumps, and the input of every shading model.
 //!
 //! One Gaussian describes the bumps of LEAN and its relatives; a mixture of up to four describes bumps of several kinds under one
 //! footprint. The filtered normal is kept beside them: diffuse light needs its length, which the Gaussians do not determine.
@@ -41,12 +41,12 @@ pub struct Distribution {
 }
 
 impl Distribution {
-    /// A single slope: no bumps are hidden.
+    /// A single slope, without hidden bumps.
     pub fn of_slope(slope: Slope) -> Self {
         Self::gaussian(slope, Covariance::default())
     }
 
-    /// The slope of a filtered normal of any length, and nothing about it: the ordinary way, which loses the bumps. A normal that is
+    /// The slope of a filtered normal of any length, without any spread: the conventional method, which loses the bumps. A normal that is
     /// flatter than [`LEAST_NORMAL_Z`] counts as that steep.
     #[inline]
     pub fn of_normal(normal: Normal) -> Self {
@@ -165,7 +165,7 @@ mod tests {
     const ROUNDING: f32 = 1e-6;
 
     #[test]
-    fn the_covariance_of_a_mixture_is_that_within_plus_that_between() {
+    fn the_covariance_of_a_mixture_is_within_plus_between() {
         let part = |weight, x, variance| WeightedGaussian {
             weight,
             mean: Slope { x, y: 0.1 },

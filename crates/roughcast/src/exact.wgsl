@@ -1,10 +1,10 @@
-// Quotients and roots rounded as IEEE 754 has them, which is how the CPU rounds.
+// Quotients and roots rounded as in IEEE 754, like on the CPU.
 // Source: T. J. Dekker, "A floating-point technique for extending the available precision", 1971.
 //
 // A GPU may miss the nearest float of a quotient or a root by a few steps, and may fuse a product and a sum into one
 // operation with one rounding. Both are harmless but where numbers nearly cancel: there they would be the whole result.
 
-// Always zero; whoever runs these functions sets it from a buffer, so that no compiler knows.
+// Always zero; the host sets it from a buffer, so that no compiler knows it.
 var<private> opaque_zero: u32;
 
 // A product that no sum can be fused with.

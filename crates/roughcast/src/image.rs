@@ -395,7 +395,7 @@ mod tests {
     }
 
     #[test]
-    fn samples_of_another_number_make_no_view() {
+    fn a_wrong_number_of_samples_is_refused() {
         let samples = SamplesView::U8(&[0; 11]);
         let error = ImageView::new(3, 2, 2, samples).expect_err("one is missing");
         assert_eq!(error, ImageError::Length { width: 3, height: 2, channels: 2, expected: 12, got: 11 });

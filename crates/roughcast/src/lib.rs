@@ -1,19 +1,19 @@
 //! Filtered surface detail: bumps in, roughness out.
 //!
-//! A shiny bumpy surface seen from afar must look duller, because its bumps have become too small to see. Mip-mapped
-//! normals lose them instead. This crate turns normal and height maps into textures of *moments of slopes*, which any
+//! A shiny, bumpy surface should look duller from far away, because its bumps have become too small to see. Mip-mapped
+//! normals discard them. This crate turns normal and height maps into textures of *moments of slopes*, which any
 //! filter may average, and from which a shader gets the lost bumps back as roughness with a direction (Olano & Baker,
 //! "LEAN Mapping", 2010, and its relatives).
 //!
-//! # What is in
+//! # Contents
 //!
-//! - [`bake()`]: a map in memory to a layout's textures, every level of them ([`texture::Layout`] lists the layouts);
+//! - [`bake()`] bakes a map in memory into the textures of a layout, with all levels ([`texture::Layout`] lists the layouts);
 //! - [`texture::decode`]: from any layout back to moments, and [`texture::bounds`]: how far off these can be;
 //! - [`shading`]: models that shade with these textures, each with a WGSL twin for GPUs;
 //! - [`precision`]: which storage type carries which shininess;
 //! - [`detect`]: whether an image holds normals or heights, in which channels, with green up or down.
 //!
-//! # What is out of scope
+//! # Out of scope
 //!
 //! Files (see `roughcast-io`), block compression (there, too), the GPU, colour textures, and normal maps in object
 //! space: slopes are those of the tangent plane.

@@ -1,4 +1,4 @@
-//! Moments of the slopes under a footprint: the mean and what the lost bumps became, roughness with a direction.
+//! Moments of the slopes under a footprint: their mean, and the spread of the lost bumps, which is roughness with a direction.
 //!
 //! Source: LEAN mapping, Eq. 2 to 5. Order of second moments everywhere: xx, yy, xy.
 
@@ -203,13 +203,13 @@ mod tests {
     }
 
     #[test]
-    fn the_covariance_of_one_slope_is_nothing() {
+    fn the_covariance_of_one_slope_is_zero() {
         let moments = Moments::of_slope(Slope { x: 0.5, y: -0.25 });
         assert_eq!(moments.covariance(), Covariance::default());
     }
 
     #[test]
-    fn mending_leaves_a_covariance_alone_and_mends_what_is_none() {
+    fn repair_keeps_valid_covariances_and_fixes_invalid_ones() {
         let good = Covariance { xx: 4.0, yy: 1.0, xy: -1.5 };
         assert_eq!(good.positive_semidefinite(), good);
         let cut = Covariance { xx: 4.0, yy: 1.0, xy: -9.0 }.positive_semidefinite();
@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn mended_determinants_are_never_negative() {
+    fn repaired_determinants_are_never_negative() {
         let mut seed = 1_u32;
         let mut random = || {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

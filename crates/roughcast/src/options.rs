@@ -1,4 +1,4 @@
-//! How a map is to be read and filtered. The command line, Python and the GPU use these as they are.
+//! How to read and filter a map. The command line, Python and the GPU use these as they are.
 
 use crate::SampleType;
 use crate::convention::{Green, HeightSense, Kind, NormalChannels, NormalRange, Red, Wrap};
@@ -19,7 +19,7 @@ named_enum! {
 }
 
 named_enum! {
-    /// The kernel that makes a level of the one before. All are non-negative: with lobes below zero the covariance
+    /// The kernel that makes a level from the previous one. All are non-negative: with lobes below zero the covariance
     /// would stop being one.
     pub enum PyramidFilter: "filter" {
         /// Exact area average.
@@ -95,7 +95,7 @@ impl SourceOptions {
     /// Default height of a full-range height map, as a part of its width.
     pub const DEFAULT_HEIGHT_SCALE: f32 = 0.02;
 
-    /// What x and y of a normal are multiplied by, as read.
+    /// The factors of x and y of a normal, as read.
     pub fn normal_factors(&self) -> [f32; 2] {
         let x = if self.red == Red::Left { -self.normal_scale } else { self.normal_scale };
         let y = if self.green == Green::Down { -self.normal_scale } else { self.normal_scale };
@@ -131,7 +131,7 @@ pub enum ScaleChoice {
     Fixed(f32),
 }
 
-/// What to make of a map.
+/// What to bake from a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BakeOptions {
     /// The layout.
@@ -142,7 +142,7 @@ pub struct BakeOptions {
     pub scale: ScaleChoice,
     /// Whether base roughness is folded into the second moments.
     pub base: Base,
-    /// The lobe for which roughness is meant.
+    /// The reflectance function that the roughness is meant for.
     pub brdf: Brdf,
     /// The choices of [`Layout::Pbr`]; no other layout reads them.
     pub pbr: PbrOptions,

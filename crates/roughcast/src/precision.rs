@@ -1,4 +1,4 @@
-//! How far a storage type carries: measured and bounded error of the variance, and the exponents that it allows.
+//! The precision of a storage type: measured and bounded error of the variance, and the exponents that it allows.
 //!
 //! Source: "Shiny and CLEAN", with the error of the mean counted in full. With `V = M - B²`, texels of half a code's error
 //! over their range give `e_V = e_M + 2 |B| e_B + e_B²`, and the lobe is safe while `1/s > e_V`.
@@ -10,7 +10,7 @@ use crate::options::{BakeOptions, MaxSlope, SourceOptions};
 use crate::texture::{self, Bounds, Layout, Part, Peaks, TextureArray, TextureInfo};
 use crate::{ImageView, Moments, SampleType};
 
-/// What one storage type does to a map stored as LEAN.
+/// The errors of one storage type for a map stored as LEAN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Precision {
     /// The storage type.
@@ -28,7 +28,7 @@ pub struct Precision {
 }
 
 impl Precision {
-    /// Largest Blinn-Phong exponent that is safe for certain.
+    /// Largest Blinn-Phong exponent that is guaranteed to be safe.
     pub fn usable_specular_power(&self) -> f32 {
         self.bound.usable_specular_power()
     }
@@ -129,7 +129,7 @@ fn raw_covariance(moments: Moments) -> [f64; 3] {
     [f64::from(moments.xx) - x * x, f64::from(moments.yy) - y * y, f64::from(moments.xy) - x * y]
 }
 
-/// The steepest slope, per component, with which a type still carries an exponent: the bound turned round.
+/// The maximum slope, per component, at which a type still represents an exponent: the inverse of the bound.
 pub fn steepest_slope(bits: SampleType, specular_power: f32) -> f32 {
     let allowed = |slope: f32| {
         let scale = if bits.is_float() { 1.0 } else { slope };
@@ -149,7 +149,7 @@ pub fn steepest_slope(bits: SampleType, specular_power: f32) -> f32 {
     safe
 }
 
-/// The cheapest type that carries an exponent with this map; `None` where none does.
+/// The cheapest type that represents an exponent with this map; `None` if none does.
 pub fn recommend(measured: &[Precision], specular_power: f32) -> Option<SampleType> {
     let order = [SampleType::U8, SampleType::U16, SampleType::F16, SampleType::F32];
     order.into_iter().find(|bits| {
@@ -169,7 +169,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_published_figures_come_out() {
+    fn the_published_figures_are_reproduced() {
         // 0.4 % for the paper's rounding step of R / 2^(n+1), where an 8-bit code's is R / (2 (2^n - 1)); 3 % for the f32
         // arithmetic on the way into a code of 16 bits, which the bound counts too.
         const NOT_COUNTED_IN_THE_TEXT: f32 = 0.035;
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn the_steepest_slope_is_the_bound_turned_round() {
+    fn the_maximum_slope_inverts_the_bound() {
         const BISECTION: f32 = 1e-4;
         for bits in [SampleType::U8, SampleType::U16] {
             for slope in [0.25, 1.0, 3.0] {

@@ -1,4 +1,4 @@
-//! Conventions of roughness: for which lobe it is meant, how it is stored, where, and whether it is in the moments already.
+//! Conventions of roughness: the reflectance function it is meant for, how and where it is stored, and whether the moments contain it.
 //!
 //! Every roughness is a slope variance per axis in this crate; see the table of conventions in the [crate's](crate) documentation.
 
@@ -15,7 +15,7 @@ named_enum! {
 }
 
 named_enum! {
-    /// The lobe for which a stored roughness is meant.
+    /// The reflectance function that a stored roughness is meant for.
     pub enum Brdf: "BRDF" {
         /// GGX, by the convention `alpha^2 = alpha0^2 + 2 sigma^2`: it has no finite slope variance of its own.
         Ggx = "ggx",

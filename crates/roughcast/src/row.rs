@@ -1,6 +1,6 @@
 //! A row of texels on its way through the pyramid, plane by plane.
 //!
-//! The pyramid carries the mean slope and the *covariance*, not the raw second moments. Both say the same, but the
+//! The pyramid carries the mean slope and the *covariance*, not the raw second moments. Both are equivalent, but the
 //! covariance of a footprint is a sum of squares (law of total covariance, Schilling's recursion), so it is positive
 //! semidefinite by construction and keeps its precision where slopes are steep and bumps are small; `M = Σ + B Bᵀ`
 //! is formed once, when a level is stored.
@@ -81,7 +81,7 @@ impl<'a> RowView<'a> {
     }
 }
 
-/// Where level 0 comes from: slopes, computed where they are needed and never stored as a whole image.
+/// The source of level 0: slopes, computed on demand and never stored as a whole image.
 pub(crate) trait RowSource: Sync {
     fn width(&self) -> usize;
     fn height(&self) -> usize;

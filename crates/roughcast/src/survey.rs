@@ -1,4 +1,4 @@
-//! A look at every slope of level 0, before anything is stored: it finds the smallest scale that is safe.
+//! A pass over every slope of level 0, before anything is stored: it finds the smallest safe scale.
 
 use rayon::prelude::*;
 
@@ -116,7 +116,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_gpus_histogram_has_bins_of_the_same_width() {
+    fn the_histogram_of_the_gpu_has_the_same_bins() {
         let written = format!("const SLOPE_BIN_SHIFT: u32 = {BIN_SHIFT}u;");
         assert!(
             crate::wgsl::module("limit").expect("it exists").source.contains(&written),

@@ -1,4 +1,4 @@
-//! The stated bounds of every layout in every type: kept on every texel of every level, and not silly.
+//! The stated bounds of every layout in every type: kept on every texel of every level, and not too loose.
 
 mod common;
 
@@ -258,7 +258,7 @@ fn wide_bound(case: &Case, worst: Worst) -> Option<&'static str> {
 }
 
 #[test]
-fn bounds_that_are_too_wide_are_found() {
+fn too_wide_bounds_are_detected() {
     for case in cases() {
         let Worst { slope, variance, eigenvalue } = loosest(&case);
         let near = Worst { slope: 1.0 / slope, variance: 1.0 / variance, eigenvalue: 1.0 / eigenvalue };
@@ -306,7 +306,7 @@ fn averaged_normals(slopes: &slope_oracle::Slopes, source: &SourceOptions) -> Ve
 }
 
 #[test]
-fn what_files_give_back_is_within_the_bounds_and_the_bounds_are_near() {
+fn decoded_files_are_within_tight_bounds() {
     let cases = cases();
     let mut worst = vec![Worst::default(); cases.len()];
     for map in maps() {

@@ -1,4 +1,4 @@
-//! Normals that are none: the mean of their neighbours stands in for them, so that a few of them change no map.
+//! Invalid normals: the mean of their neighbours replaces them, so that a few of them change no map.
 
 mod common;
 
@@ -34,7 +34,7 @@ fn map_with(texels: &[[u8; 3]]) -> (Image, usize) {
     (Image::new(size, size, 3, Samples::U8(samples)).expect("as many"), broken)
 }
 
-/// The deviation of the slopes of the whole map, which is the roughness from far, and what was repaired.
+/// The standard deviation of the slopes of the whole map, which is the roughness from far, and what was repaired.
 fn far_roughness(image: &Image) -> (f64, SourceCounts) {
     let baked = baked(image, &SourceOptions::default(), &float_moments(PyramidFilter::Box));
     let levels = decode(&baked.arrays).expect("moments");
@@ -43,7 +43,7 @@ fn far_roughness(image: &Image) -> (f64, SourceCounts) {
 }
 
 #[test]
-fn a_few_broken_texels_do_not_change_a_real_map_seen_from_far() {
+fn a_few_broken_texels_do_not_change_a_distant_real_map() {
     /// A few texels of a million that are not their own any more.
     const UNCHANGED: f64 = 1e-4;
     let (sound, _) = far_roughness(&map_with(&[]).0);
@@ -60,7 +60,7 @@ fn a_few_broken_texels_do_not_change_a_real_map_seen_from_far() {
 
 /// A map of one slope with broken texels is that slope everywhere, in every wrap mode and wherever they are.
 #[test]
-fn broken_texels_of_an_even_slope_are_the_slope() {
+fn broken_texels_of_a_constant_slope_get_that_slope() {
     const ROUNDING: f32 = 4.0 * f32::EPSILON;
     let (width, height) = (9, 6);
     let good = [0.25_f32, -0.5, 1.0];
@@ -116,7 +116,7 @@ fn neighbours_come_from_other_tiles_and_from_beyond_the_edge() {
 }
 
 #[test]
-fn where_everything_is_broken_the_map_is_flat() {
+fn a_completely_broken_map_is_flat() {
     let image = Image::new(4, 4, 3, Samples::U8(vec![0; 48])).expect("as many");
     let baked = baked(&image, &SourceOptions::default(), &options(Layout::Moments, SampleType::F32));
     assert_eq!(baked.report.counts, SourceCounts { behind: 16, ..Default::default() });

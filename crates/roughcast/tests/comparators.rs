@@ -25,7 +25,7 @@ fn perturbed(levels: &[Level], level: usize, plane: usize, texel: usize, by: f64
 const TOLERANCE: f64 = 1e-3;
 
 #[test]
-fn levels_that_differ_in_one_number_are_told_apart() {
+fn levels_that_differ_in_one_number_are_detected() {
     let levels = levels();
     assert_eq!(compare_levels(&levels, &levels, |_| (TOLERANCE, TOLERANCE)), Ok(0.0));
     for (plane, name) in NAMES.iter().enumerate() {
@@ -44,7 +44,7 @@ fn levels_that_differ_in_one_number_are_told_apart() {
 }
 
 #[test]
-fn levels_that_are_missing_or_of_another_size_are_told_apart() {
+fn missing_and_resized_levels_are_detected() {
     let levels = levels();
     let any = |_| (f64::INFINITY, f64::INFINITY);
     assert!(compare_levels(&levels[1..], &levels, any).is_err());
@@ -55,7 +55,7 @@ fn levels_that_are_missing_or_of_another_size_are_told_apart() {
 }
 
 #[test]
-fn rounding_allows_roundings_and_no_more() {
+fn the_tolerance_allows_only_rounding() {
     let levels = levels();
     let rounding = Rounding { count: 24.0, floor: 0.0 };
     let texel = levels[2].texel(5);
@@ -69,7 +69,7 @@ fn rounding_allows_roundings_and_no_more() {
 
 /// The library against the oracle: a real result with one texel off by two tolerances.
 #[test]
-fn a_baked_texel_that_is_off_is_found() {
+fn a_wrong_baked_texel_is_detected() {
     let (image, source) = maps::slope_map(24, 20, &maps::slopes(24, 20, 71));
     let got = raw_moments(&baked(&image, &source, &float_moments(PyramidFilter::Box)));
     let wanted = levels();
@@ -91,7 +91,7 @@ fn a_baked_texel_that_is_off_is_found() {
 }
 
 #[test]
-fn planes_that_differ_are_told_apart() {
+fn differing_planes_are_detected() {
     let plane = Plane { width: 3, height: 2, values: vec![0.5; 6] };
     let wanted = vec![plane.clone(), Plane { width: 1, height: 1, values: vec![0.25] }];
     let compare = |got: &[Plane]| compare_planes(got, &wanted, |_| TOLERANCE);
@@ -109,7 +109,7 @@ fn planes_that_differ_are_told_apart() {
 }
 
 #[test]
-fn means_that_drift_are_found() {
+fn drifting_means_are_detected() {
     let levels = levels();
     let tolerance = (1e-9, 1e-9);
     assert!(check_means(&levels, tolerance).is_ok());
@@ -125,7 +125,7 @@ fn means_that_drift_are_found() {
 }
 
 #[test]
-fn covariances_that_are_none_are_found() {
+fn invalid_covariances_are_detected() {
     let levels = levels();
     // The oracle's own level 0 has a covariance of f64 rounding.
     assert!(check_semidefinite(&levels, 1.0).is_ok());

@@ -1,4 +1,4 @@
-//! What each layout's files say, read from their samples by hand: the formulas, channel by channel, in floats.
+//! The contents of each layout's files, read from their samples by hand: the formulas, channel by channel, in floats.
 
 mod common;
 
@@ -77,7 +77,7 @@ fn a_mapped_base_adds_the_mean_of_its_variance() {
 }
 
 #[test]
-fn cleans_variance_is_half_of_leans_trace() {
+fn the_variance_of_clean_is_half_the_trace_of_lean() {
     for (width, height) in SIZES {
         let (image, source) = maps::plain_normal_map(width, height, 34);
         let clean = baked(&image, &source, &options(Layout::Clean, SampleType::F32));
@@ -152,7 +152,7 @@ fn averaged_normals(image: &Image, source: &SourceOptions) -> [Vec<Plane>; 3] {
 }
 
 #[test]
-fn lean_and_schilling_hold_the_averaged_normal() {
+fn lean_and_schilling_store_the_averaged_normal() {
     let (image, source) = maps::plain_normal_map(53, 37, 37);
     let normals = averaged_normals(&image, &source);
     for (layout, name) in [(Layout::Lean, "lean1"), (Layout::Schilling, "schilling1")] {

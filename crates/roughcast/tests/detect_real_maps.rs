@@ -1,5 +1,5 @@
-//! The detection of `roughcast::detect` on real maps: what MANIFEST.tsv says of each must be what the pixels
-//! say.
+//! The detection of `roughcast::detect` on real maps: the entries of MANIFEST.tsv must match what the pixels
+//! show.
 
 use image::{ColorType, DynamicImage};
 use roughcast::detect::{
@@ -108,7 +108,7 @@ fn height_maps_are_heights() {
 
 /// No pixel tells a roughness map from a height map; the guess is the same for both.
 #[test]
-fn grey_maps_of_other_kinds_are_taken_for_heights() {
+fn grey_maps_of_other_kinds_count_as_heights() {
     assert_kind("roughness", Kind::Height, Fewest { extended: 4, small: 0 });
     assert_kind("ao", Kind::Height, Fewest { extended: 3, small: 1 });
     assert_kind("metalness", Kind::Height, Fewest { extended: 2, small: 0 });
@@ -140,7 +140,7 @@ fn other_pictures_in_colour_are_doubtful() {
 /// Blue holds z in all of the maps but two: one keeps z there without scale and bias, one 255 nearly
 /// throughout.
 #[test]
-fn blue_that_holds_no_z_is_found() {
+fn blue_without_z_is_detected() {
     for row in rows("normal") {
         let path = &row["path"];
         let (image, channels) = load(path).unwrap_or_else(|| panic!("{path}: the decoder reads it"));
@@ -155,7 +155,7 @@ fn blue_that_holds_no_z_is_found() {
 }
 
 #[test]
-fn the_range_of_float_normals_is_found() {
+fn the_range_of_float_normals_is_detected() {
     let (as_unorm, channels) = load("crops/ocean_128_half.exr").expect("a plain EXR");
     assert_eq!(guess_range(&as_unorm), NormalRange::Unorm);
 
@@ -182,7 +182,7 @@ fn stated_direction(row: &Row) -> Option<GreenVerdict> {
 const RED_IS_LOST: &str = "materials/woodfloor043/WoodFloor043_1K_Normal.jpg";
 
 #[test]
-fn green_is_told_wherever_its_direction_is_known() {
+fn the_direction_of_green_is_detected_if_known() {
     let (mut against_height, mut by_curl) = (0, 0);
     for row in rows("normal") {
         let path = row["path"].as_str();
@@ -199,7 +199,7 @@ fn green_is_told_wherever_its_direction_is_known() {
 }
 
 #[test]
-fn green_is_not_told_where_nothing_is_known() {
+fn the_direction_of_green_stays_open_if_unknown() {
     let unknown: Vec<Row> =
         rows("normal").into_iter().filter(|row| stated_direction(row).is_none()).collect();
     assert_eq!(unknown.len(), Fewest { extended: 2, small: 0 }.here(), "maps without a known direction");

@@ -135,7 +135,7 @@ fn three_components_are_found_in_each_range() {
 }
 
 #[test]
-fn vectors_that_point_into_the_surface_are_no_tangent_space_normals() {
+fn inward_vectors_are_not_tangent_space_normals() {
     // A sphere's normals over the whole map.
     let object_space = bytes(SIZE, SIZE, |x, y| {
         let (longitude, z) = (x as f32 * 0.13, 1.0 - 2.0 * y as f32 / SIZE as f32);
@@ -197,7 +197,7 @@ fn x_in_alpha_is_found() {
 }
 
 #[test]
-fn values_that_are_not_finite_do_not_matter() {
+fn non_finite_values_are_ignored() {
     let sparse = floats(|x, y| if x % 7 == 0 { [f32::NAN, f32::INFINITY, 0.0] } else { wave_normal(x, y) });
     assert_eq!(guess(&sparse, &RGB), NORMAL);
     let none = floats(|_, _| [f32::NAN; 3]);
@@ -242,7 +242,7 @@ fn a_surface_without_noise_correlates_fully() {
 }
 
 #[test]
-fn wild_texels_do_not_outvote_a_surface() {
+fn outliers_do_not_outvote_a_surface() {
     // One texel in 200 is near the horizon, in some direction; some are broken altogether.
     let spoilt = |x: usize, y: usize| {
         if noise(x, y, 12) > 0.99 {
@@ -277,7 +277,7 @@ fn unrelated_slopes_are_undecided() {
 }
 
 #[test]
-fn too_little_signal_is_no_answer() {
+fn too_little_signal_gives_no_answer() {
     assert_eq!(correlation(SIZE, SIZE, |_, _| [0.0, 0.0]), None, "flat");
     assert_eq!(correlation(SIZE, SIZE, |_, _| [0.3, -0.2]), None, "tilted, but plane");
     assert_eq!(correlation(SIZE, SIZE, |_, _| [f32::NAN, 0.0]), None, "nothing finite");

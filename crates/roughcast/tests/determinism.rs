@@ -25,7 +25,7 @@ fn check(image: &Image, source: &SourceOptions, options: &BakeOptions) {
 }
 
 #[test]
-fn threads_make_no_difference() {
+fn the_number_of_threads_makes_no_difference() {
     // Several bands of the fused pass, of the general one, and of both after each other.
     for (width, height) in [(640, 427), (1088, 192), (514, 258)] {
         let (normals, normal_source) = maps::plain_normal_map(width, height, 61);

@@ -114,7 +114,7 @@ fn score(maps: &[Map], spoilt: impl Fn(&Map) -> Vec<u8>) -> Score {
 const DECIDED_WHEN_SPOILT: f64 = 0.8;
 
 #[test]
-fn spoilt_maps_are_decided_rightly_or_not_at_all() {
+fn degraded_maps_are_decided_correctly_or_not_at_all() {
     let maps = maps();
     let known = maps.iter().filter(|map| map.direction.is_some()).count();
     let check = |what: &str, score: Score| {
@@ -180,7 +180,7 @@ const PAIRS: [(&str, &str); 9] = [
 ];
 
 #[test]
-fn a_height_map_of_the_same_surface_tells_the_direction() {
+fn a_height_map_of_the_same_surface_determines_the_direction() {
     let stated = entries("normal");
     let pairs: Vec<_> = PAIRS.iter().filter(|pair| stated.iter().any(|entry| entry.path == pair.0)).collect();
     assert!(!pairs.is_empty());
@@ -199,7 +199,7 @@ fn a_height_map_of_the_same_surface_tells_the_direction() {
 }
 
 #[test]
-fn a_height_map_of_another_surface_tells_nothing() {
+fn a_height_map_of_another_surface_decides_nothing() {
     let normals: Vec<_> = entries("normal").into_iter().map(|entry| entry.path).collect();
     let present: Vec<_> = PAIRS.iter().filter(|pair| normals.iter().any(|path| path == pair.0)).collect();
     for (i, (normal, _)) in present.iter().enumerate() {

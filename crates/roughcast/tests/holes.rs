@@ -43,7 +43,7 @@ fn slope(array: &TextureArray, x: usize, y: usize) -> [f32; 2] {
 }
 
 #[test]
-fn a_hole_and_those_who_need_it_are_flat_and_all_others_keep_their_slope() {
+fn a_hole_and_its_neighbours_are_flat_and_all_others_keep_their_slope() {
     let (hx, hy) = HOLE;
     // A texel's own height has no part in the first two.
     let sobel: Vec<_> = (0..9).map(|i| (hx + i % 3 - 1, hy + i / 3 - 1)).collect();

@@ -1,4 +1,4 @@
-//! Laws that the pyramid obeys whatever the map: conservation, constants, recursion, symmetry, linearity.
+//! Laws that the pyramid obeys for every map: conservation, constants, recursion, symmetry, linearity.
 
 mod common;
 
@@ -33,7 +33,7 @@ fn means_of_all_moments_are_the_same_on_every_level() {
 
 /// A constant stays one to the last bit, and no variance comes of it.
 #[test]
-fn a_constant_slope_stays_constant_exactly() {
+fn a_constant_slope_stays_exactly_constant() {
     for (width, height) in SIZES {
         for slope in [[0.1, -0.7], [1.0 / 3.0, 1e-5], [-17.3, 40.1]] {
             let (image, options) = maps::slope_map(width, height, &vec![slope; width * height]);
@@ -105,7 +105,7 @@ fn schilling_levels(baked: &roughcast::Baked) -> Vec<Vec<Texel>> {
             (0..d2[level].values.len())
                 .map(|i| {
                     let (d1, d2, d3) = (at(&d1, i), at(&d2, i), at(&d3, i));
-                    assert!(d1 >= 0.0 && d3 >= 0.0, "deviations are not negative");
+                    assert!(d1 >= 0.0 && d3 >= 0.0, "standard deviations are not negative");
                     Texel { b: [at(&bx, i), at(&by, i)], m: [d1 * d1 + d2 * d2, d3 * d3, d2 * d3] }
                 })
                 .collect()
@@ -296,7 +296,7 @@ fn green_up_and_green_down_are_the_same_map() {
 }
 
 #[test]
-fn heights_k_times_as_high_have_slopes_k_times_as_steep() {
+fn scaled_heights_have_scaled_slopes() {
     for (k, exact) in [(2.0, true), (0.25, true), (3.0, false), (-1.7, false)] {
         let (image, source) = maps::height_map(53, 37, SampleType::U16, 26);
         let floor = f64::from(source.height_scale) * 53.0 * f64::abs(k);
@@ -334,7 +334,7 @@ fn the_sense_of_heights_turns_slopes_and_leaves_second_moments() {
     }
 }
 
-/// What the decoder hands out is what was stored, but for the mending of covariances.
+/// What the decoder hands out is what was stored, except for the repair of covariances.
 #[test]
 fn the_decoder_returns_the_stored_moments() {
     let (image, source) = maps::plain_normal_map(53, 37, 28);
@@ -348,7 +348,7 @@ fn the_decoder_returns_the_stored_moments() {
                 |l: &Level| Plane { width: l.width, height: l.height, values: l.planes[plane].clone() };
             levels.iter().map(plane).collect()
         };
-        // Mending moves a second moment by its own rounding, at slopes up to 2.
+        // The repair moves a second moment by its own rounding, at slopes up to 2.
         let result =
             compare_planes(
                 &planes(&decoded),

@@ -1,4 +1,4 @@
-//! What the textures of a physically based material say: normals, roughness, anisotropy, occlusion and metalness.
+//! The contents of a physically based material's textures: normals, roughness, anisotropy, occlusion and metalness.
 
 mod common;
 
@@ -47,7 +47,7 @@ fn part(arrays: &[TextureArray], part: Part) -> &TextureArray {
 
 /// `α² = α0² + 2σ²` with `2σ² = tr Σ`, in every way to store it.
 #[test]
-fn a_materials_roughness_is_that_of_base_and_bumps() {
+fn the_roughness_of_a_material_includes_base_and_bumps() {
     /// Up to four roots and powers of a sum, relative; the pyramid's own roundings beside them.
     const ROUNDINGS: f64 = 60.0;
     for (width, height) in SIZES {
@@ -193,7 +193,7 @@ fn a_packed_texture_keeps_occlusion_and_metalness() {
 
 /// glTF and three.js read roughness from green; a file of one channel gives them 0, a mirror.
 #[test]
-fn roughness_is_where_its_layout_says() {
+fn roughness_is_in_the_channel_of_its_layout() {
     let (image, source) = gentle_map(16, 16);
     for bits in [SampleType::U8, SampleType::U16, SampleType::F16] {
         let baked = |roughness_texture| {
@@ -223,7 +223,7 @@ fn roughness_is_where_its_layout_says() {
 
 /// Mitsuba, Blender and glTF's tools read `n / 2 + 1/2` also from floats.
 #[test]
-fn floats_hold_normals_in_the_range_that_their_info_says() {
+fn floats_store_normals_in_the_range_of_their_metadata() {
     let (image, source) = gentle_map(16, 16);
     for bits in [SampleType::F16, SampleType::F32] {
         let baked = |normal_range| {
@@ -259,7 +259,7 @@ fn floats_hold_normals_in_the_range_that_their_info_says() {
 
 /// Renderers with a roughness for each axis of the tangent frame: α² = 2 Σ along each.
 #[test]
-fn widths_along_the_axes_are_those_of_the_variances() {
+fn widths_along_the_axes_match_the_variances() {
     let (image, source) = gentle_map(32, 32);
     let base = 0.01_f32;
     let pbr = PbrOptions { anisotropy: Some(AnisotropyOutput::Alpha), ..floats().pbr };
@@ -356,7 +356,7 @@ fn directions_of_a_brushed_disc_survive_filtering() {
 /// Toksvig's factor was baked for one exponent, which is in the file; where the exponent varies, compressed textures hold the
 /// length of the normal beside the factor.
 #[test]
-fn toksvigs_variance_comes_back_from_its_parts_whatever_the_base() {
+fn the_variance_of_toksvig_is_decoded_from_its_parts_for_any_base() {
     use roughcast::Blocks;
     let (image, source) = gentle_map(32, 32);
     let material = material_map(32, 32);

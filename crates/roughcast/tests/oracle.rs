@@ -83,7 +83,7 @@ fn normals_of_every_type_range_and_choice_of_channels() {
 }
 
 #[test]
-fn the_steepest_and_the_rms_slope_are_reported() {
+fn the_maximum_and_the_rms_slope_are_reported() {
     const ROUNDING: f64 = 1e-6; // a few f32 roundings, relative
     let (image, options) = maps::plain_normal_map(53, 37, 2);
     let wanted = slope_oracle::slopes(&image, &options);
@@ -97,7 +97,7 @@ fn the_steepest_and_the_rms_slope_are_reported() {
 
 /// Random bytes: every rule for bad normals applies somewhere.
 #[test]
-fn random_pixels_are_mended_and_counted_as_the_rules_say() {
+fn random_pixels_are_repaired_and_counted_by_the_rules() {
     /// Random pixels of two channels lie as close to the rim of the unit disc as 16 bits can say; there z is the root
     /// of a small difference, and a rounding becomes (1 + b²) roundings of the slope b <= 8.
     const NEAR_THE_RIM: Rounding = Rounding { count: ROUNDINGS, floor: 64.0 };
@@ -117,7 +117,7 @@ fn random_pixels_are_mended_and_counted_as_the_rules_say() {
 }
 
 #[test]
-fn each_bad_texel_is_counted_once_and_under_its_own_name() {
+fn each_bad_texel_is_counted_once_in_its_category() {
     let good = [0.1, -0.2, 1.0];
     let cases: [([f64; 3], SourceCounts); 9] = [
         (good, SourceCounts::default()),
@@ -145,7 +145,7 @@ fn each_bad_texel_is_counted_once_and_under_its_own_name() {
 }
 
 #[test]
-fn two_channel_normals_that_are_none_are_counted() {
+fn invalid_two_channel_normals_are_counted() {
     let cases: [([f32; 2], SourceCounts); 5] = [
         ([f32::NAN, 0.0], SourceCounts { non_finite: 1, ..Default::default() }),
         ([0.0, f32::INFINITY], SourceCounts { non_finite: 1, ..Default::default() }),
@@ -209,7 +209,7 @@ fn heights_across_tiles_and_beside_other_channels() {
 }
 
 #[test]
-fn holes_and_spikes_in_heights_are_mended_and_counted() {
+fn holes_and_spikes_in_heights_are_repaired_and_counted() {
     let (width, height) = (16, 12);
     for (bad, gradient, touched) in [
         (f32::NAN, Gradient::Sobel, 9),

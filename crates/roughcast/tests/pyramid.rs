@@ -24,7 +24,7 @@ fn levels_halve_down_to_one_texel() {
 
 /// The oracle's own weights: first principles have to agree with what is known in closed form.
 #[test]
-fn the_oracles_weights_are_those_of_the_textbooks() {
+fn the_weights_of_the_oracle_match_the_textbooks() {
     const EXACT: f64 = 1e-12; // f64 rounding
     let close = |got: &[(usize, f64)], wanted: &[(usize, f64)]| {
         assert_eq!(got.len(), wanted.len(), "{got:?}");
@@ -89,7 +89,7 @@ fn heights_by_every_filter_and_wrap() {
 }
 
 #[test]
-fn the_reports_levels_are_the_oracles() {
+fn the_levels_of_the_report_match_the_oracle() {
     const ROUNDING: f64 = 1e-5; // sums of squares of differences that f32 rounds, relative
     for (width, height) in [(53, 37), (128, 64), (1088, 192)] {
         let (image, options) = maps::slope_map(width, height, &maps::slopes(width, height, 13));

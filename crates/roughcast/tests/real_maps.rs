@@ -59,17 +59,17 @@ fn green_of(entry: &Entry) -> Green {
 fn normal_maps() {
     let entries = real_files::entries("normal");
     assert!(entries.len() >= NORMAL_MAPS, "only {} normal maps", entries.len());
-    let mut mended = 0;
+    let mut repaired = 0;
     for entry in &entries {
         let source = SourceOptions { green: green_of(entry), ..Default::default() };
         let image = real_files::read_part(&entry.path, LARGEST_SIDE);
         let counts = check(&entry.path, &image, &source);
         let texels = (image.width() * image.height()) as u64;
         assert!(counts.total() * 10 < texels, "{}: {counts:?}", entry.path);
-        mended += usize::from(counts.total() > 0);
+        repaired += usize::from(counts.total() > 0);
     }
     // A few maps have normals that point into the surface; most have none.
-    assert!(mended > 0 && mended * 3 < entries.len(), "{mended} of {}", entries.len());
+    assert!(repaired > 0 && repaired * 3 < entries.len(), "{repaired} of {}", entries.len());
 }
 
 #[test]
@@ -86,7 +86,7 @@ fn height_maps() {
 /// The manifest's `slope_rms` was measured with z, as stored, raised to at least 0.1: its own way to tame steep
 /// texels. It is the root of the mean of the squared length, with three decimals.
 #[test]
-fn rms_slopes_are_those_of_the_manifest() {
+fn rms_slopes_match_the_manifest() {
     const SMALLEST_Z: f32 = 0.1;
     /// Half of the last decimal, and a little for the way in which it was rounded.
     const DECIMALS: f64 = 0.0006;

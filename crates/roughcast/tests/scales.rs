@@ -197,7 +197,7 @@ fn steep_texels_among(size: f64, thousandths: f64, direction: [f64; 2]) -> (Imag
 }
 
 #[test]
-fn advice_is_given_where_few_steep_texels_cost_much_and_keeps_its_promise() {
+fn advice_is_given_if_few_steep_texels_cost_much_and_it_is_correct() {
     /// How near the promise is kept; the quantile itself is known to 1.5 %, its square to 3 %.
     const WITHIN: f32 = 0.1;
     for layout in [Layout::Lean, Layout::Clean] {
@@ -221,7 +221,7 @@ fn advice_is_given_where_few_steep_texels_cost_much_and_keeps_its_promise() {
 }
 
 #[test]
-fn few_steep_texels_do_not_hide_what_half_floats_carry() {
+fn few_steep_texels_do_not_hide_the_range_of_half_floats() {
     let (image, source) = with_steep_texels(0.5, [120.0, 0.0]);
     let options = BakeOptions { layout: Layout::Lean, bits: SampleType::F16, ..BakeOptions::default() };
     let report = baked(&image, &source, &options).report;
@@ -235,7 +235,7 @@ fn few_steep_texels_do_not_hide_what_half_floats_carry() {
 }
 
 #[test]
-fn no_advice_is_given_where_it_would_not_help() {
+fn no_advice_is_given_if_it_would_not_help() {
     let advised = |thousandths, direction, bits, scale| {
         let (image, source) = with_steep_texels(thousandths, direction);
         let options = BakeOptions { scale, ..options(Layout::Lean, bits) };
@@ -261,7 +261,7 @@ const RANGED: [Layout; 5] =
     [Layout::Lean, Layout::Clean, Layout::Schilling, Layout::SchillingIsotropic, Layout::Variance];
 
 #[test]
-fn the_automatic_limit_is_the_slope_that_few_exceed_and_wins_what_it_says() {
+fn the_automatic_limit_is_the_slope_that_few_exceed_with_the_stated_gain() {
     /// The quantile is known to a bin of the histogram, 1.6 % above it.
     const BIN: f64 = 1.017;
     /// What bounds count beside the ranges: the arithmetic in single floats, and the error of the mean.
@@ -316,7 +316,7 @@ fn the_automatic_limit_is_never_below_one() {
 }
 
 #[test]
-fn nothing_is_limited_where_no_range_demands_it() {
+fn slopes_are_limited_only_if_a_range_requires_it() {
     let limit_of =
         |thousandths, direction, source: fn(SourceOptions) -> SourceOptions, options: BakeOptions| {
             let (image, plain) = steep_texels_among(2.0, thousandths, direction);
@@ -346,7 +346,7 @@ fn nothing_is_limited_where_no_range_demands_it() {
 
 /// Everything that is refused, with a word of its error.
 #[test]
-fn combinations_that_make_no_sense_are_refused() {
+fn contradictory_options_are_refused() {
     let (image, source) = maps::plain_normal_map(8, 6, 56);
     let two_channels = maps::image(8, 6, 2, Samples::U8(vec![9; 96]));
     let three_channels = maps::image(8, 6, 3, Samples::U8(vec![9; 144]));
@@ -412,7 +412,7 @@ fn combinations_that_make_no_sense_are_refused() {
     ];
     for (word, image, source, base, options) in cases {
         let error = bake(image, &source, base, &options).expect_err(word).to_string();
-        assert!(error.contains(word) && !error.contains('\n'), "'{error}' does not say '{word}'");
+        assert!(error.contains(word) && !error.contains('\n'), "'{error}' does not contain '{word}'");
         assert!(!error.contains("--"), "'{error}' names an option of the program");
     }
     let error = bake(&two_channels, &source, None, &plain).expect_err("two channels");
@@ -422,7 +422,7 @@ fn combinations_that_make_no_sense_are_refused() {
 
 /// What is limited by a half float's range is what the source's own limit says.
 #[test]
-fn halves_hold_the_largest_slope_that_they_allow() {
+fn half_floats_represent_the_largest_slope_that_they_allow() {
     let (image, source) = maps::slope_map(2, 2, &[[255.0, 0.0], [0.0, 255.0], [-255.0, 0.0], [0.0, -300.0]]);
     let source = SourceOptions { max_slope: MaxSlope::Limit(255.0), ..source };
     let half: Baked = baked(&image, &source, &options(Layout::Moments, SampleType::F16));

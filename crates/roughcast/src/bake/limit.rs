@@ -1,4 +1,4 @@
-//! The automatic limit of slopes: where a few steep texels ruin the range for all others, they are scaled back.
+//! The automatic limit of slopes: if a few steep texels ruin the range for all others, they are clamped.
 //!
 //! The usable specular power of unsigned texels falls with the square of their range of slopes, or with their range of variances.
 
@@ -15,7 +15,7 @@ use crate::texture::rules::Stores;
 pub(super) struct Ranges {
     /// A look at every slope, where a scale was to be found.
     pub looked_at: Option<Survey>,
-    /// What the ranges of unsigned texels have to hold.
+    /// What the ranges of unsigned texels have to represent.
     pub needed: NeededRange,
     /// The limit that was found.
     pub limit: Option<SlopeLimit>,

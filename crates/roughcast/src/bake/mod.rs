@@ -1,4 +1,4 @@
-//! The main job: a map in, a layout's textures with all their levels out.
+//! Bakes a map into a layout's textures with all their levels.
 
 mod allocate;
 mod check;

@@ -1,4 +1,4 @@
-//! What a bake comes down to once its options are checked.
+//! The plan of a bake, after its options are checked.
 
 use super::check::{check_options, limit_slopes};
 use super::{BakeError, base_of, base_variance};

@@ -23,7 +23,7 @@ pub(super) fn largest_variance(source: &MapSource<'_>, options: PyramidOptions) 
     built.levels.iter().map(|level| level.max_variance).fold(0.0, f32::max)
 }
 
-/// What the ranges of unsigned texels have to hold.
+/// What the ranges of unsigned texels have to represent.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NeededRange {
     /// Of level 0, where the scale of slopes is to be found.

@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn a_correlation_that_one_block_makes_alone_is_not_sure() {
+    fn a_correlation_from_a_single_block_is_not_significant() {
         // In one of the 36 blocks a and b are equal and strong, elsewhere they are unrelated and weak.
         let one = blocks(|x, y| {
             let noise = |seed: usize| (((x * 31 + y * 57 + seed) * 2_654_435) % 1000) as f32 / 1000.0 - 0.5;
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_that_varies_gives_none() {
+    fn constant_data_gives_no_correlation() {
         assert_eq!(blocks(|_, _| [0.0; 2]).agreement(), None);
         assert_eq!(blocks(|x, _| [x as f32, 0.0]).cosine(), None);
     }

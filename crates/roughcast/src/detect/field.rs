@@ -46,7 +46,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn halving_averages_four_and_drops_what_is_odd() {
+    fn halving_averages_four_and_drops_odd_rows_and_columns() {
         let field = Field::new(5, 3, (0..15).map(|i| [i as f32]).collect());
         let half = field.halved();
         assert_eq!((half.width(), half.height()), (2, 1));

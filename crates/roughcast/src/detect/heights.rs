@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn metres_are_told_from_parts_of_a_full_scale() {
+    fn metres_are_distinguished_from_full_scale_values() {
         let metres = range_of(vec![550.0, f32::NAN, 1450.0]);
         assert_eq!((metres.min, metres.max, metres.outside), (550.0, 1450.0, 1.0));
         assert!(!metres.is_normalised());
@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn a_few_broken_texels_are_no_unit() {
+    fn a_few_broken_texels_do_not_imply_a_unit() {
         let mut heights = vec![0.5; 2000];
         heights[7] = 1e6;
         assert!(range_of(heights.clone()).is_normalised());
@@ -79,12 +79,12 @@ mod tests {
     }
 
     #[test]
-    fn nothing_finite_has_no_range() {
+    fn non_finite_values_have_no_range() {
         assert_eq!(height_range(&Image::new(1, 1, 1, Samples::F32(vec![f32::NAN])).unwrap()), None);
     }
 
     #[test]
-    fn a_slope_of_one_metre_a_metre_is_one() {
+    fn a_slope_of_one_metre_per_metre_is_one() {
         // Pixels of 30 m and a rise of 30 m a pixel, on a map of 64 pixels: v * scale * width is a texel.
         let scale = height_scale_for_units(30.0, 64);
         assert!((30.0 * scale * 64.0 - 1.0).abs() < 1e-12);

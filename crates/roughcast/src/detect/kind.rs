@@ -33,12 +33,12 @@ const SHARE_OF_TWO: f64 = 0.5;
 
 const NOTHING_FINITE: &str = "none of its values is finite";
 
-/// What [`guess_kind`] makes of a map.
+/// The result of [`guess_kind`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum KindGuess {
     /// It is this.
     Certain(Kind),
-    /// It may be neither: the user has to say.
+    /// It may be neither: the user has to specify it.
     Doubtful {
         /// What was seen, in one short clause: `it has 6 channels beside alpha`.
         reason: String,

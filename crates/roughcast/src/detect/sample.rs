@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn texels_that_are_not_finite_are_left_out() {
+    fn non_finite_texels_are_left_out() {
         let samples = vec![1.0, 2.0, f32::NAN, 3.0, 4.0, f32::INFINITY];
         let image = Image::new(3, 1, 2, Samples::F32(samples)).unwrap();
         assert_eq!(texels(image.view(), [0, 1]), [[1.0, 2.0]]);

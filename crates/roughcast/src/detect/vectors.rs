@@ -1,4 +1,4 @@
-//! Vectors decoded from texels, and what is expected of normals.
+//! Vectors decoded from texels, and the properties expected of normals.
 
 use crate::NormalRange;
 

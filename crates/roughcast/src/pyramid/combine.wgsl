@@ -1,7 +1,7 @@
 // Averages by the law of total covariance: the covariance of a union is the mean of the covariances plus the covariance
 // of the means. Twin of combine.rs, in the same order of additions.
 
-// What the pyramid carries of a texel.
+// The averages of a texel that the pyramid carries.
 struct Averages {
     // Mean slope.
     mean: vec2f,

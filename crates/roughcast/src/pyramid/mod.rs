@@ -1,4 +1,4 @@
-//! The pyramid: every level is a weighted average of the one before, and nothing is lost on the way.
+//! The pyramid: every level is a weighted average of the previous one, and the moments are conserved.
 //!
 //! Level k+1 has `max(1, floor(n / 2))` texels each way. With the box filter each texel is the exact area average of
 //! the texels that it covers, for every size; whatever the filter, weights are such that a constant stays
@@ -29,7 +29,7 @@ pub fn levels_of_four(width: usize, height: usize) -> usize {
     cascade::depth(width, height)
 }
 
-/// What a level holds, measured while it was made.
+/// Statistics of a level, measured while it was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LevelStats {
     /// Mean over the level of the variance along x.

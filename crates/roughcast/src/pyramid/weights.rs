@@ -12,9 +12,9 @@ pub(crate) struct Taps {
 
 /// Kernel integrated up to `t`, with `t` in widths of the coarser texel from its centre; runs from 0 to 1.
 ///
-/// The three are the B-splines of order one to three. Copies of a B-spline, one for each coarser texel, add up to one
+/// The three are the B-splines of order one to three. B-splines centred on each coarse texel sum to one
 /// everywhere, so every finer texel counts equally; the third is the usual stand-in for a Gaussian and has exactly the
-/// deviation of half a texel.
+/// standard deviation of half a texel.
 fn integrated_kernel(filter: PyramidFilter, t: f64) -> f64 {
     match filter {
         PyramidFilter::Box => (t + 0.5).clamp(0.0, 1.0),

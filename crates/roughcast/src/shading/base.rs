@@ -1,8 +1,8 @@
 //! The base roughness of the material as a covariance in the plane of the surface.
 //!
-//! Source: LEAN mapping, 3.4, where it is `I / s` whatever the facet's slope ([`BaseLobe::Plane`]). [`BaseLobe::Facet`] is
+//! Source: LEAN mapping, 3.4, where it is `I / s` for every slope of the facet ([`BaseLobe::Plane`]). [`BaseLobe::Facet`] is
 //! the lobe that a facet of slope B really shows there: a turn takes the plane of slopes about the facet into that of the
-//! surface, and its Jacobian at the lobe's middle stretches deviations by `1 + B²` along B and by `sqrt(1 + B²)` across.
+//! surface, and its Jacobian at the lobe's middle stretches standard deviations by `1 + B²` along B and by `sqrt(1 + B²)` across.
 
 use super::{BaseLobe, LobeOptions};
 use crate::moments::Covariance;

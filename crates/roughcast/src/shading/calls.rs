@@ -64,7 +64,7 @@ mod tests {
     use crate::wgsl::library;
 
     #[test]
-    fn the_functions_are_there_with_these_arguments() {
+    fn the_functions_exist_with_these_arguments() {
         assert!(!Shading::ALL.is_empty());
         for (model, gaussians) in
             Shading::ALL.iter().flat_map(|model| [(model, Gaussians::One), (model, Gaussians::Several)])

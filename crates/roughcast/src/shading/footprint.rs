@@ -129,7 +129,7 @@ impl PixelPart {
     /// All of it.
     pub const WHOLE: Self = Self { ratio: 1.0, linear_trace: 0.0 };
 
-    /// By what to multiply a covariance of this trace: 0 to 1.
+    /// The factor for a covariance of this trace: 0 to 1.
     pub fn factor(&self, trace: f32) -> f32 {
         if trace > 0.0 { 1.0 - (1.0 - self.ratio) * (self.linear_trace / trace).min(1.0) } else { 1.0 }
     }
@@ -147,7 +147,7 @@ pub fn pixel_part(changes: [f32; 2], variances: [f32; 2], pixel: [f32; 2]) -> Pi
     PixelPart { ratio: seen / covered, linear_trace: LARGEST_OVER_MEAN * covered }
 }
 
-/// What a pixel sees of the variance under a texture filter.
+/// The part of the variance under a texture filter that is under the pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FootprintRatio {
     /// Of filtered moments: LEAN and CLEAN.
@@ -161,7 +161,7 @@ pub struct FootprintRatio {
 }
 
 impl FootprintRatio {
-    /// All of it: the papers' way.
+    /// All of it, as in the papers.
     pub const WHOLE: Self = Self {
         moments: PixelPart::WHOLE,
         variances: PixelPart::WHOLE,

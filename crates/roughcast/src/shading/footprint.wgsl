@@ -88,7 +88,7 @@ fn hardware_variances(axes: FootprintAxes, max_anisotropy: f32, mip_bias: f32) -
     return FilterVariances(level.moments + between_taps, level.variances);
 }
 
-// By what to multiply a covariance of this trace.
+// The factor for a covariance of this trace.
 fn pixel_factor(part: PixelPart, trace: f32) -> f32 {
     if trace <= 0.0 {
         return 1.0;
@@ -113,7 +113,7 @@ fn pixel_part(changes: vec2f, variances: vec2f, pixel: vec2f) -> PixelPart {
     return PixelPart(dot(changes, min(variances, pixel)) / covered, LARGEST_OVER_MEAN * covered);
 }
 
-// All of the variance: the papers' way.
+// All of the variance, as in the papers.
 fn whole_footprint() -> FootprintRatio {
     return FootprintRatio(PixelPart(1.0, 0.0), PixelPart(1.0, 0.0), vec3f(0.0), 0.0);
 }

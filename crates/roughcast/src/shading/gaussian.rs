@@ -155,13 +155,13 @@ mod tests {
     }
 
     #[test]
-    fn thin_ellipses_keep_their_digits() {
+    fn thin_ellipses_keep_their_precision() {
         let error = largest_error(squared_deviations);
         assert!(error < TOLERANCE, "{error:e} > {TOLERANCE:e}");
     }
 
     #[test]
-    fn the_difference_of_products_would_not_do() {
+    fn the_difference_of_products_is_too_inaccurate() {
         let error = largest_error(|Covariance { xx, yy, xy }, determinant, [x, y]| {
             (yy * x * x - 2.0 * xy * x * y + xx * y * y) / determinant
         });

@@ -1,4 +1,4 @@
-//! Shadowing and masking: which part of the facets a viewer and a light can both see.
+//! Shadowing and masking: the fraction of the facets that is visible from both the viewer and the light.
 //!
 //! Source: Smith, "Geometrical Shadowing of a Random Rough Surface", 1967, in the height-correlated form
 //! `G2 = 1 / (1 + Λ(v) + Λ(l))` (Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", 2014).
@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn the_fit_is_smiths_function() {
+    fn the_fit_matches_smiths_function() {
         let error = largest_error(gaussian_lambda);
         assert!(error < FIT, "{error}");
         // Without the factor of two in `a`, the comparison fails.

@@ -1,4 +1,4 @@
-//! Shading models: what a filtered surface reflects. One model a file, each with a WGSL twin of the same name beside it.
+//! Shading models: what a filtered surface reflects. One model per file, each with a WGSL twin of the same name beside it.
 //!
 //! A model takes a [`Distribution`] of slopes, whatever it comes from, in two steps with the same names in Rust and in WGSL:
 //!
@@ -89,7 +89,7 @@ named_enum! {
     pub enum Shading: "shading model" {
         /// Phong: the reflected ray, about the filtered bump normal.
         Phong = "phong",
-        /// Blinn-Phong on the filtered bump normal: the ordinary way, the thing that fails.
+        /// Blinn-Phong on the filtered bump normal: the conventional method, which fails.
         BlinnPhong = "blinn-phong",
         /// Beckmann (Ward) in the frame of the filtered bump normal.
         Beckmann = "beckmann",
@@ -118,7 +118,7 @@ named_enum! {
         /// A microfacet distribution, `D = p / h.z^4`: it integrates to 1 over the projected solid angle of its own axis.
         /// Blinn-Phong is `(s + 2) / (2 pi) cos^s`.
         Normalised = "normalised",
-        /// The LEAN text's: `2 pi p`, without the factor `1 / h.z^4`. Blinn-Phong is `s cos^s`.
+        /// The LEAN paper's: `2 pi p`, without the factor `1 / h.z^4`. Blinn-Phong is `s cos^s`.
         Paper = "paper",
     }
 }
@@ -139,7 +139,7 @@ named_enum! {
     pub enum FootprintModel: "footprint" {
         /// That under the pixel: what the texture filter covers beyond it is taken off. See [`footprint_ratio`].
         Corrected = "corrected",
-        /// All that is under the texture filter, as the papers have it.
+        /// All that is under the texture filter, as in the papers.
         Published = "published",
     }
 }
@@ -155,16 +155,16 @@ named_enum! {
 }
 
 named_enum! {
-    /// What becomes of a covariance that rounding has made impossible.
+    /// What to do with a covariance that rounding made invalid.
     pub enum Repair: "repair" {
         /// Made positive semidefinite: negative variances become zero, the mixed term is cut.
         Clamp = "clamp",
-        /// The texts' rules: no highlight where the determinant is not positive (LEAN Figure 16), no covariance (CLEAN).
+        /// The papers' rules: no highlight where the determinant is not positive (LEAN Figure 16), no covariance (CLEAN).
         Published = "published",
     }
 }
 
-/// What a renderer wants to know of a surface.
+/// What a renderer needs to know about a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Wanted {
     /// The filtered normal alone.
@@ -182,7 +182,7 @@ pub struct LobeOptions {
     pub form: Form,
     /// The base roughness in the plane of the surface.
     pub base: BaseLobe,
-    /// What becomes of impossible covariances.
+    /// What to do with invalid covariances.
     pub repair: Repair,
     /// Whose slopes mask, in the physical form.
     pub masking: Masking,
@@ -204,7 +204,7 @@ impl Default for LobeOptions {
 }
 
 impl LobeOptions {
-    /// LEAN mapping as it was published: the paper's form, and all variance under the texture filter.
+    /// LEAN mapping as published: the paper's form, and all variance under the texture filter.
     #[must_use]
     pub fn published(specular_power: f32) -> Self {
         Self { specular_power, form: Form::Paper, footprint: FootprintModel::Published, ..Self::default() }
@@ -227,7 +227,7 @@ impl LobeOptions {
 }
 
 impl Shading {
-    /// What the model takes of a source of bumps.
+    /// What the model needs from a source of bumps.
     pub const fn wanted(self) -> Wanted {
         match self {
             Self::Phong | Self::BlinnPhong | Self::Beckmann | Self::OffCentre => Wanted::Normal,
@@ -235,7 +235,7 @@ impl Shading {
         }
     }
 
-    /// The model's base lobe: what it would be were every bump resolved. A method is compared with the truth of that lobe.
+    /// The model's base lobe: the lobe if every bump were resolved. A method is compared with the ground truth of that lobe.
     pub const fn base_lobe(self) -> Self {
         match self {
             Self::Phong => Self::Phong,

@@ -1,4 +1,4 @@
-// How lobes are evaluated. Uploaded: 32 bytes, a word each.
+// How lobes are evaluated. Uploaded: 32 bytes, one word each.
 
 struct LobeOptions {
     specular_power: f32,    // Blinn-Phong exponent s of the base roughness, 1 to 100000; its slope variance is 1 / s

@@ -12,7 +12,7 @@ use super::{LobeOptions, Shading};
 use crate::distribution::Distribution;
 use crate::slope::Slope;
 
-/// What a model makes of the distribution under a pixel.
+/// The surface of a model, from the distribution under a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
     /// The normal for diffuse light: the filtered normal at the length that averaging has left, where the source of the bumps

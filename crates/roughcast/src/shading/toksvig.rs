@@ -1,6 +1,6 @@
 //! Toksvig: Blinn-Phong with the exponent that base and bumps leave together, `1 / s' = 1 / s + σ²`.
 //!
-//! Source: Toksvig, "Mipmapping normal maps", 2005. His texture gives the variance; any other distribution does as well.
+//! Source: Toksvig, "Mipmapping normal maps", 2005. His texture gives the variance; any other distribution works too.
 
 use super::LobeOptions;
 use super::facet::{BumpFacet, bump_facet};

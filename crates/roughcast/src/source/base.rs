@@ -1,4 +1,4 @@
-//! Base roughness: what the material has already, before any bump.
+//! Base roughness: the material's own, before any bump.
 
 use super::fit::fit;
 use super::{SourceError, load_channel};
@@ -79,14 +79,14 @@ impl RoughnessMap<'_> {
     }
 }
 
-/// A base roughness and what becomes of it.
+/// A base roughness and how it is filtered.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BaseSource<'a> {
     roughness: BaseRoughness<'a>,
     use_of_base: UseOfBase,
 }
 
-/// What becomes of a base roughness while a map is filtered.
+/// How a base roughness is filtered with the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum UseOfBase {
     /// It is added to the covariance of every texel of level 0 (LEAN Eq. 6).
@@ -134,7 +134,7 @@ impl<'a> BaseSource<'a> {
             BaseRoughness::Map(map) if map.channel == PACKED_CHANNEL && channel < map.image.channels() => {
                 load_channel(map.image, channel, x, y, plane);
             }
-            _ => plane.fill(where_nothing_says(extra)),
+            _ => plane.fill(default_of_extra(extra)),
         }
     }
 }
@@ -143,6 +143,6 @@ impl<'a> BaseSource<'a> {
 pub(super) const PACKED_CHANNEL: usize = 1;
 
 /// An extra of a material without a texture that says it: nothing is occluded, nothing is metal.
-pub(super) fn where_nothing_says(extra: Extra) -> f32 {
+pub(super) fn default_of_extra(extra: Extra) -> f32 {
     if extra == Extra::Occlusion { 1.0 } else { 0.0 }
 }

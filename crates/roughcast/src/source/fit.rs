@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn the_mean_variance_of_a_repeating_map_stays() {
+    fn the_mean_variance_of_a_repeating_map_is_kept() {
         let stored: Vec<f32> = (0..7 * 5).map(|i| ((i * 37) % 11) as f32 / 10.0).collect();
         let mean = |values: &[f32]| values.iter().map(|v| f64::from(*v)).sum::<f64>() / values.len() as f64;
         let expected = stored.iter().map(|r| f64::from(*r).powi(4)).sum::<f64>() / stored.len() as f64;
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn a_packed_texture_keeps_its_neighbours() {
+    fn a_packed_texture_keeps_its_other_channels() {
         let image = Image::new(1, 1, 3, Samples::F32(vec![0.9, 0.5, 0.25])).unwrap();
         let packed = RoughnessMap { channel: 1, ..map(&image) };
         let (fitted, channel) = fit(&packed, (2, 2), Wrap::Repeat);

@@ -24,7 +24,7 @@ fn forward(above: vec3f, here: vec3f, scale: f32) -> vec2f {
     return scale * vec2f(here.y - here.z, here.y - above.y);
 }
 
-// A slope that is not too steep, as it is; others mended.
+// A slope that is not too steep, unchanged; others repaired.
 fn slope_from_gradient(slope: vec2f, max_slope: f32) -> RepairedSlope {
     let squares = rounded2(slope * slope);
     if (squares.x + squares.y) <= max_slope * max_slope {

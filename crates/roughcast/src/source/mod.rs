@@ -117,7 +117,7 @@ impl MapSource<'_> {
     }
 }
 
-/// Numbers that no map can be read with.
+/// Rejects unusable option values.
 pub(crate) fn check_numbers(options: &SourceOptions) -> Result<(), SourceError> {
     if let MaxSlope::Limit(limit) = options.max_slope
         && !(limit > 0.0 && limit <= MaxSlope::LARGEST)
@@ -187,7 +187,7 @@ impl MapSource<'_> {
             },
             Extra::BaseVariance | Extra::Occlusion | Extra::Metalness => match &self.base {
                 Some(base) => base.fill_extra(extra, x, y, plane),
-                None => plane.fill(base::where_nothing_says(extra)),
+                None => plane.fill(base::default_of_extra(extra)),
             },
         }
     }

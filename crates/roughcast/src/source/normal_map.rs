@@ -15,7 +15,7 @@ use crate::{ImageView, SamplesView};
 /// stored as unorm = (-1, -1).
 const INVALID_XY_SQUARED: f32 = 1.2;
 
-/// What stands for a broken texel until it is made neutral.
+/// Marks a broken texel until it is made neutral.
 const BROKEN: Slope = Slope { x: f32::NAN, y: f32::NAN };
 
 /// Writes the slopes of a stretch of row `y` that starts at column `x`.

@@ -23,7 +23,7 @@ pub(super) struct Clean;
 
 impl LayoutRules for Clean {
     fn summary(&self) -> &'static str {
-        "CLEAN mapping: mean slope and one second moment in one texture; no anisotropy; wants 16 bits"
+        "CLEAN mapping: mean slope and one second moment in one texture; no anisotropy; needs 16 bits"
     }
 
     fn number(&self) -> u8 {

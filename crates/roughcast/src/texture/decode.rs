@@ -51,7 +51,7 @@ pub enum DecodeError {
         first: Part,
     },
     /// The files' channels, sizes or levels are not those of the layout.
-    #[error("the textures are not those of the layout '{layout}': {fault}; bake them anew")]
+    #[error("the textures are not those of the layout '{layout}': {fault}; bake them again")]
     Shape {
         /// The layout.
         layout: Layout,

@@ -1,4 +1,4 @@
-//! What a file says of the texels that it holds: the layout, its scales, and which roughness is in it already.
+//! The meaning of a file's texels: the layout, its scales, and which roughness they contain.
 //!
 //! KTX2 and EXR keep it as pairs of strings, DDS as the eleven reserved words of its header.
 
@@ -74,11 +74,11 @@ pub struct TextureInfo {
 pub enum InfoError {
     /// It is not a file of ours, or its metadata was stripped.
     #[error(
-        "it holds no roughcast metadata ('{0}' is missing): it was not written by roughcast, or the metadata was stripped"
+        "it has no roughcast metadata ('{0}' is missing): it was not written by roughcast, or the metadata was stripped"
     )]
     Missing(&'static str),
     /// A value makes no sense.
-    #[error("its metadata '{key}' has the value '{value}', which is not valid: bake it anew")]
+    #[error("its metadata '{key}' has the value '{value}', which is not valid: bake it again")]
     Invalid {
         /// The key.
         key: &'static str,
@@ -103,7 +103,7 @@ const ROUGHNESS_LAYOUT: &str = "roughcast.roughness-layout";
 const SPECULAR_POWER: &str = "roughcast.specular-power";
 const CONVENTIONS: &str = "roughcast.conventions";
 
-/// For whoever opens a file without this documentation at hand; it is the same in every file and not read back.
+/// For readers without this documentation; it is the same in every file and not read back.
 const CONVENTIONS_OF_ALL_FILES: &str = "row 0 is the top; tangent frame x right, y up, z out; slope = N.xy / N.z; second moments raw, order xx yy xy; \
      unsigned texels: slopes over -scale..scale, moments over scale^2";
 

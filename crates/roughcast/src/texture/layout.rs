@@ -35,7 +35,7 @@ named_enum! {
 }
 
 impl Layout {
-    /// What the layout says of itself.
+    /// The rules of the layout.
     pub(crate) const fn rules(self) -> &'static dyn LayoutRules {
         match self {
             Layout::Lean => &lean::Lean,
@@ -88,7 +88,7 @@ impl Layout {
         channels.max().unwrap_or(0)
     }
 
-    /// What the layout makes of the base roughness.
+    /// How the layout treats the base roughness.
     pub fn base_role(self) -> BaseRole {
         self.rules().base_role()
     }

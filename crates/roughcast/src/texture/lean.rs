@@ -31,7 +31,7 @@ pub(super) struct Lean;
 
 impl LayoutRules for Lean {
     fn summary(&self) -> &'static str {
-        "LEAN mapping: normal, mean slope and second moments in two RGBA textures; keeps anisotropy; wants 16 bits"
+        "LEAN mapping: normal, mean slope and second moments in two RGBA textures; keeps anisotropy; needs 16 bits"
     }
 
     fn number(&self) -> u8 {

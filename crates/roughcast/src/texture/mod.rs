@@ -1,4 +1,4 @@
-//! Stored textures: what a baked file holds, level by level, and what is needed to read it back.
+//! Stored textures: the contents of a baked file, level by level, and what is needed to read it back.
 //!
 //! One layout a file: its description (`rules.rs` has the questions), the encoding of moments into texels, their decoding, and
 //! the bounds of its error. [`Layout`] lists them.

@@ -1,4 +1,4 @@
-//! What shading models and textures have to do with each other; the models themselves know nothing of textures.
+//! The relation of shading models and textures; the models themselves know nothing about textures.
 
 use super::{Layout, TextureInfo};
 use crate::roughness::Base;

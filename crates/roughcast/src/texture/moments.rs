@@ -1,4 +1,4 @@
-//! The moments themselves, as floats: B and M as they are.
+//! The moments themselves, as floats: B and M.
 //!
 //! Channels `B.x, B.y, M.xx, M.yy, M.xy` of one image (an EXR file). Source: LEAN mapping, Eq. 3 and 4.
 
@@ -16,7 +16,7 @@ pub(super) struct StoredMoments;
 
 impl LayoutRules for StoredMoments {
     fn summary(&self) -> &'static str {
-        "mean slope and second moments as they are"
+        "mean slope and second moments as floats"
     }
 
     fn number(&self) -> u8 {

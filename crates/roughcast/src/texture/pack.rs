@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_out_of_range_saturates() {
+    fn out_of_range_values_saturate() {
         for (value, wanted) in
             [(f32::NAN, 0), (-1.0, 0), (f32::NEG_INFINITY, 0), (2.0, 255), (f32::INFINITY, 255)]
         {

@@ -1,4 +1,4 @@
-//! What a layout says of itself. The rest of the code asks these questions and never which layout it is.
+//! The properties of a layout. The rest of the code asks these questions and never which layout it is.
 //!
 //! Each layout answers in its own file. [`super::layout`] is the registry.
 
@@ -37,7 +37,7 @@ impl Stores {
     }
 }
 
-/// What a layout makes of the base roughness of a material.
+/// How a layout treats the base roughness of a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum BaseRole {
     /// The base is folded into the second moments where [`Base::Baked`](crate::texture::Base::Baked) asks for it; otherwise the
@@ -113,7 +113,7 @@ pub(crate) trait LayoutRules: Sync {
         SampleType::U16
     }
 
-    /// What becomes of a base roughness.
+    /// How a base roughness is treated.
     fn base_role(&self) -> BaseRole {
         BaseRole::OnRequest
     }

@@ -78,7 +78,7 @@ pub(super) struct SchillingIsotropic;
 
 impl LayoutRules for SchillingIsotropic {
     fn summary(&self) -> &'static str {
-        "mean slope and the larger deviation in one texture"
+        "mean slope and the larger standard deviation in one texture"
     }
 
     fn number(&self) -> u8 {

@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_of_one_bake_share_a_number_that_another_bake_does_not_have() {
+    fn parts_of_one_bake_share_a_unique_number() {
         let sets = set_of(0.1);
         assert!(sets.len() == 2 && sets[0] != 0 && sets[0] == sets[1], "{sets:?}");
         assert_eq!(sets, set_of(0.1), "the same input gives the same number");
@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn a_layout_of_one_file_is_no_set() {
+    fn a_layout_of_one_file_has_no_set() {
         let map = Image::zeros(8, 8, 3, SampleType::F32);
         let baked = bake(&map, &SourceOptions::default(), None, &BakeOptions::default()).expect("a map");
         assert_eq!(baked.arrays[0].info.set, 0);

@@ -82,7 +82,7 @@ pub enum ShapeFault {
     #[error("a layer is there twice")]
     RepeatedLayer,
     /// The files of a part's layers have different metadata.
-    #[error("the files of its layers say different things of their texels")]
+    #[error("the files of its layers have contradictory metadata")]
     LayerInfos,
     /// The files of a part's layers have different sizes or numbers of levels.
     #[error("the files of its layers differ in size or in number of levels")]
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_decodes_to_an_error() {
+    fn no_textures_are_an_error() {
         assert!(matches!(decode(&[]), Err(DecodeError::NoFiles)));
         assert_eq!(join_layers(Vec::new()), Ok(Vec::new()));
     }
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn layers_with_files_of_their_own_are_checked_as_well() {
+    fn layers_with_files_of_their_own_are_checked_too() {
         let mut split = split_layers(baked(Layout::Lean));
         split[1].layers[0].levels.clear();
         assert!(fault_of(&split).contains("no levels"));

@@ -1,6 +1,6 @@
 //! Toksvig: the averaged normal, not renormalised, and the gloss factor that its length gives.
 //!
-//! Source: the method that the LEAN text compares with (Toksvig 2005): with L the length of the averaged normal, the
+//! Source: the method that the LEAN paper compares with (Toksvig 2005): with L the length of the averaged normal, the
 //! variance is `(1 - L) / L` and the gloss factor `L / (L + s (1 - L))`, by which the exponent s is multiplied.
 //!
 //! | part | R | G | B | A |
@@ -188,7 +188,7 @@ fn decode(units: Units, texel: &[f32]) -> Moments {
     Moments::from_mean_and_covariance(slope_from_normal(normal), variance)
 }
 
-/// Toksvig's variance; that of a length of nothing is finite, since no texel is endlessly rough.
+/// Toksvig's variance; that of zero length is finite, since no texel is infinitely rough.
 fn variance_from_length(length: f32) -> f32 {
     let length = length.clamp(f32::MIN_POSITIVE, 1.0);
     (1.0 - length) / length

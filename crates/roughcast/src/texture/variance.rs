@@ -24,7 +24,7 @@ pub(super) struct Variance;
 
 impl LayoutRules for Variance {
     fn summary(&self) -> &'static str {
-        "mean slope and variance along x and y; 8 bits will do"
+        "mean slope and variance along x and y; 8 bits suffice"
     }
 
     fn number(&self) -> u8 {

@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn a_library_holds_what_is_needed_once() {
+    fn a_library_contains_each_module_once() {
         let text = library(&["lean", "clean", "lean"]).expect("these modules exist");
         for once in ["fn lean_moments(", "fn clean_moments(", "fn gaussian_lobe(", "struct LobeOptions {"] {
             assert_eq!(text.matches(once).count(), 1, "{once}");
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn the_choices_have_the_same_numbers_on_both_sides() {
+    fn choices_have_the_same_numbers_in_rust_and_wgsl() {
         let source = library(&["options", "packing"]).expect("they exist");
         let number = |name: &str| {
             let (_, rest) = source.split_once(&format!("const {name}: u32 = ")).expect(name);

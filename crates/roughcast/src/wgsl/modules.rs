@@ -208,7 +208,7 @@ pub const MODULES: &[Module] = &[
         name: "blinn-phong",
         source: include_str!("../shading/blinn_phong.wgsl"),
         needs: &["normal", "facet"],
-        summary: "Blinn-Phong on the filtered bump normal: the ordinary way",
+        summary: "Blinn-Phong on the filtered bump normal: the conventional method",
         citation: "Blinn, Models of light reflection for computer synthesized pictures, 1977",
         role: Role::Model,
     },

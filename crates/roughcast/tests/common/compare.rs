@@ -1,4 +1,4 @@
-//! Comparators. Each says where it failed and by how much; `comparators.rs` shows that each can fail.
+//! Comparators. Each reports where it failed and by how much; `comparators.rs` shows that each can fail.
 
 use super::level::{Level, NAMES, Plane, Texel, eigenvalues};
 

@@ -122,7 +122,7 @@ pub fn raw_moments(baked: &Baked) -> Vec<Level> {
         .collect()
 }
 
-/// B and M of LEAN's textures as stored, without the decoder's mending.
+/// B and M of LEAN's textures as stored, without the decoder's repair.
 pub fn raw_lean(baked: &Baked) -> Vec<Level> {
     let sc = f64::from(baked.report.scale);
     let is_float = layer(&baked.arrays[0], "lean2").sample_type().is_float();

@@ -1,6 +1,6 @@
 //! What the integration tests share: maps to bake, an oracle in plain f64 arithmetic, comparators, real files.
 //!
-//! The oracle shares no code with the library: it follows the texts and the documented rules, texel by texel.
+//! The oracle shares no code with the library: it follows the papers and the documented rules, texel by texel.
 
 // Every test file is a crate of its own and uses a part of this.
 #![allow(dead_code)]

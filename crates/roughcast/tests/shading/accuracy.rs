@@ -10,10 +10,10 @@ use super::oracle;
 use super::support::{Frame, Random, Vector, dot, narrow, normalize, scaled, sum, surface_of_texels, wide};
 
 /// Relative, of a lobe where it is above `DEEPEST` of its peak: half vector and bump normal are rounded to 6e-8, which a
-/// lobe of s = 16384 turns into `s sinθ 6e-8`, at four deviations 3e-5; three roundings add up.
+/// lobe of s = 16384 turns into `s sinθ 6e-8`, at four standard deviations 3e-5; three roundings add up.
 const TOLERANCE: f64 = 1e-4;
 
-/// `exp(-8)`: four deviations from the peak.
+/// `exp(-8)`: four standard deviations from the peak.
 const DEEPEST: f64 = 3e-4;
 
 const POWERS: [f32; 6] = [1.0, 8.0, 64.0, 1024.0, 13_777.0, 16_384.0];
@@ -256,7 +256,7 @@ fn a_material_without_its_base_gets_it_added_once() {
 }
 
 #[test]
-fn the_comparison_tells_a_slightly_wrong_lobe() {
+fn the_comparison_detects_a_slightly_wrong_lobe() {
     let s = 13_777.0;
     let right = options(s as f32, Form::Normalised);
     let wrong = |factor: f64| {
@@ -268,7 +268,7 @@ fn the_comparison_tells_a_slightly_wrong_lobe() {
 }
 
 #[test]
-fn a_rounded_cosine_would_not_do() {
+fn a_rounded_cosine_is_too_inaccurate() {
     // Why the models take a tangent: the plain power in single floats fails the same test.
     let s = 13_777.0_f32;
     let plain = largest_difference(|random| {
@@ -281,7 +281,7 @@ fn a_rounded_cosine_would_not_do() {
 }
 
 #[test]
-fn unsigned_texels_shade_as_the_values_that_they_hold() {
+fn unsigned_texels_shade_like_their_values() {
     /// Two roundings of codes' values over ranges of about one, against a variance of 0.05.
     const ROUNDING: f32 = 1e-4;
     let packing = Packing {

@@ -233,7 +233,7 @@ fn surface_axis(base_lobe: Shading) -> Vector {
 }
 
 #[test]
-fn the_integral_tells_what_is_not_normalised() {
+fn the_integral_detects_unnormalised_lobes() {
     let paper = options(1024.0, Form::Paper);
     let surface = ModelSurface::Beckmann(beckmann_surface(&flat(), &paper));
     let width = round(1.0 / 32.0);

@@ -157,7 +157,7 @@ fn corrected_trace_of_a_ramp(gradient: [f32; 2], texels: f32, options: &LobeOpti
 }
 
 #[test]
-fn the_pixels_variance_is_left_of_a_ramp() {
+fn a_ramp_keeps_the_variance_of_the_pixel() {
     for texels in [0.125_f32, 0.25, 0.5] {
         for gradient in [[0.1, 0.0], [0.02, -0.3]] {
             let squared = f64::from(gradient[0] * gradient[0] + gradient[1] * gradient[1]);
@@ -173,7 +173,7 @@ fn the_pixels_variance_is_left_of_a_ramp() {
 }
 
 #[test]
-fn nothing_changes_where_a_pixel_covers_whole_texels() {
+fn pixels_that_cover_whole_texels_are_unchanged() {
     for level in 0..6 {
         let texels = 2.0_f32.powi(level);
         let axes = footprint_axes([texels, 0.0], [0.0, texels]);
@@ -198,7 +198,7 @@ fn the_correction_fades_out_on_coarser_levels() {
 }
 
 #[test]
-fn detail_below_the_texel_stays() {
+fn detail_below_the_texel_is_kept() {
     let part = PixelPart { ratio: 0.1, linear_trace: 0.02 };
     assert!((part.factor(0.02) - 0.1).abs() < 1e-6 && (part.factor(0.01) - 0.1).abs() < 1e-6);
     // Of a trace of 2 a hundredth may be the ramp's.
@@ -209,7 +209,7 @@ fn detail_below_the_texel_stays() {
 }
 
 #[test]
-fn a_magnified_texel_shows_the_linear_change_alone() {
+fn a_magnified_texel_has_only_the_linear_change() {
     // A hundredth of a texel a pixel, and slopes of two directions that change along both axes.
     let (dx, dy) = ([0.01_f32, 0.0], [0.004, 0.008]);
     let gradient = [[0.5_f64, -0.2], [0.1, 0.3]];
@@ -263,7 +263,7 @@ fn shaded(
 }
 
 #[test]
-fn models_of_moments_shade_the_pixels_part_and_the_whole_base() {
+fn models_of_moments_shade_the_part_of_the_pixel_and_the_whole_base() {
     let sigma = Covariance { xx: 0.04, yy: 0.04, xy: 0.0 };
     let part = |ratio| PixelPart { ratio, linear_trace: 1.0 };
     let ratio = FootprintRatio { moments: part(0.25), variances: part(0.5), ..FootprintRatio::WHOLE };

@@ -131,7 +131,7 @@ fn lobes_turn_with_the_bumps() {
 }
 
 #[test]
-fn view_and_light_may_change_places() {
+fn lobes_are_reciprocal() {
     let (view, light) = ([0.28, -0.1, 0.954_777_5], [0.15, 0.1, 0.983_615_8]);
     let options = options(200.0);
     for shading in Shading::ALL {
@@ -144,7 +144,7 @@ fn view_and_light_may_change_places() {
 /// The Jacobian of the map from slopes about a facet to slopes of the surface, at the facet: its J Jᵀ is the facet's
 /// base but for 1 / s.
 #[test]
-fn the_facets_base_is_what_a_turn_makes_of_a_round_lobe() {
+fn the_base_of_a_facet_is_a_rotated_round_lobe() {
     const STEP: f64 = 1e-5;
     for slope in [[0.0, 0.0], [1.0, 0.0], [0.3, -0.8], [2.0, 1.0]] {
         let frame = Frame::about(Frame::SURFACE.direction(slope));
@@ -171,7 +171,7 @@ fn the_facets_base_is_what_a_turn_makes_of_a_round_lobe() {
     }
 }
 
-/// The largest difference, within two deviations, between the densities over solid angle of an off-centre lobe and of
+/// The largest difference, within two standard deviations, between the densities over solid angle of an off-centre lobe and of
 /// Beckmann's about the bump, relative to the latter.
 fn against_the_bumps_own(base: BaseLobe, s: f32) -> f64 {
     let options = LobeOptions { base, ..options(s) };
@@ -193,7 +193,7 @@ fn against_the_bumps_own(base: BaseLobe, s: f32) -> f64 {
 }
 
 #[test]
-fn the_facets_base_tends_to_beckmann_about_the_bump() {
+fn the_base_of_a_facet_converges_to_beckmann_about_the_bump() {
     // To first order: what is left falls as the lobe's width, 1 / sqrt(s).
     let left = [100.0, 1600.0, 25_600.0].map(|s| against_the_bumps_own(BaseLobe::Facet, s));
     assert!(left[1] < 0.3 * left[0] && left[2] < 0.3 * left[1], "{left:?}");

@@ -1,4 +1,4 @@
-//! The lobes' densities over slopes in f64, as the texts' formulas have them and without regard for rounding.
+//! The lobes' densities over slopes in f64, from the papers' formulas and without regard for rounding.
 
 use std::f64::consts::{PI, TAU};
 

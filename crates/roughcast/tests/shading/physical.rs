@@ -95,7 +95,7 @@ fn difference(shading: Shading, s: f32, options: &LobeOptions) -> f64 {
 }
 
 #[test]
-fn lobes_are_their_definitions_in_f64() {
+fn lobes_match_their_definitions_in_f64() {
     for shading in MODELS {
         for s in [4.0_f32, 64.0, 2048.0] {
             let tolerance = if shading == Shading::Ggx { ROUNDING } else { FIT };
@@ -120,7 +120,7 @@ fn texels(shading: Shading) -> Vec<[f32; 4]> {
 }
 
 #[test]
-fn a_flat_map_is_the_flat_microfacet_brdf_at_any_angle() {
+fn a_flat_map_matches_the_microfacet_brdf_at_any_angle() {
     let s = 100.0_f32;
     let material = Material { albedo: [0.0; 3], ambient: [0.0; 3], specular: [1.0; 3] };
     for shading in Shading::ALL.iter().copied().filter(|shading| *shading != Shading::Phong) {
@@ -208,7 +208,7 @@ fn a_white_surface_reflects_no_more_than_it_receives() {
 }
 
 #[test]
-fn viewer_and_light_may_change_places() {
+fn the_brdf_is_reciprocal() {
     let (view, light) = ([0.6_f32, 0.0, 0.8], [-0.1_f32, 0.3, 0.948_683_3]);
     let slope = Slope { x: 0.2, y: 0.05 };
     for shading in Shading::ALL.iter().copied() {
@@ -232,7 +232,7 @@ fn viewer_and_light_may_change_places() {
 }
 
 #[test]
-fn bumps_that_face_away_from_the_viewer_are_no_holes() {
+fn bumps_facing_away_from_the_viewer_are_not_black() {
     // Seen from 80 degrees, a bump that is tilted by 20 degrees away; the light is behind it.
     let direction = |degrees: f64| {
         let (sin, cos) = degrees.to_radians().sin_cos();
@@ -265,7 +265,7 @@ fn all_slopes_mask_more_than_the_base_does() {
 }
 
 #[test]
-fn phong_reflects_all_that_comes_along_the_reflected_ray() {
+fn phong_reflects_all_light_along_the_reflected_ray() {
     let options = options(50.0);
     let surface = Shading::Phong.surface_of_slope(Slope::default(), &options);
     let lobe = f64::from(surface.lobe([0.0, 0.0, 1.0], [0.0, 0.0, 1.0], &options));
@@ -282,7 +282,7 @@ fn maps_bring_the_exponent_of_their_base() {
         base_variance,
         ..TextureInfo::new(layout, Part::Whole)
     };
-    // Toksvig's factor is one of the exponent that it was baked for.
+    // Toksvig's factor was baked for one exponent.
     for layout in [Layout::Toksvig, Layout::Lean] {
         let options = default.for_maps(&baked(layout, 1.0 / 32.0));
         assert_eq!(options.specular_power, 32.0);

@@ -135,7 +135,7 @@ fn a_mirror_with_its_base_baked_in_is_finite() {
 }
 
 #[test]
-fn a_covariance_that_is_none_is_mended_or_shows_nothing() {
+fn invalid_covariances_are_repaired_or_show_nothing() {
     // M.xx below B.x²: a variance of -0.01, not made good by a base of 1 / 256.
     let texels = [[0.1, 0.0, 0.9, 0.0], [0.25, 0.0, 0.0525, 0.01]];
     let h = narrow(Frame::SURFACE.direction([0.25, 0.0]));
@@ -149,7 +149,7 @@ fn a_covariance_that_is_none_is_mended_or_shows_nothing() {
 }
 
 #[test]
-fn the_repair_leaves_sound_covariances_alone() {
+fn the_repair_keeps_valid_covariances() {
     let texels = [[0.1, 0.0, 0.9, 0.03], [0.25, 0.1, 0.1, 0.05]];
     let h = narrow(Frame::SURFACE.direction([0.3, 0.05]));
     let lobe = |repair| {
@@ -161,7 +161,7 @@ fn the_repair_leaves_sound_covariances_alone() {
 }
 
 #[test]
-fn steep_bumps_of_the_truth_are_finite() {
+fn steep_bumps_of_the_ground_truth_are_finite() {
     for shading in Shading::ALL.iter().copied() {
         for (options, _) in all_options() {
             for slope in [Slope { x: 128.0, y: 0.0 }, Slope { x: -90.0, y: 90.0 }, Slope::default()] {
@@ -199,7 +199,7 @@ fn a_normal_without_direction_is_flat() {
 }
 
 #[test]
-fn a_two_channel_normal_gets_its_z_back() {
+fn z_of_a_two_channel_normal_is_reconstructed() {
     let packing = Packing { unit: [2.0, -1.0], ..Packing::IDENTITY };
     let options = LobeOptions::default();
     let normal = |texel| {

@@ -34,7 +34,7 @@ fn layers_and_channels_read_back() {
 }
 
 #[test]
-fn files_of_earlier_versions_mean_what_they_meant() {
+fn files_of_earlier_versions_keep_their_meaning() {
     let orm = TextureInfo::new(Layout::Pbr, Part::OcclusionRoughnessMetallic);
     let earlier =
         TextureInfo { normal_range: NormalRange::Signed, roughness_texture: RoughnessTexture::Packed, ..orm };
@@ -77,7 +77,7 @@ fn foreign_metadata_is_named_as_such() {
 }
 
 #[test]
-fn a_roughness_layout_of_maps_without_roughness_reads_like_the_text() {
+fn words_and_pairs_agree_without_a_roughness_layout() {
     let odd = TextureInfo {
         roughness_texture: RoughnessTexture::Green,
         ..TextureInfo::new(Layout::Variance, Part::Split)

@@ -51,7 +51,7 @@ fn shortest(texture: &Texture, counts: impl Fn(f64, f64, f64) -> bool) -> f64 {
 const LEAST: f64 = 0.866;
 
 #[test]
-fn circles_agree_all_around_although_no_reference_axis_would_do() {
+fn circles_agree_although_no_reference_axis_works() {
     let mut texture = field(|u, v| Some((v - 0.5).atan2(u - 0.5)));
     // Neighbours at less than two texels from the middle turn by more than the sixth of a turn; beyond the edge of the
     // tile the circles end.
@@ -105,7 +105,7 @@ fn texels_without_strength_follow_the_coarser_level() {
 }
 
 #[test]
-fn codes_turn_round_exactly() {
+fn codes_are_negated_exactly() {
     let levels =
         vec![Image::new(2, 1, 4, Samples::U8(vec![255, 128, 200, 255, 0, 120, 200, 255])).expect("whole")];
     let mut texture = Texture { name: "anisotropy", channels: vec!["R", "G", "B", "A"], levels };

@@ -1,4 +1,4 @@
-//! A filtered normal alone as a distribution: its slope, with no bumps about it. The ordinary way, which loses them.
+//! A filtered normal alone as a distribution: its slope, without any spread. The conventional method, which loses the bumps.
 
 use crate::distribution::Distribution;
 use crate::slope::Normal;
