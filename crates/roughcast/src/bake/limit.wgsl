@@ -6,7 +6,7 @@ const SLOPE_BIN_SHIFT: u32 = 18u;
 const FIRST_SLOPE_BIN: u32 = 3424u;
 const SLOPE_BINS: u32 = 1089u;
 
-// One in so many texels is among the steepest.
+// One in this many texels is among the steepest.
 const STEEP_ONE_IN: u32 = 1000u;
 // The factor in usable specular power from which on their loss is worth it.
 const STEEP_COST: f32 = 4.0;

@@ -50,12 +50,12 @@ impl Blocks {
         self.pairs += 1;
     }
 
-    /// How far a and b are equal; `None` where nothing varies.
+    /// How far a and b are equal; `None` if nothing varies.
     pub(super) fn agreement(&self) -> Option<Correlation> {
         self.correlation(Sums::agreement)
     }
 
-    /// How far a and b are proportional; `None` where one of them does not vary.
+    /// How far a and b are proportional; `None` if one of them does not vary.
     pub(super) fn cosine(&self) -> Option<Correlation> {
         self.correlation(Sums::cosine)
     }

@@ -10,7 +10,7 @@ pub(super) struct Field<const N: usize> {
 
 impl<const N: usize> Field<N> {
     /// # Panics
-    /// Where there are not `width * height` values.
+    /// If there are not `width * height` values.
     pub(super) fn new(width: usize, height: usize, values: Vec<[f32; N]>) -> Self {
         assert_eq!(values.len(), width * height, "a value for each texel");
         Self { width, height, values }

@@ -23,7 +23,7 @@ const GREY: f32 = 10.0 / 255.0;
 /// Share of the texels that must be as they should.
 const NEARLY_ALL: f64 = 0.99;
 
-/// Of two ways to read a map, the one whose order of x and y is right; `None` where the two are equally good or bad.
+/// Of two ways to read a map, the one whose order of x and y is right; `None` if the two are equally good or bad.
 ///
 /// `options` say how it is read otherwise.
 pub fn guess_order<'a>(

@@ -135,7 +135,7 @@ impl PixelPart {
     }
 }
 
-/// The pixel's part, given the squared changes of the mean slope a texel along the two axes, the variances of the filter and
+/// The pixel's part, given the squared changes of the mean slope per texel along the two axes, the variances of the filter and
 /// those of the pixel along them.
 pub fn pixel_part(changes: [f32; 2], variances: [f32; 2], pixel: [f32; 2]) -> PixelPart {
     let [along, across] = changes;

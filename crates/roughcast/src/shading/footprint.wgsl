@@ -104,7 +104,7 @@ fn pixel_covariance(ratio: FootprintRatio, part: PixelPart, stored: vec3f, base:
     return kept * stored + vec3f(rest, rest, 0.0) + ratio.magnified * ratio.linear_covariance;
 }
 
-// Squared changes of the mean slope a texel along the two axes, and the variances of the filter and of the pixel.
+// Squared changes of the mean slope per texel along the two axes, and the variances of the filter and of the pixel.
 fn pixel_part(changes: vec2f, variances: vec2f, pixel: vec2f) -> PixelPart {
     let covered = dot(changes, variances);
     if covered <= 0.0 {

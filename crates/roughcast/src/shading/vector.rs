@@ -33,7 +33,7 @@ pub(crate) fn both_above(view: Vector, light: Vector) -> bool {
     view[2] > LEAST_HEIGHT && light[2] > LEAST_HEIGHT
 }
 
-/// The half vector of two unit directions above the surface; `None` where one of them is not.
+/// The half vector of two unit directions above the surface; `None` if one of them is not.
 pub(crate) fn half_vector(view: Vector, light: Vector) -> Option<Vector> {
     both_above(view, light).then(|| normalize(sum(view, light)))
 }

@@ -63,7 +63,7 @@ impl Texture {
     /// The storage type of the samples.
     ///
     /// # Panics
-    /// Where there is no level.
+    /// If there is no level.
     pub fn sample_type(&self) -> SampleType {
         self.levels[0].samples().sample_type()
     }

@@ -173,7 +173,7 @@ pub(crate) trait LayoutRules: Sync {
     fn decoder(&self, files: &Files<'_>) -> TexelDecoder;
 
     /// How a renderer reads filtered texels of this layout for what it wants. `lobe` tells whether a material has an anisotropy texture.
-    /// `None` where a texture has more channels than a sampler returns.
+    /// `None` if a texture has more channels than a sampler returns.
     fn texel_reader(&self, wanted: Wanted, lobe: Lobe) -> Option<&'static TexelReader> {
         let _ = (wanted, lobe);
         None

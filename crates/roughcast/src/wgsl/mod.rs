@@ -60,7 +60,7 @@ pub const CONVENTIONS: &[&str] = &[
 /// The module of this name.
 ///
 /// # Errors
-/// [`UnknownName`] where there is none.
+/// [`UnknownName`] if there is none.
 pub fn module(name: &str) -> Result<&'static Module, UnknownName> {
     MODULES.iter().find(|module| module.name == name).ok_or_else(|| UnknownName {
         what: "WGSL module",
@@ -72,7 +72,7 @@ pub fn module(name: &str) -> Result<&'static Module, UnknownName> {
 /// The modules of these names and all that they need, each once, in the order of [`MODULES`].
 ///
 /// # Errors
-/// [`UnknownName`] where one of the names is of no module.
+/// [`UnknownName`] if one of the names is of no module.
 pub fn modules(names: &[&str]) -> Result<Vec<&'static Module>, UnknownName> {
     let mut wanted = names.iter().map(|name| module(name)).collect::<Result<Vec<_>, _>>()?;
     let mut next = 0;
@@ -91,7 +91,7 @@ pub fn modules(names: &[&str]) -> Result<Vec<&'static Module>, UnknownName> {
 /// The source of the modules of these names with all that they need.
 ///
 /// # Errors
-/// [`UnknownName`] where one of the names is of no module.
+/// [`UnknownName`] if one of the names is of no module.
 pub fn library(names: &[&str]) -> Result<String, UnknownName> {
     let sources = modules(names)?.into_iter().map(|module| module.source);
     Ok(sources.collect::<Vec<_>>().join("\n"))

@@ -210,7 +210,7 @@ fn detail_below_the_texel_is_kept() {
 
 #[test]
 fn a_magnified_texel_has_only_the_linear_change() {
-    // A hundredth of a texel a pixel, and slopes of two directions that change along both axes.
+    // A hundredth of a texel per pixel, and slopes of two directions that change along both axes.
     let (dx, dy) = ([0.01_f32, 0.0], [0.004, 0.008]);
     let gradient = [[0.5_f64, -0.2], [0.1, 0.3]];
     let change = |d: [f32; 2]| gradient.map(|[gx, gy]| (gx * f64::from(d[0]) + gy * f64::from(d[1])) as f32);

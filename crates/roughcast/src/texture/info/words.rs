@@ -35,7 +35,7 @@ impl TextureInfo {
     /// Reads [`TextureInfo::to_words`] back.
     ///
     /// # Errors
-    /// [`InfoError`] where the words are not ours or make no sense.
+    /// [`InfoError`] if the words are not ours or make no sense.
     pub fn from_words(words: &[u32; 11]) -> Result<Self, InfoError> {
         if words[0] != DDS_MAGIC {
             return Err(InfoError::Missing(LAYOUT));

@@ -70,7 +70,7 @@ impl TexelReader {
         (self.read)(texels, packing, options)
     }
 
-    /// The part of a ratio that applies to what this reader's textures hold; `None` where the footprint correction does not apply.
+    /// The part of a ratio that applies to what this reader's textures hold; `None` if the footprint correction does not apply.
     #[inline]
     pub fn pixel_part(&self, ratio: &FootprintRatio) -> Option<PixelPart> {
         match self.filtered {
