@@ -3,7 +3,7 @@
 
 Runs `roughcast compare` on each normal map of a folder of materials (one a folder; all of a folder that holds numbered
 maps) and prints the root mean square error of models relative to that of ordinary bump mapping (blinn-phong) in each view,
-each against the supersampled truth of its own base lobe, and the medians.
+each against the supersampled ground truth of its own base lobe, and the medians.
 
     cargo build --release
     benches/materials.py ../shared/data/materials target/release/roughcast [options of compare]

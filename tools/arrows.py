@@ -37,8 +37,8 @@ WITHOUT_FEATURES = {
 
 FIXTURES = "roughcast-testdata"
 
-# Third-party crates that the library may use (tests are free). It is arithmetic on images in memory, and whoever builds it
-# into an engine gets these too.
+# Crates of others that the library may use (tests are free). It is arithmetic on images in memory, and whoever takes it
+# into an engine takes these along.
 LIBRARY = "roughcast"
 LIBRARY_MAY_USE = {"half", "multiversion", "rayon", "thiserror"}
 

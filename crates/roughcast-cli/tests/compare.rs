@@ -123,7 +123,7 @@ fn the_page_needs_no_other_file_and_has_every_picture() {
         ["png", "jpeg"].map(|kind| page.matches(&format!("src=\"data:image/{kind};base64,")).count());
     // The scale; two distributions of each map; then for each view the errors of every method.
     assert_eq!(png, 1 + 2 * 3 + (1 + LIMIT_VIEWS) * METHODS.len());
-    // For each view the truths and a picture of every method; of the given map two moving ones, too.
+    // For each view the ground truths and a picture of every method; for the given map also two animations.
     assert_eq!(jpeg, (1 + LIMIT_VIEWS) * (BASE_LOBES + METHODS.len()) + 2);
     assert_eq!(page.matches("src=").count(), png + jpeg);
     for setting in ["16 bits", "256", "physical", "corrected", "64x48", "16 samples per pixel", "towards "] {
@@ -140,7 +140,7 @@ fn a_page_is_small_for_its_pictures() {
     let options = ["--size", "128x96", "--samples", "4", "--views", "mid", "--frames", "4"];
     run(["compare", text(&map()), "-o", text(folder.path())].iter().chain(&options)).expect_success();
     let bytes = std::fs::metadata(folder.path().join("index.html")).expect("the page is there").len();
-    // Of the given map the truths, every method with both filters and its errors, and three pictures in four frames; of
+    // For the given map the ground truths, every method with both filters and its errors, and three pictures in four frames; for
     // the others one filter and no frames.
     let given = BASE_LOBES + 2 * 2 * METHODS.len() + 3 * 4;
     let limits = LIMIT_VIEWS * (BASE_LOBES + 2 * METHODS.len());

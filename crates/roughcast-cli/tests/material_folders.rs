@@ -14,7 +14,7 @@ use roughcast_io::{ReadOptions, png_levels, read_image_file};
 const NORMALS: &str = "cases/missing-roughness-size/plain.png";
 const SIDE: usize = 16;
 
-/// Writes a picture of a colour that is no normal, with a little variation.
+/// Writes a picture of a colour that is not a normal, with a little variation.
 fn colour(path: &Path) {
     let texel = |i: usize| [200, (i % 7) as u8 * 3, (i % 5) as u8 * 2];
     write(path, 3, (0..SIDE * SIDE).flat_map(texel).collect());

@@ -18,7 +18,7 @@ fn file(test: &str, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
 
 /// The message, which must be one line that names the file.
 fn message(result: Result<Mesh, MeshFileError>, path: &std::path::Path) -> String {
-    let text = result.map(|_| ()).expect_err("this is no mesh").to_string();
+    let text = result.map(|_| ()).expect_err("this is not a mesh").to_string();
     assert!(text.starts_with(&path.display().to_string()), "{text}");
     assert!(!text.contains('\n'), "{text}");
     text

@@ -99,7 +99,7 @@ pub enum Roughness {
 }
 
 impl Roughness {
-    /// As input for [`roughcast::bake()`].
+    /// As [`roughcast::bake()`] takes it.
     pub fn base(&self) -> BaseRoughness<'_> {
         match self {
             Roughness::Variance(variance) => BaseRoughness::Variance(*variance),

@@ -7,7 +7,7 @@
 //!
 //! # Contents
 //!
-//! - [`bake()`] bakes a map in memory into the textures of a layout, with all levels ([`texture::Layout`] lists the layouts);
+//! - [`bake()`]: a map in memory to a layout's textures, every level of them ([`texture::Layout`] lists the layouts);
 //! - [`texture::decode`]: from any layout back to moments, and [`texture::bounds`]: how far off these can be;
 //! - [`shading`]: models that shade with these textures, each with a WGSL twin for GPUs;
 //! - [`precision`]: which storage type carries which shininess;

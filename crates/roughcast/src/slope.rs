@@ -127,7 +127,7 @@ impl SourceCounts {
         }
     }
 
-    /// Texels without information about the surface.
+    /// Texels that say nothing of the surface.
     pub fn broken(self) -> u64 {
         self.behind + self.invalid + self.non_finite
     }

@@ -412,7 +412,7 @@ fn contradictory_options_are_refused() {
     ];
     for (word, image, source, base, options) in cases {
         let error = bake(image, &source, base, &options).expect_err(word).to_string();
-        assert!(error.contains(word) && !error.contains('\n'), "'{error}' does not contain '{word}'");
+        assert!(error.contains(word) && !error.contains('\n'), "'{error}' does not say '{word}'");
         assert!(!error.contains("--"), "'{error}' names an option of the program");
     }
     let error = bake(&two_channels, &source, None, &plain).expect_err("two channels");

@@ -191,7 +191,7 @@ fn table(page: &mut Page, comparison: &Comparison) {
         ]
     };
     let rows: Vec<_> = sorted(&comparison.trials).iter().map(row).collect();
-    page.table(&["method, filter", "truth", "RMSE", "FLIP", "energy", "flicker"], &rows);
+    page.table(&["method, filter", "ground truth", "RMSE", "FLIP", "energy", "flicker"], &rows);
 }
 
 /// The ground truth of every base lobe, and beside it each of its models' pictures with these filters and their errors.
@@ -242,7 +242,7 @@ fn limits(page: &mut Page, settings: &Settings<'_>, compared: &[Compared]) {
     page.end_row();
     let rows: Vec<_> = compared.iter().flat_map(|map| limit_rows(map, settings)).collect();
     page.paragraph(&format!("LEAN with {} filtering in the views:", settings.main_filter()));
-    page.table(&["map, view", "misplaced, whole map", "RMSE / truth's brightest", "energy"], &rows);
+    page.table(&["map, view", "misplaced, whole map", "RMSE / brightest of the ground truth", "energy"], &rows);
     if settings.shading.footprint == FootprintModel::Published {
         page.paragraph(
             "All variance under the texture filter counts as roughness, as in the papers. Where texels are magnified, as in the near \
