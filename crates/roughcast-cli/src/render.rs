@@ -16,9 +16,7 @@ use roughcast_io::texture_files::is_same_file;
 use roughcast_io::{AtomicFile, AtomicSet};
 use roughcast_pipeline::{Map, bake_for};
 use roughcast_scene::render::MAX_SAMPLES;
-use roughcast_scene::{
-    BakedTextures, Filter, Picture, Reconstruction, Sampler, Scene, SlopeDetail, SlopeMap,
-};
+use roughcast_scene::{BakedTextures, Filter, Picture, Sampler, Scene, SlopeDetail, SlopeMap};
 
 use crate::args::{SourceArgs, one_of, positive};
 use crate::backend::{Backend, GpuBackend, GroundTruthBackend, MethodBackend};
@@ -253,8 +251,7 @@ impl Args {
         let filter = match (self.filter, subject) {
             (FilterChoice::Truth(samples), Subject::Map(map)) => {
                 let slopes = SlopeMap::of(&map.image, &map.options).with_context(named)?;
-                let (reconstruction, wrap) = (Reconstruction::Linear, map.options.wrap);
-                let detail = SlopeDetail { slopes, reconstruction, wrap };
+                let detail = SlopeDetail::new(slopes, map.options.wrap);
                 return Ok(Backend::GroundTruth(GroundTruthBackend {
                     detail,
                     shading,
@@ -284,7 +281,7 @@ impl Args {
         }
         let sampler = Sampler { filter, level: self.level, mip_bias: self.mip_bias, wrap };
         if self.gpu {
-            let draw_options = DrawOptions { sampler, lobe: options };
+            let draw_options = DrawOptions { sampler, lobe: options, ..DrawOptions::default() };
             let backend = GpuBackend::new(shading, &arrays, &draw_options, scene, size)?;
             return Ok(Backend::Gpu(Box::new(backend)));
         }

@@ -8,7 +8,7 @@ use common::scenes::{SIDE, SIZE, SPECULAR_POWER, maps, maps_with, scene, scenes}
 use roughcast::shading::{BaseLobe, Form, LobeOptions, Shading};
 use roughcast::texture::TextureArray;
 use roughcast::{AnisotropyOutput, BakeOptions, PbrOptions, RoughnessTexture, SampleType, Wrap};
-use roughcast_gpu::render::DrawOptions;
+use roughcast_gpu::render::{Bumps, DrawOptions};
 use roughcast_scene::{Filter, Picture, Plane, Sampler, Scene, Shape, Sphere, Torus, View};
 
 /// Squares of round shapes along v. Their triangles lie within 2e-5 of the shape.
@@ -98,6 +98,25 @@ fn unfiltered_pictures_of_every_model_and_shape_match() {
             let apart = apart_within_texels(scene, &cpu, &gpu);
             assert!(apart.largest < allowed, "{name}, {shading} ({index}), {form}: {apart:?}");
             assert!(apart.covered > 1000, "{name}: {apart:?}");
+        }
+    }
+}
+
+#[test]
+fn resolved_bumps_are_those_of_the_cpu() {
+    let gpu = gpu();
+    for (name, scene) in scenes(View::Mid) {
+        let mut pictures = GpuPictures::new(&gpu, &scene, DETAIL);
+        for shading in [Shading::Lean, Shading::Clean, Shading::BlinnPhong, Shading::Ggx] {
+            let resolved = DrawOptions { bumps: Bumps::Resolved, ..with_filter(Filter::Anisotropic) };
+            let apart = both(&mut pictures, &scene, shading, &resolved);
+            assert!(apart.mean < INTERPOLATED, "{name}, {shading}: {apart:?}");
+            // And not those of the filter.
+            let maps = maps(shading, SampleType::F16);
+            let filtered = by_cpu(&scene, shading, &maps, &with_filter(Filter::Anisotropic), SIZE);
+            let gpu = pictures.render(&scene, shading, &maps, &resolved, SIZE).expect("a picture");
+            let other = apart_within_texels(&scene, &filtered, &gpu);
+            assert!(other.mean > 10.0 * INTERPOLATED, "{name}, {shading}: {other:?}");
         }
     }
 }

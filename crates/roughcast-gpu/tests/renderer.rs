@@ -11,8 +11,8 @@ use roughcast::texture::{Layout, Part, TextureInfo};
 use roughcast::{BakeOptions, Lobe, SampleType};
 use roughcast_gpu::bake::{BakePath, GpuBaker};
 use roughcast_gpu::render::{
-    DEPTH_FORMAT, DrawOptions, Geometry, GpuTextures, LevelOfDetail, RenderTarget, Renderer, ShaderKey,
-    Views, render, shader_source,
+    Bumps, DEPTH_FORMAT, DrawOptions, Geometry, GpuTextures, LevelOfDetail, RenderTarget, Renderer,
+    ShaderKey, Views, render, shader_source,
 };
 use roughcast_gpu::{Gpu, GpuError, Timestamps, read_back};
 use roughcast_scene::{Filter, Picture, Plane, Sampler, Scene, Shape, View, pattern};
@@ -55,7 +55,12 @@ fn shaders_sample_as_many_textures_as_the_model_has_inputs() {
     for shading in Shading::ALL {
         for lobe in [Lobe::Isotropic, Lobe::Anisotropic] {
             let reader = shading.layout().texel_reader(shading.wanted(), lobe).expect("its layout");
-            let key = ShaderKey { shading: *shading, reader, level: LevelOfDetail::Derivatives };
+            let key = ShaderKey {
+                shading: *shading,
+                reader,
+                level: LevelOfDetail::Derivatives,
+                bumps: Bumps::Filtered,
+            };
             let source = shader_source(key).expect("the library has it");
             assert_eq!(source.matches(": texture_2d<f32>;").count(), reader.inputs.len(), "{shading}");
             assert_eq!(source.matches("textureSampleBias(").count(), 1, "{shading}");

@@ -317,7 +317,7 @@ fn broken_tags_are_named() {
         (&[(257, SHORT, 3)], "ends too early"),
         (&[(258, SHORT, 0)], "samples of 0 bits"),
         (&[(258, SHORT, 64)], "unsigned integers of 64 bits is not supported"),
-        (&[(277, SHORT, 0)], "0 samples a pixel"),
+        (&[(277, SHORT, 0)], "0 samples per pixel"),
         (&[(278, LONG, 1)], "it has 1 strips or tiles, and its size needs 2"),
         (&[(278, LONG, 0)], "have no pixels"),
         (&[(TILE_WIDTH, LONG, 0)], "have no pixels"),

@@ -40,7 +40,10 @@ mod views;
 
 pub use camera::{Camera, CameraError, PixelRays};
 #[cfg(feature = "render")]
-pub use detail::{BakedTextures, Detail, DetailPoint, Reconstruction, SlopeDetail, SlopeMap, TextureDetail};
+pub use detail::{
+    BakedTextures, Detail, DetailPoint, Placement, Reconstruction, Resolved, SlopeDetail, SlopeMap,
+    TextureDetail,
+};
 pub use detail::{DetailError, TextureInputs, model_inputs, texture_inputs};
 #[cfg(feature = "render")]
 pub use filter::SummedAreaTable;

@@ -11,7 +11,7 @@ use roughcast::{BakeOptions, Green, Image, SourceOptions, Wrap, bake};
 use roughcast_scene::metrics::rmse;
 use roughcast_scene::render::{Method, Truth, unwatched};
 use roughcast_scene::{
-    BakedTextures, Filter, Picture, Plane, Reconstruction, Sampler, Scene, Shape, SlopeDetail, SlopeMap, View,
+    BakedTextures, Filter, Picture, Plane, Sampler, Scene, Shape, SlopeDetail, SlopeMap, View,
 };
 
 const SIZE: (u32, u32) = (96, 72);
@@ -52,11 +52,7 @@ impl Seen {
     fn truth(&self, shading: Shading) -> Picture {
         let truth = Truth {
             shading,
-            detail: &SlopeDetail {
-                slopes: self.slopes.clone(),
-                reconstruction: Reconstruction::Linear,
-                wrap: Wrap::Repeat,
-            },
+            detail: &SlopeDetail::new(self.slopes.clone(), Wrap::Repeat),
             options: LobeOptions::default(),
             samples: 64,
         };

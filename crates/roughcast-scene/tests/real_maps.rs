@@ -36,7 +36,7 @@ fn lean_has_smaller_errors_on_real_maps() {
         let errors = |shading: Shading, reconstruction| {
             let truth = Truth {
                 shading,
-                detail: &SlopeDetail { slopes: slopes.clone(), reconstruction, wrap: Wrap::Repeat },
+                detail: &SlopeDetail::new(slopes.clone(), Wrap::Repeat).with_reconstruction(reconstruction),
                 options,
                 samples: 64,
             };

@@ -12,8 +12,8 @@ use roughcast_scene::metrics::{energy_error, flicker, rmse};
 use roughcast_scene::pattern::{self, Pattern};
 use roughcast_scene::render::{Method, RenderError, Truth, unwatched};
 use roughcast_scene::{
-    BakedTextures, Camera, DetailError, Filter, Light, Picture, Plane, Reconstruction, Sampler, Scene, Shape,
-    SlopeDetail, SlopeMap, Sphere, Torus, slow_move,
+    BakedTextures, Camera, DetailError, Filter, Light, Picture, Plane, Sampler, Scene, Shape, SlopeDetail,
+    SlopeMap, Sphere, Torus, slow_move,
 };
 
 const SIZE: (u32, u32) = (64, 48);
@@ -27,8 +27,7 @@ struct Map {
 impl Map {
     fn new(pattern: Pattern) -> Self {
         let slopes = SlopeMap::of(&pattern.heights, &pattern.source_options()).unwrap();
-        let (reconstruction, wrap) = (Reconstruction::Linear, Wrap::Repeat);
-        Self { pattern, slopes: SlopeDetail { slopes, reconstruction, wrap } }
+        Self { pattern, slopes: SlopeDetail::new(slopes, Wrap::Repeat) }
     }
 
     fn baked(&self, shading: Shading, specular_power: f32) -> Vec<TextureArray> {

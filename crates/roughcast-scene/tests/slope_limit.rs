@@ -10,9 +10,7 @@ use roughcast::shading::{LobeOptions, Material, Shading};
 use roughcast::{BakeOptions, BakeReport, Green, Image, MaxSlope, Samples, SourceOptions, bake};
 use roughcast_scene::metrics::rmse;
 use roughcast_scene::render::{Method, Truth, unwatched};
-use roughcast_scene::{
-    BakedTextures, Picture, Plane, Reconstruction, Sampler, Scene, Shape, SlopeDetail, SlopeMap, View,
-};
+use roughcast_scene::{BakedTextures, Picture, Plane, Sampler, Scene, Shape, SlopeDetail, SlopeMap, View};
 
 const SIZE: (u32, u32) = (48, 36);
 const SAMPLES: u32 = 64;
@@ -53,11 +51,7 @@ impl Far {
         let truth = MODELS.map(|shading| {
             let truth = Truth {
                 shading,
-                detail: &SlopeDetail {
-                    slopes: slopes.clone(),
-                    reconstruction: Reconstruction::Linear,
-                    wrap: source.wrap,
-                },
+                detail: &SlopeDetail::new(slopes.clone(), source.wrap),
                 options: LobeOptions::default(),
                 samples: SAMPLES,
             };

@@ -8,7 +8,7 @@ use roughcast::shading::{Material, Shading};
 use roughcast::{BakeOptions, Image, SampleType, Samples, SourceOptions, Wrap, normal_from_slope};
 use roughcast_gpu::bake::{BakePath, GpuBaker, bake_bandwidth};
 use roughcast_gpu::render::{
-    DEPTH_FORMAT, DrawOptions, Drawing, Geometry, GpuTextures, LevelOfDetail, RenderTarget, Renderer,
+    Bumps, DEPTH_FORMAT, DrawOptions, Drawing, Geometry, GpuTextures, LevelOfDetail, RenderTarget, Renderer,
     ShaderKey, Views, shader_source,
 };
 use roughcast_gpu::wgpu;
@@ -163,6 +163,7 @@ impl PreparedMethod {
             shading: timed_method.shading,
             reader: textures.reader(),
             level: LevelOfDetail::Derivatives,
+            bumps: Bumps::Filtered,
         };
         let instructions = count(&shader_source(key)?, "radiance")?;
         // Measured separately: between render passes lavapipe's clock shows no time for a compute pass.

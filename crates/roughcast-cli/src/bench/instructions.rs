@@ -133,7 +133,7 @@ mod tests {
     use roughcast::Lobe;
     use roughcast::shading::Shading;
     use roughcast::texture::TexelReader;
-    use roughcast_gpu::render::{LevelOfDetail, ShaderKey, shader_source};
+    use roughcast_gpu::render::{Bumps, LevelOfDetail, ShaderKey, shader_source};
 
     use super::*;
 
@@ -179,7 +179,12 @@ mod tests {
     #[test]
     fn models_read_their_textures_and_lean_costs_more_than_blinn_phong() {
         let counted = |shading: Shading| {
-            let key = ShaderKey { shading, reader: reader(shading), level: LevelOfDetail::Derivatives };
+            let key = ShaderKey {
+                shading,
+                reader: reader(shading),
+                level: LevelOfDetail::Derivatives,
+                bumps: Bumps::Filtered,
+            };
             count(&shader_source(key).expect("the library has it"), "radiance").expect("it is valid")
         };
         for shading in Shading::ALL {

@@ -135,7 +135,7 @@ impl Settings<'_> {
         let slopes = SlopeMap::of(&subject.image, &subject.options)?;
         let truth = Truth {
             shading: Shading::Lean,
-            detail: &SlopeDetail { slopes, reconstruction: self.reconstruction, wrap: subject.options.wrap },
+            detail: &SlopeDetail::new(slopes, subject.options.wrap).with_reconstruction(self.reconstruction),
             options: self.shading.lobe_options(),
             samples: self.samples,
         };

@@ -242,7 +242,10 @@ fn limits(page: &mut Page, settings: &Settings<'_>, compared: &[Compared]) {
     page.end_row();
     let rows: Vec<_> = compared.iter().flat_map(|map| limit_rows(map, settings)).collect();
     page.paragraph(&format!("LEAN with {} filtering in the views:", settings.main_filter()));
-    page.table(&["map, view", "misplaced, whole map", "RMSE / brightest of the ground truth", "energy"], &rows);
+    page.table(
+        &["map, view", "misplaced, whole map", "RMSE / brightest of the ground truth", "energy"],
+        &rows,
+    );
     if settings.shading.footprint == FootprintModel::Published {
         page.paragraph(
             "All variance under the texture filter counts as roughness, as in the papers. Where texels are magnified, as in the near \

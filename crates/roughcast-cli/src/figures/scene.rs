@@ -10,8 +10,7 @@ use roughcast_pipeline::{TextureOptions, bake_for};
 use roughcast_scene::pattern::Pattern;
 use roughcast_scene::render::{Method, Truth, unwatched};
 use roughcast_scene::{
-    BakedTextures, Camera, Filter, Light, Picture, Reconstruction, Sampler, Scene, Shape, SlopeDetail,
-    SlopeMap,
+    BakedTextures, Camera, Filter, Light, Picture, Sampler, Scene, Shape, SlopeDetail, SlopeMap,
 };
 
 /// A dielectric whose highlights stand out: dark, with the reflectance of plastic.
@@ -79,7 +78,7 @@ impl Stage {
         let slopes = SlopeMap::of(&self.map.heights, &self.map.source_options())?;
         let truth = Truth {
             shading,
-            detail: &SlopeDetail { slopes, reconstruction: Reconstruction::Linear, wrap: Wrap::Repeat },
+            detail: &SlopeDetail::new(slopes, Wrap::Repeat),
             options: self.options,
             samples,
         };

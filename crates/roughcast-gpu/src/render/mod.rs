@@ -28,11 +28,11 @@ mod views;
 use std::collections::HashMap;
 
 use roughcast::shading::LobeOptions;
-use roughcast_scene::{Sampler, Scene};
+use roughcast_scene::{Filter, Sampler, Scene};
 
 pub use geometry::Geometry;
 pub use headless::render;
-pub use shader::{LevelOfDetail, ShaderKey, shader_source};
+pub use shader::{Bumps, LevelOfDetail, ShaderKey, shader_source};
 pub use textures::GpuTextures;
 pub use views::{Order, Part, Views};
 
@@ -80,6 +80,18 @@ pub struct DrawOptions {
     pub sampler: Sampler,
     /// The lobe. Properties stored with the textures take precedence.
     pub lobe: LobeOptions,
+    /// What is shaded: filtered bumps, or resolved ones as ground truth has them.
+    pub bumps: Bumps,
+}
+
+impl DrawOptions {
+    /// The sampler: of resolved bumps one of the finest level without anisotropy, which hardware may apply even where a level is given.
+    fn sampler(&self) -> Sampler {
+        match self.bumps {
+            Bumps::Filtered => self.sampler,
+            Bumps::Resolved => Sampler { filter: Filter::Trilinear, level: Some(0.0), ..self.sampler },
+        }
+    }
 }
 
 /// Draws scenes into one kind of target. Shaders are compiled at their first use and kept.
@@ -100,6 +112,7 @@ pub struct Drawing {
     geometry: Geometry,
     textures: GpuTextures,
     sampling: Sampling,
+    bumps: Bumps,
     uniforms: MapUniforms,
     maps: wgpu::BindGroup,
     view: wgpu::Buffer,
@@ -147,8 +160,8 @@ impl Renderer {
         textures: &GpuTextures,
         options: &DrawOptions,
     ) -> Result<Drawing, GpuError> {
-        let sampling = Sampling::new(&options.sampler)?;
-        let pipeline = self.pipeline(key(textures, &sampling)).await?;
+        let sampling = Sampling::new(&options.sampler())?;
+        let pipeline = self.pipeline(key(textures, &sampling, options.bumps)).await?;
         let groups = BindGroups { gpu: &self.gpu, view_layout: &self.view_layout };
         let uniforms = MapUniforms::new(&self.gpu, textures, options, &sampling).await?;
         let maps = groups.maps(self.map_layout(textures.views.len()), textures, &uniforms, &sampling).await?;
@@ -163,6 +176,7 @@ impl Renderer {
             geometry: geometry.clone(),
             textures: textures.clone(),
             sampling,
+            bumps: options.bumps,
             uniforms,
             maps,
             view,
@@ -197,8 +211,8 @@ impl Renderer {
 }
 
 /// The key of the shader that samples these textures with this sampler.
-fn key(textures: &GpuTextures, sampling: &Sampling) -> ShaderKey {
-    ShaderKey { shading: textures.shading, reader: textures.reader, level: sampling.level }
+fn key(textures: &GpuTextures, sampling: &Sampling, bumps: Bumps) -> ShaderKey {
+    ShaderKey { shading: textures.shading, reader: textures.reader, level: sampling.level, bumps }
 }
 
 impl Drawing {
@@ -212,13 +226,13 @@ impl Drawing {
         renderer: &mut Renderer,
         options: &DrawOptions,
     ) -> Result<(), GpuError> {
-        let sampling = Sampling::new(&options.sampler)?;
-        if sampling != self.sampling {
-            let pipeline = renderer.pipeline(key(&self.textures, &sampling)).await?;
+        let sampling = Sampling::new(&options.sampler())?;
+        if (sampling, options.bumps) != (self.sampling, self.bumps) {
+            let pipeline = renderer.pipeline(key(&self.textures, &sampling, options.bumps)).await?;
             let groups = BindGroups { gpu: &renderer.gpu, view_layout: &renderer.view_layout };
             let layout = renderer.map_layout(self.textures.views.len());
             self.maps = groups.maps(layout, &self.textures, &self.uniforms, &sampling).await?;
-            (self.pipeline, self.sampling) = (pipeline, sampling);
+            (self.pipeline, self.sampling, self.bumps) = (pipeline, sampling, options.bumps);
         }
         self.uniforms.write(&renderer.gpu, &self.textures, options, &sampling);
         Ok(())

@@ -1,5 +1,5 @@
-// The shaders of a scene, for any source of bumps and any model. The host composes them with a detail module
-// (`detail_distribution`), and replaces `model_surface` and `model_lobe` by the model's functions.
+// The shaders of a scene, for any source of bumps and any model. The host composes them with a detail module,
+// whose slope or distribution `bumps_at` returns, and replaces `model_surface` and `model_lobe` by the model's functions.
 
 struct SceneView {
     clip_from_world: mat4x4f,   // depth falls from 1 at the near plane to 0 at the far one
@@ -87,7 +87,7 @@ struct Parts {
 }
 
 fn shaded(fragment: Varyings, front: bool) -> Parts {
-    let distribution = detail_distribution(DetailPoint(fragment.uv, fragment.position));
+    let distribution = bumps_at(DetailPoint(fragment.uv, fragment.position));
     let surface = model_surface(distribution, options);
     let towards_eye = normalize(scene_view.eye - fragment.position);
     let frame = world_from_tangent(fragment, towards_eye, front);

@@ -37,6 +37,27 @@ impl LevelOfDetail {
     }
 }
 
+/// What is shaded of a source of bumps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Bumps {
+    /// The distribution under the pixel.
+    #[default]
+    Filtered,
+    /// The exact slope at the pixel's centre: it shimmers, and the mean of many such pictures is ground truth. The twin of
+    /// `roughcast_scene::Resolved`.
+    Resolved,
+}
+
+impl Bumps {
+    /// WGSL of `bumps_at`.
+    fn source(self) -> &'static str {
+        match self {
+            Self::Filtered => include_str!("bumps_filtered.wgsl"),
+            Self::Resolved => include_str!("bumps_resolved.wgsl"),
+        }
+    }
+}
+
 /// What identifies a shader.
 #[derive(Clone, Copy, Debug)]
 pub struct ShaderKey {
@@ -46,6 +67,8 @@ pub struct ShaderKey {
     pub reader: &'static TexelReader,
     /// The source of the level of detail.
     pub level: LevelOfDetail,
+    /// What is shaded.
+    pub bumps: Bumps,
 }
 
 impl PartialEq for ShaderKey {
@@ -64,8 +87,8 @@ impl std::hash::Hash for ShaderKey {
 
 impl ShaderKey {
     /// The module identifies a reader.
-    fn parts(&self) -> (Shading, &'static str, LevelOfDetail) {
-        (self.shading, self.reader.module, self.level)
+    fn parts(&self) -> (Shading, &'static str, LevelOfDetail, Bumps) {
+        (self.shading, self.reader.module, self.level, self.bumps)
     }
 }
 
@@ -79,7 +102,7 @@ impl ShaderKey {
 /// # Errors
 /// [`UnknownName`] if the library lacks the model.
 pub fn shader_source(key: ShaderKey) -> Result<String, UnknownName> {
-    let ShaderKey { shading, reader, level } = key;
+    let ShaderKey { shading, reader, level, bumps } = key;
     let modules = [&[shading.name(), "reflectance", reader.module], reader.gaussians.modules()].concat();
     let library = wgsl::library(&modules)?;
     let [filtered, variances] = level.sources();
@@ -93,6 +116,7 @@ pub fn shader_source(key: ShaderKey) -> Result<String, UnknownName> {
     if reader.mean_input.is_some() {
         parts.extend([variances, FOOTPRINT]);
     }
+    parts.push(bumps.source());
     let scene = wgsl::renamed(SCENE, &shading.calls(reader.gaussians).names());
     parts.push(&scene);
     Ok(parts.join("\n"))

@@ -2,10 +2,10 @@
 
 use roughcast::shading::LobeOptions;
 use roughcast::texture::TextureArray;
-use roughcast_gpu::render::{DrawOptions, Geometry, GpuTextures, RenderTarget, Renderer, render};
+use roughcast_gpu::render::{Bumps, DrawOptions, Geometry, GpuTextures, RenderTarget, Renderer, render};
 use roughcast_gpu::{Gpu, GpuError};
 use roughcast_scene::render::{Method, unwatched};
-use roughcast_scene::{BakedTextures, Picture, Sampler, Scene, Shape};
+use roughcast_scene::{BakedTextures, Detail, Picture, Resolved, Sampler, Scene, Shape};
 
 use roughcast::shading::Shading;
 
@@ -18,10 +18,14 @@ pub fn by_cpu(
     size: (u32, u32),
 ) -> Picture {
     let textures = BakedTextures::of_model(shading, maps).expect("the maps are the model's");
-    let DrawOptions { sampler, lobe } = *options;
-    Method { shading, detail: &textures.sampled(sampler), options: lobe }
-        .render(scene, size, &unwatched)
-        .expect("a picture")
+    let DrawOptions { sampler, lobe, bumps } = *options;
+    let detail = textures.sampled(sampler);
+    let resolved = Resolved(&detail);
+    let detail: &dyn Detail = match bumps {
+        Bumps::Filtered => &detail,
+        Bumps::Resolved => &resolved,
+    };
+    Method { shading, detail, options: lobe }.render(scene, size, &unwatched).expect("a picture")
 }
 
 /// The same by the GPU; the geometry is the scene's.
@@ -55,7 +59,7 @@ impl GpuPictures {
 }
 
 pub fn options(sampler: Sampler, lobe: LobeOptions) -> DrawOptions {
-    DrawOptions { sampler, lobe }
+    DrawOptions { sampler, lobe, ..DrawOptions::default() }
 }
 
 /// The difference of two pictures.

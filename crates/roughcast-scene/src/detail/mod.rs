@@ -8,6 +8,8 @@
 
 mod inputs;
 #[cfg(feature = "render")]
+mod placement;
+#[cfg(feature = "render")]
 mod point;
 #[cfg(feature = "render")]
 mod slope_map;
@@ -18,7 +20,9 @@ mod textures;
 
 pub use inputs::{DetailError, TextureInputs, model_inputs, texture_inputs};
 #[cfg(feature = "render")]
-pub use point::{Detail, DetailPoint};
+pub use placement::Placement;
+#[cfg(feature = "render")]
+pub use point::{Detail, DetailPoint, Resolved};
 #[cfg(feature = "render")]
 pub use slope_map::{Reconstruction, SlopeMap};
 #[cfg(feature = "render")]

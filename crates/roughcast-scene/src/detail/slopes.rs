@@ -3,7 +3,7 @@
 use roughcast::shading::LobeOptions;
 use roughcast::{Covariance, Distribution, Moments, Normal, Slope, Wrap, normal_from_slope};
 
-use super::{Detail, DetailPoint, Reconstruction, SlopeMap};
+use super::{Detail, DetailPoint, Placement, Reconstruction, SlopeMap};
 use crate::render::pixel_filter_quantile;
 
 /// Samples along each side of a pixel of [`SlopeDetail`]'s distribution.
@@ -18,18 +18,41 @@ pub struct SlopeDetail {
     pub reconstruction: Reconstruction,
     /// What lies beyond the map's edges.
     pub wrap: Wrap,
+    /// How the map lies on the surface.
+    pub placement: Placement,
+}
+
+impl SlopeDetail {
+    /// Slopes that are interpolated between texels, on the first set of texture coordinates.
+    pub fn new(slopes: SlopeMap, wrap: Wrap) -> Self {
+        Self { slopes, reconstruction: Reconstruction::Linear, wrap, placement: Placement::default() }
+    }
+
+    /// The same, with another surface between texels.
+    #[must_use]
+    pub fn with_reconstruction(self, reconstruction: Reconstruction) -> Self {
+        Self { reconstruction, ..self }
+    }
+
+    /// The same, lying on the surface in another way.
+    #[must_use]
+    pub fn placed(self, placement: Placement) -> Self {
+        Self { placement, ..self }
+    }
 }
 
 impl Detail for SlopeDetail {
     #[inline]
     fn slope(&self, at: &DetailPoint<'_>) -> Slope {
-        self.slopes.at(at.uv(), self.wrap, self.reconstruction)
+        let slope = self.slopes.at(at.uv(self.placement.uv_set()), self.wrap, self.reconstruction);
+        self.placement.slope(slope, self.slopes.size(), at)
     }
 
     /// Mean and covariance of 256 slopes, drawn from the pixel filter, a Gaussian: what the textures of a bake approximate. Footprints of
     /// more than a few dozen texels want more samples; ground truth takes them one by one.
     fn distribution(&self, at: &DetailPoint<'_>, _options: &LobeOptions) -> Distribution {
-        let (uv, footprint) = (at.uv(), at.footprint());
+        let set = self.placement.uv_set();
+        let (uv, footprint) = (at.uv(set), at.footprint(set));
         let offset = |cell: u32| pixel_filter_quantile((f64::from(cell) + 0.5) / f64::from(SIDE));
         let (mut moments, mut normal) = ([0.0_f64; 5], [0.0_f64; 3]);
         for (x, y) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))) {
@@ -49,6 +72,7 @@ impl Detail for SlopeDetail {
             xy: (xy - x * y) as f32,
         };
         let mean = Slope { x: x as f32, y: y as f32 };
-        Distribution::new(Normal::from(normal.map(|sum| (sum / count) as f32)), mean, covariance)
+        let normal = Normal::from(normal.map(|sum| (sum / count) as f32));
+        self.placement.distribution(Distribution::new(normal, mean, covariance), self.slopes.size(), at)
     }
 }

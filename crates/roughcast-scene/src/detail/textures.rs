@@ -5,7 +5,8 @@ use roughcast::texture::{Packing, TexelReader, TextureArray, TextureInfo};
 use roughcast::{Distribution, Slope};
 
 use super::inputs::{DetailError, TextureInputs, model_inputs, texture_inputs};
-use super::{Detail, DetailPoint};
+use super::{Detail, DetailPoint, Placement};
+use crate::filter::Lookup;
 use crate::{Filter, Footprint, Mipmap, Sampler};
 
 /// The place of a material's roughness among its textures.
@@ -56,7 +57,7 @@ impl BakedTextures {
 
     /// The textures through a sampler: a source of bumps.
     pub fn sampled(&self, sampler: Sampler) -> TextureDetail<'_> {
-        TextureDetail { textures: self, sampler }
+        TextureDetail { textures: self, sampler, placement: Placement::default() }
     }
 }
 
@@ -67,6 +68,30 @@ pub struct TextureDetail<'a> {
     pub textures: &'a BakedTextures,
     /// The texture filter.
     pub sampler: Sampler,
+    /// How the textures lie on the surface.
+    pub placement: Placement,
+}
+
+impl<'a> TextureDetail<'a> {
+    /// The same, lying on the surface in another way.
+    #[must_use]
+    pub fn placed(self, placement: Placement) -> Self {
+        Self { placement, ..self }
+    }
+
+    /// Texture coordinates at a point, and a footprint there.
+    fn lookup(&self, at: &DetailPoint<'_>, footprint: Footprint) -> Lookup {
+        Lookup { uv: at.uv(self.placement.uv_set()), footprint, quad: at.quad() }
+    }
+
+    /// A filtered texel of each texture.
+    fn sample_all(&self, sampler: &Sampler, at: &Lookup) -> [[f32; 4]; MAX_TEXTURES] {
+        let mut texels = [[0.0; 4]; MAX_TEXTURES];
+        for (texel, texture) in texels.iter_mut().zip(&self.textures.textures) {
+            *texel = sampler.sample(texture, at.uv, &at.footprint);
+        }
+        texels
+    }
 }
 
 impl Detail for TextureDetail<'_> {
@@ -74,35 +99,23 @@ impl Detail for TextureDetail<'_> {
     fn slope(&self, at: &DetailPoint<'_>) -> Slope {
         let finest = Sampler { filter: Filter::Trilinear, level: Some(0.0), ..self.sampler };
         let BakedTextures { reader, textures, packing, .. } = self.textures;
-        let texels = sample_all(&finest, textures, at, &Footprint::default());
+        let texels = self.sample_all(&finest, &self.lookup(at, Footprint::default()));
         let read = reader.read(&texels[..textures.len()], packing, &self.options(LobeOptions::default()));
-        read.whole().mean
+        self.placement.slope(read.whole().mean, self.textures.size(), at)
     }
 
     fn distribution(&self, at: &DetailPoint<'_>, options: &LobeOptions) -> Distribution {
         let BakedTextures { reader, textures, packing, .. } = self.textures;
-        let texels = sample_all(&self.sampler, textures, at, at.footprint());
+        let lookup = self.lookup(at, at.footprint(self.placement.uv_set()));
+        let texels = self.sample_all(&self.sampler, &lookup);
         let ratio = reader.mean_input.map_or(FootprintRatio::WHOLE, |input| {
-            self.sampler.footprint_ratio(&textures[input], packing.slope, texels[input], at, options)
+            self.sampler.footprint_ratio(&textures[input], packing.slope, texels[input], &lookup, options)
         });
-        reader.read_pixel(&texels[..textures.len()], &ratio, packing, options)
+        let seen = reader.read_pixel(&texels[..textures.len()], &ratio, packing, options);
+        self.placement.distribution(seen, self.textures.size(), at)
     }
 
     fn options(&self, options: LobeOptions) -> LobeOptions {
         options.for_maps(&self.textures.info)
     }
-}
-
-/// A filtered texel of each texture.
-fn sample_all(
-    sampler: &Sampler,
-    textures: &[Mipmap],
-    at: &DetailPoint<'_>,
-    footprint: &Footprint,
-) -> [[f32; 4]; MAX_TEXTURES] {
-    let mut texels = [[0.0; 4]; MAX_TEXTURES];
-    for (texel, texture) in texels.iter_mut().zip(textures) {
-        *texel = sampler.sample(texture, at.uv(), footprint);
-    }
-    texels
 }

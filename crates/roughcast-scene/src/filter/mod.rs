@@ -12,7 +12,7 @@ mod trilinear;
 mod variances;
 
 pub use summed_area::SummedAreaTable;
-pub(crate) use variances::Quad;
+pub(crate) use variances::{Lookup, Quad};
 
 use glam::DVec2;
 

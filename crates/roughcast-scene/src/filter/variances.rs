@@ -8,7 +8,7 @@ use roughcast::shading::{
 
 use super::footprint::{Ellipse, in_texels, reduced};
 use super::{Filter, Sampler, anisotropic, ewa, summed_area};
-use crate::{DetailPoint, Footprint, Mipmap};
+use crate::{Footprint, Mipmap};
 
 /// The position of a pixel among the four whose differences graphics hardware uses as derivatives: the sign of the step to its
 /// neighbour in the row, and in the column.
@@ -26,6 +26,17 @@ impl Quad {
     }
 }
 
+/// Where a pixel looks a texture up.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lookup {
+    /// Texture coordinates.
+    pub uv: DVec2,
+    /// How they change to the next pixels.
+    pub footprint: Footprint,
+    /// Which neighbours the derivatives of texels are taken from.
+    pub quad: Quad,
+}
+
 impl Sampler {
     /// The part of the variance that is under the pixel, for a texture whose first two channels contain the mean slope, as `slope` unpacks it.
     /// `mean` is that texture's texel at this point. Derivatives of the mean are differences of samples, as in graphics
@@ -35,25 +46,25 @@ impl Sampler {
         texture: &Mipmap,
         slope: [f32; 2],
         mean: [f32; 4],
-        at: &DetailPoint<'_>,
+        at: &Lookup,
         options: &LobeOptions,
     ) -> FootprintRatio {
         if options.footprint == FootprintModel::Published || self.filter == Filter::Nearest {
             return FootprintRatio::WHOLE;
         }
-        let texels = in_texels(at.footprint(), texture.size());
+        let texels = in_texels(&at.footprint, texture.size());
         let axes = footprint_axes(texels.dx.as_vec2().to_array(), texels.dy.as_vec2().to_array());
         let variances = self.variances(&axes, &texels);
         if variances.is_beyond_correction() {
             return FootprintRatio::WHOLE;
         }
-        let uv = reduced(at.uv(), self.wrap);
+        let uv = reduced(at.uv, self.wrap);
         let derivative = |to: DVec2, sign: f64| {
-            let there = self.sample(texture, uv + sign * to, at.footprint());
+            let there = self.sample(texture, uv + sign * to, &at.footprint);
             [0, 1].map(|i| (there[i] - mean[i]) * slope[0] * sign as f32)
         };
-        let mean_dx = derivative(at.footprint().dx, at.quad().x);
-        let mean_dy = derivative(at.footprint().dy, at.quad().y);
+        let mean_dx = derivative(at.footprint.dx, at.quad.x);
+        let mean_dy = derivative(at.footprint.dy, at.quad.y);
         footprint_ratio(&axes, &variances, mean_dx, mean_dy, options)
     }
 

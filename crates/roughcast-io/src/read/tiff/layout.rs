@@ -61,7 +61,7 @@ impl Layout {
             return Err(malformed(FORMAT, "it states 0 samples per pixel"));
         }
         if samples > MAX_SAMPLES {
-            return Err(unsupported(FORMAT, format_args!("{samples} samples a pixel"), SAVE_PLAIN));
+            return Err(unsupported(FORMAT, format_args!("{samples} samples per pixel"), SAVE_PLAIN));
         }
         let samples = samples as usize;
         let (numbers, bits) = numbers_of(directory, samples)?;

@@ -12,7 +12,7 @@ use crate::texture::packing::unpack;
 use crate::texture::{Packing, Part};
 
 pub(in crate::texture) const MOMENTS: TexelReader = TexelReader {
-    module: "clean",
+    module: "clean-detail",
     inputs: &[Input { part: Part::Whole, layer: "clean" }],
     mean_input: Some(0),
     filtered: Filtered::Moments,

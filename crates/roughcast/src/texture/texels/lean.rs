@@ -15,7 +15,7 @@ const LEAN1: Input = Input { part: Part::Whole, layer: "lean1" };
 const LEAN2: Input = Input { part: Part::Whole, layer: "lean2" };
 
 pub(in crate::texture) const NORMAL: TexelReader = TexelReader {
-    module: "lean-normal",
+    module: "lean-normal-detail",
     inputs: &[LEAN1],
     mean_input: None,
     filtered: Filtered::Other,
@@ -24,7 +24,7 @@ pub(in crate::texture) const NORMAL: TexelReader = TexelReader {
 };
 
 pub(in crate::texture) const MOMENTS: TexelReader = TexelReader {
-    module: "lean",
+    module: "lean-detail",
     inputs: &[LEAN1, LEAN2],
     mean_input: Some(1),
     filtered: Filtered::Moments,

@@ -47,7 +47,7 @@ pub enum Filtered {
 /// How filtered texels of a layout are read.
 #[derive(Clone, Copy, Debug)]
 pub struct TexelReader {
-    /// The WGSL module that reads the same texels: see [`crate::wgsl`].
+    /// The WGSL module of detail that reads the same texels: see [`crate::wgsl`].
     pub module: &'static str,
     /// The textures, in the order of the texels.
     pub inputs: &'static [Input],

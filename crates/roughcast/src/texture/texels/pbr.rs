@@ -18,7 +18,7 @@ const ROUGHNESS: Input = Input { part: Part::Roughness, layer: "roughness" };
 const ANISOTROPY: Input = Input { part: Part::Anisotropy, layer: "anisotropy" };
 
 pub(in crate::texture) const NORMAL: TexelReader = TexelReader {
-    module: "pbr-normal",
+    module: "pbr-normal-detail",
     inputs: &[NORMAL_INPUT],
     mean_input: None,
     filtered: Filtered::Other,
@@ -27,7 +27,7 @@ pub(in crate::texture) const NORMAL: TexelReader = TexelReader {
 };
 
 pub(in crate::texture) const MOMENTS: TexelReader = TexelReader {
-    module: "pbr",
+    module: "pbr-detail",
     inputs: &[NORMAL_INPUT, ROUGHNESS],
     mean_input: None,
     filtered: Filtered::Other,
@@ -36,7 +36,7 @@ pub(in crate::texture) const MOMENTS: TexelReader = TexelReader {
 };
 
 pub(in crate::texture) const ANISOTROPIC_MOMENTS: TexelReader = TexelReader {
-    module: "pbr-anisotropic",
+    module: "pbr-anisotropic-detail",
     inputs: &[NORMAL_INPUT, ROUGHNESS, ANISOTROPY],
     read: |texels, packing, _| pbr_moments(texels[0], texels[1][0], texels[2], packing),
     ..MOMENTS

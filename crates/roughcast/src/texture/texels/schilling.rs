@@ -16,7 +16,7 @@ const SCHILLING2: Input = Input { part: Part::Whole, layer: "schilling2" };
 
 /// The normal is stored as in LEAN's first texture.
 pub(in crate::texture) const NORMAL: TexelReader = TexelReader {
-    module: "lean-normal",
+    module: "lean-normal-detail",
     inputs: &[SCHILLING1],
     mean_input: None,
     filtered: Filtered::Other,
@@ -26,7 +26,7 @@ pub(in crate::texture) const NORMAL: TexelReader = TexelReader {
 
 /// Interpolated standard deviations are closest to what interpolated variances are: none is added between texels.
 pub(in crate::texture) const MOMENTS: TexelReader = TexelReader {
-    module: "schilling",
+    module: "schilling-detail",
     inputs: &[SCHILLING1, SCHILLING2],
     mean_input: Some(1),
     filtered: Filtered::Variances,
@@ -35,7 +35,7 @@ pub(in crate::texture) const MOMENTS: TexelReader = TexelReader {
 };
 
 pub(in crate::texture) const ISOTROPIC_MOMENTS: TexelReader = TexelReader {
-    module: "schilling-isotropic",
+    module: "schilling-isotropic-detail",
     inputs: &[Input { part: Part::Whole, layer: "schilling-isotropic" }],
     mean_input: Some(0),
     filtered: Filtered::Variances,

@@ -12,7 +12,7 @@ use crate::texture::packing::unpack;
 use crate::texture::{Packing, Part};
 
 pub(in crate::texture) const MOMENTS: TexelReader = TexelReader {
-    module: "toksvig",
+    module: "toksvig-detail",
     inputs: &[Input { part: Part::Whole, layer: "toksvig" }],
     mean_input: None,
     filtered: Filtered::Other,

@@ -11,7 +11,7 @@ use crate::texture::packing::unpack;
 use crate::texture::{Packing, Part};
 
 pub(in crate::texture) const MOMENTS: TexelReader = TexelReader {
-    module: "variance",
+    module: "variance-detail",
     inputs: &[Input { part: Part::Whole, layer: "variance" }],
     mean_input: Some(0),
     filtered: Filtered::Variances,

@@ -1,0 +1,187 @@
+//! Every WGSL file of the library and of this crate goes through naga, in a module as the code puts it together.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use roughcast::Lobe;
+use roughcast::shading::Shading;
+use roughcast::texture::Layout;
+use roughcast::wgsl::{MODULES, Role, library, library_of, renamed};
+use roughcast_gpu::render::{Bumps, LevelOfDetail, ShaderKey, shader_source};
+
+/// Parses and validates a module with everything that naga can check.
+fn validate(source: &str) -> Result<(), String> {
+    let module = naga::front::wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))?;
+    let flags = naga::valid::ValidationFlags::all();
+    let mut validator = naga::valid::Validator::new(flags, naga::valid::Capabilities::all());
+    validator.validate(&module).map(drop).map_err(|error| error.emit_to_string(source))
+}
+
+fn folder(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
+}
+
+/// The WGSL files in a folder and below it, with their text.
+fn files_in(folder: &Path) -> Vec<(PathBuf, String)> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).expect("a folder of the repository") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            found.extend(files_in(&path));
+        } else if path.extension().is_some_and(|extension| extension == "wgsl") {
+            let text = std::fs::read_to_string(&path).expect("text");
+            found.push((path, text));
+        }
+    }
+    found
+}
+
+#[test]
+fn every_module_of_the_library_is_valid_with_what_it_needs() {
+    let files = files_in(&folder("../roughcast/src"));
+    assert!(files.len() > 30, "{}", files.len());
+    for (path, text) in &files {
+        assert!(MODULES.iter().any(|module| module.source == text), "{} is in no module", path.display());
+    }
+    assert_eq!(MODULES.len(), files.len());
+    let alone = MODULES.iter().filter(|module| !matches!(module.role, Role::Detail | Role::Bake));
+    for module in alone {
+        let source = library(&[module.name]).expect("it exists");
+        validate(&source).unwrap_or_else(|fault| panic!("{}: {fault}", module.name));
+    }
+    validate(&library_of(Role::Bake)).unwrap_or_else(|fault| panic!("the rules of baking: {fault}"));
+}
+
+#[test]
+fn every_shader_of_the_renderer_is_valid_and_has_all_of_its_files() {
+    let mut sources = Vec::new();
+    for layout in Layout::ALL {
+        for (shading, lobe) in Shading::ALL.iter().flat_map(|s| Lobe::ALL.iter().map(move |lobe| (*s, *lobe)))
+        {
+            let Some(reader) = layout.texel_reader(shading.wanted(), lobe) else { continue };
+            for level in [LevelOfDetail::Derivatives, LevelOfDetail::Fixed] {
+                for bumps in [Bumps::Filtered, Bumps::Resolved] {
+                    let key = ShaderKey { shading, reader, level, bumps };
+                    let source = shader_source(key).expect("the library has it");
+                    validate(&source).unwrap_or_else(|fault| panic!("{layout}, {shading}: {fault}"));
+                    sources.push(source);
+                }
+            }
+        }
+    }
+    assert!(sources.len() > 100, "{}", sources.len());
+    // Any model on any layout: all modules of detail, and all files of the renderer.
+    let details = MODULES.iter().filter(|module| module.role == Role::Detail);
+    let own = files_in(&folder("src/render"));
+    assert!(own.len() > 10, "{}", own.len());
+    let own = own.iter().map(|(path, text)| (path.display().to_string(), text.as_str()));
+    for (name, text) in details.map(|module| (module.name.to_owned(), module.source)).chain(own) {
+        let general = ["model_surface", "model_lobe"].iter().any(|name| text.contains(name));
+        // The scene's file has the model's names in it.
+        let text = if general { text.lines().next().expect("a first line") } else { text };
+        assert!(sources.iter().any(|source| source.contains(text)), "{name} is in no shader");
+    }
+}
+
+/// Bindings of a bake, and constants of its host.
+const BINDINGS: &str = "
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(2) var map: texture_2d<f32>;
+@group(0) @binding(3) var<storage, read_write> counts: array<atomic<u32>, 4>;
+@group(0) @binding(4) var<storage, read> state_in: array<vec4f>;
+@group(0) @binding(5) var<storage, read_write> state_out: array<vec4f>;
+@group(0) @binding(6) var state_low: texture_2d<f32>;
+@group(0) @binding(7) var state_high: texture_2d<f32>;
+@group(0) @binding(8) var texture_0_1: texture_storage_2d<rgba16float, write>;
+@group(0) @binding(9) var texture_1_1: texture_storage_2d<rgba16float, write>;
+const MAP_STEPS = 255.0;
+const MAP_X = 0;
+const MAP_Y = 1;
+const MAP_Z = 2;
+const HALVINGS_1 = 1u;
+const HALVINGS = 6u;
+const WEIGHTED_TILE = 8u;
+";
+const STORES: &str = "@group(0) @binding(1) var<uniform> packed_stores: PackedStores;\n";
+const SURVEY: &str = "@group(0) @binding(1) var<storage, read_write> packed_stores: PackedStores;
+@group(0) @binding(10) var<storage, read_write> survey: Survey;
+";
+/// What a fused kernel calls of the levels that are not tested here.
+const OTHER_STORES: &str = "
+fn store_0(at: vec2u, footprint: Footprint) {}
+fn store_2(at: vec2u, footprint: Footprint) {}
+fn store_3(at: vec2u, footprint: Footprint) {}
+fn store_4(at: vec2u, footprint: Footprint) {}
+fn store_5(at: vec2u, footprint: Footprint) {}
+fn store_6(at: vec2u, footprint: Footprint) {}
+";
+
+/// The passes of a bake: files beside `common`. A name after `=` is WGSL of this test.
+fn passes() -> Vec<Vec<&'static str>> {
+    let normal = |texel, component, slope| vec![texel, component, slope, "neutral"];
+    let height = |texel, of, gradient| vec![texel, of, gradient, "height"];
+    let maps = [
+        normal("map_unorm", "component_of_code", "normal_xyz"),
+        normal("map_as_loaded", "component_unorm", "normal_xy"),
+        normal("map_as_loaded", "component_signed", "normal_xyz"),
+        height("map_unorm", "height_of_code", "gradient_sobel"),
+        height("map_as_loaded", "height_of_value", "gradient_central"),
+        height("map_as_loaded", "height_of_value", "gradient_forward"),
+    ];
+    let lean = ["footprint_with_normal", "nearest_unorm16"];
+    let clean = ["footprint_without_normal", "nearest_half"];
+    let mut passes = Vec::new();
+    for map in &maps {
+        let with = |rest: &[&'static str]| [map, rest].concat();
+        passes.push(with(&["footprint_with_normal", "scale"]));
+        passes.push(with(&[&lean[..], &["slope_limit", "input_map", "raster", "output_lean"]].concat()));
+        passes.push(with(&[&clean[..], &["slope_limit", "input_map", "raster", "output_clean"]].concat()));
+        let stores = ["store_lean", "store_no_state", "store", "=others", "quad_of_four", "fused"];
+        passes.push(with(&[&lean[..], &["slope_limit", "input_map_counted"], &stores].concat()));
+    }
+    passes.push(vec!["input_textures", "raster", "next_of_four", "output_state"]);
+    passes.push(vec!["input_textures", "weighted", "raster", "next_weighted", "output_state"]);
+    let later = ["input_buffer", "nearest_unorm8", "store_clean", "store_state", "store", "=others"];
+    passes.push([&later[..], &["quad_weighted", "fused"]].concat());
+    let weighted = ["input_buffer", "store_no_texels", "store_state", "store", "weighted", "weighted_kernel"];
+    passes.push(weighted.to_vec());
+    passes
+}
+
+#[test]
+fn every_file_of_the_bake_is_valid_in_a_pass() {
+    let files = files_in(&folder("src/bake/wgsl"));
+    assert!(files.len() > 30, "{}", files.len());
+    let stem = |path: &Path| path.file_stem().expect("a name").to_string_lossy().into_owned();
+    let text_of = |name: &str| match name {
+        "=others" => OTHER_STORES.to_owned(),
+        name => {
+            let found = files.iter().find(|(path, _)| stem(path) == name);
+            let text = &found.unwrap_or_else(|| panic!("there is no {name}.wgsl")).1;
+            let names = ["store", "store_texels", "store_state", "texture_0", "texture_1", "HALVINGS"];
+            let pairs = names.map(|name| (format!("{name}_n"), format!("{name}_1")));
+            renamed(text, &pairs.each_ref().map(|(from, to)| (from.as_str(), to.as_str())))
+        }
+    };
+    let rules = library_of(Role::Bake);
+    let mut tested = BTreeSet::from(["common".to_owned(), "copy".to_owned()]);
+    for pass in passes() {
+        let surveys = pass.contains(&"scale");
+        let bindings = [BINDINGS, if surveys { SURVEY } else { STORES }].concat();
+        let texts = pass.iter().map(|name| text_of(name)).collect::<Vec<_>>().join("\n");
+        let source = [&rules, &text_of("common"), &bindings, &texts].map(String::as_str).join("\n");
+        validate(&source).unwrap_or_else(|fault| panic!("{pass:?}: {fault}"));
+        tested.extend(pass.iter().filter(|name| !name.starts_with('=')).map(|name| (*name).to_owned()));
+    }
+    let copy = "@group(0) @binding(0) var source: texture_2d<u32>;
+@group(0) @binding(1) var copied: texture_storage_2d<rgba32uint, write>;\n";
+    validate(&(copy.to_owned() + &text_of("copy"))).expect("the copy");
+    let all: BTreeSet<String> = files.iter().map(|(path, _)| stem(path)).collect();
+    assert_eq!(tested, all);
+}
+
+#[test]
+fn what_is_not_valid_is_refused() {
+    assert!(validate("fn f() -> f32 { return unknown; }").is_err());
+    assert!(validate("fn f() -> f32 { return 1u; }").is_err());
+}
