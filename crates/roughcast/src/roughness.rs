@@ -15,7 +15,7 @@ named_enum! {
 }
 
 named_enum! {
-    /// The reflectance function that a stored roughness is meant for.
+    /// The lobe for which a stored roughness is meant.
     pub enum Brdf: "BRDF" {
         /// GGX, by the convention `alpha^2 = alpha0^2 + 2 sigma^2`: it has no finite slope variance of its own.
         Ggx = "ggx",

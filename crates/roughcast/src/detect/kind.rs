@@ -33,7 +33,7 @@ const SHARE_OF_TWO: f64 = 0.5;
 
 const NOTHING_FINITE: &str = "none of its values is finite";
 
-/// The result of [`guess_kind`].
+/// What [`guess_kind`] makes of a map.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum KindGuess {
     /// It is this.

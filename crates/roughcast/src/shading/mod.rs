@@ -155,7 +155,7 @@ named_enum! {
 }
 
 named_enum! {
-    /// What to do with a covariance that rounding made invalid.
+    /// What becomes of a covariance that rounding has made impossible.
     pub enum Repair: "repair" {
         /// Made positive semidefinite: negative variances become zero, the mixed term is cut.
         Clamp = "clamp",

@@ -37,7 +37,7 @@ use crate::shading::Wanted;
 use crate::slope::{LEAST_NORMAL_Z, Normal, Slope, normal_from_slope, slope_from_normal};
 
 named_enum! {
-    /// How `pbr` stores the direction of larger roughness.
+    /// How `pbr` says in which direction a roughness is larger.
     pub enum AnisotropyOutput: "form of anisotropy" {
         /// Direction and strength, as KHR_materials_anisotropy has them; the roughness is the one across.
         Khr = "khr",
