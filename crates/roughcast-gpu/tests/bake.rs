@@ -432,7 +432,7 @@ fn what_the_gpu_cannot_do_is_refused_with_the_reason() {
     );
     refused(BakeOptions { bits: SampleType::F32, ..Default::default() }, "half");
     refused(BakeOptions { layout: Layout::Schilling, ..Default::default() }, "schilling");
-    refused(BakeOptions { base: Base::Baked, ..Default::default() }, "--base baked");
+    refused(BakeOptions { base: Base::Baked, ..Default::default() }, "needs a roughness");
     let narrow = normals(8, 8, 2, SampleType::U8);
     let error = block_on(GpuBaker::for_image(
         &gpu,

@@ -37,7 +37,7 @@ pub enum Gives {
     Numbers,
     /// The six words of a Gaussian, whose determinant is a small difference of products.
     Gaussian,
-    /// The words of a mixture's surface: weights, count, and the words of four Gaussians.
+    /// The words of a mixture's surface: four weights, and the words of four Gaussians.
     Mixture,
     /// The six words of a footprint's axes, of which the shorter is a small difference of products where the footprint is long.
     Axes,
