@@ -191,7 +191,7 @@ fn cancellation(gives: Gives, wanted: &[f32]) -> Vec<f32> {
         Gives::Numbers => {}
         Gives::Gaussian => cancellation_of_gaussian(unit, wanted, &mut left),
         Gives::Mixture => {
-            for (wanted, left) in wanted[5..].chunks(6).zip(left[5..].chunks_mut(6)) {
+            for (wanted, left) in wanted[4..].chunks(6).zip(left[4..].chunks_mut(6)) {
                 cancellation_of_gaussian(unit, wanted, left);
             }
         }
