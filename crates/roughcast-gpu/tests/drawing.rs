@@ -103,8 +103,11 @@ impl Target {
 
 #[test]
 fn a_drawing_fills_a_part_of_its_target() {
-    /// Pixels that lie further to the right are placed with another rounding, which a lobe's flank multiplies.
+    /// Pixels that lie further to the right are placed with another rounding, which a lobe's flank multiplies, and which makes the
+    /// sampler choose other levels for a few.
     const MOVED: f32 = 1e-3;
+    /// Of the pixels: how many may differ by more. A part that lies a pixel off changes most of them.
+    const FEW: f64 = 0.005;
     let (gpu, scene) = (gpu(), plane());
     let (width, height) = SIZE;
     let part = Part { x: width, y: 0, width, height };
@@ -118,6 +121,7 @@ fn a_drawing_fills_a_part_of_its_target() {
     })
     .expect("a picture");
     let pixels = target.pixels(&gpu);
+    let mut moved = 0;
     for (i, [r, g, b, coverage]) in pixels.iter().enumerate() {
         let (x, y) = (i as u32 % (2 * width), i as u32 / (2 * width));
         if x < width {
@@ -125,14 +129,12 @@ fn a_drawing_fills_a_part_of_its_target() {
         } else {
             let j = (y * width + x - width) as usize;
             assert_eq!(*coverage, alone.coverage[j], "({x}, {y})");
-            for (got, wanted) in [r, g, b].into_iter().zip(alone.radiance[j]) {
-                assert!(
-                    (got - wanted).abs() <= MOVED * wanted.abs().max(1e-2),
-                    "({x}, {y}): {got} and {wanted}"
-                );
-            }
+            let is_moved = |(got, wanted): (&f32, f32)| (got - wanted).abs() > MOVED * wanted.abs().max(1e-2);
+            moved += usize::from([r, g, b].into_iter().zip(alone.radiance[j]).any(is_moved));
         }
     }
+    let share = moved as f64 / alone.coverage.len() as f64;
+    assert!(share <= FEW, "{share} of the pixels differ");
 }
 
 #[test]

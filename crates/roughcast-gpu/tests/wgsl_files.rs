@@ -108,12 +108,12 @@ const SURVEY: &str = "@group(0) @binding(1) var<storage, read_write> packed_stor
 ";
 /// What a fused kernel calls of the levels that are not tested here.
 const OTHER_STORES: &str = "
-fn store_0(at: vec2u, footprint: Footprint) {}
-fn store_2(at: vec2u, footprint: Footprint) {}
-fn store_3(at: vec2u, footprint: Footprint) {}
-fn store_4(at: vec2u, footprint: Footprint) {}
-fn store_5(at: vec2u, footprint: Footprint) {}
-fn store_6(at: vec2u, footprint: Footprint) {}
+fn store_0(at: vec2u, averages: Averages) {}
+fn store_2(at: vec2u, averages: Averages) {}
+fn store_3(at: vec2u, averages: Averages) {}
+fn store_4(at: vec2u, averages: Averages) {}
+fn store_5(at: vec2u, averages: Averages) {}
+fn store_6(at: vec2u, averages: Averages) {}
 ";
 
 /// The passes of a bake: files beside `common`. A name after `=` is WGSL of this test.
@@ -128,12 +128,12 @@ fn passes() -> Vec<Vec<&'static str>> {
         height("map_as_loaded", "height_of_value", "gradient_central"),
         height("map_as_loaded", "height_of_value", "gradient_forward"),
     ];
-    let lean = ["footprint_with_normal", "nearest_unorm16"];
-    let clean = ["footprint_without_normal", "nearest_half"];
+    let lean = ["averages_with_normal", "nearest_unorm16"];
+    let clean = ["averages_without_normal", "nearest_half"];
     let mut passes = Vec::new();
     for map in &maps {
         let with = |rest: &[&'static str]| [map, rest].concat();
-        passes.push(with(&["footprint_with_normal", "scale"]));
+        passes.push(with(&["averages_with_normal", "scale"]));
         passes.push(with(&[&lean[..], &["slope_limit", "input_map", "raster", "output_lean"]].concat()));
         passes.push(with(&[&clean[..], &["slope_limit", "input_map", "raster", "output_clean"]].concat()));
         let stores = ["store_lean", "store_no_state", "store", "=others", "quad_of_four", "fused"];

@@ -10,8 +10,7 @@ struct WeightedGaussian {
 struct Distribution {
     normal: vec3f,      // filtered normal, at the length that averaging has left it
     base: u32,          // MAPS_...: whether the base roughness is in the variances
-    count: u32,         // Gaussians, 1 to 4; their weights sum to 1
-    first: WeightedGaussian,
+    first: WeightedGaussian,    // the weights sum to 1; a place that holds no Gaussian has weight 0
     second: WeightedGaussian,
     third: WeightedGaussian,
     fourth: WeightedGaussian,
@@ -26,7 +25,7 @@ fn slope_normal(slope: vec2f) -> vec3f {
 fn one_gaussian(normal: vec3f, mean: vec2f, sigma: vec3f, base: u32) -> Distribution {
     let none = WeightedGaussian(vec2f(0.0), vec2f(0.0), 0.0, 0.0);
     let first = WeightedGaussian(mean, sigma.xy, sigma.z, 1.0);
-    return Distribution(normal, base, 1u, first, none, none, none);
+    return Distribution(normal, base, first, none, none, none);
 }
 
 // A single slope, without bumps that are hidden.
@@ -45,9 +44,9 @@ fn weighted_covariance(gaussian: WeightedGaussian, mean: vec2f) -> vec3f {
     return gaussian.weight * (vec3f(gaussian.variance, gaussian.covariance) + d.xyx * d.xyy);
 }
 
-// The Gaussian with the mean and the covariance of the whole. Those beyond the count have no weight.
+// The Gaussian with the mean and the covariance of the whole.
 fn whole_gaussian(distribution: Distribution) -> WeightedGaussian {
-    if distribution.count <= 1u {
+    if distribution.second.weight + distribution.third.weight + distribution.fourth.weight <= 0.0 {
         return distribution.first;
     }
     let mean = weighted_mean(distribution.first) + weighted_mean(distribution.second)

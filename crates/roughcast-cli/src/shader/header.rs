@@ -1,12 +1,12 @@
 //! The comment at the start of every export: naga drops comments, so what a user must know is here.
 
 use roughcast::shading::{Gaussians, Shading};
-use roughcast::wgsl::{self, CONVENTIONS, Module, Role};
+use roughcast::wgsl::{CONVENTIONS, Module, Role};
 
 use super::export::Language;
 use super::layout::{Rule, in_words, layout, structs};
 use super::prefix::Prefix;
-use super::stage::reader_of;
+use super::stage::{detail_of, reader_of};
 
 /// Characters of a line, `// ` included.
 const WIDTH: usize = 120;
@@ -86,8 +86,8 @@ fn texel_variable(layer: &'static str) -> &'static str {
 /// How a model's texels become a distribution, as named values: the lines of the detail module, with these variables in the place of the
 /// host's functions. The footprint correction has lines of its own.
 fn steps_of_detail(model: Shading, texels: &[&str]) -> Vec<(String, String)> {
-    let source = wgsl::module(reader_of(model).module).expect("every reader has a module").source;
-    let (_, body) = source.split_once("fn detail_distribution(").expect("every detail module has it");
+    let (_, body) =
+        detail_of(model).source.split_once("fn detail_distribution(").expect("every detail module has it");
     let steps = body.lines().skip(1).take_while(|line| *line != "}").filter_map(|line| {
         let line = line.trim().strip_suffix(';')?;
         match line.strip_prefix("return ") {

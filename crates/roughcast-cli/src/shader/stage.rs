@@ -4,7 +4,7 @@ use anyhow::{Result, bail};
 use roughcast::Lobe;
 use roughcast::shading::{Gaussians, Shading};
 use roughcast::texture::{Layout, TexelReader};
-use roughcast::wgsl::{self, renamed};
+use roughcast::wgsl::{self, Module, renamed};
 
 const RESOURCES: &str = include_str!("stage/resources.wgsl");
 const FOOTPRINT: &str = include_str!("stage/footprint.wgsl");
@@ -31,6 +31,11 @@ pub fn reader_of(model: Shading) -> &'static TexelReader {
     reader.expect("every model samples its layout")
 }
 
+/// The module that reads the textures of a model's layout as a source of bumps.
+pub fn detail_of(model: Shading) -> &'static Module {
+    wgsl::module(reader_of(model).module).expect("every reader has a module")
+}
+
 /// The textures of a layout: their bindings, and how they are sampled.
 fn textures_of(layout: Layout) -> Result<&'static str> {
     Ok(match layout {
@@ -45,7 +50,8 @@ fn textures_of(layout: Layout) -> Result<&'static str> {
 
 /// The modules that the fragment shaders of these models need beside the models themselves.
 pub fn needed_modules(models: &[Shading]) -> Vec<&'static str> {
-    models.iter().map(|model| reader_of(*model).module).chain(["detail", "reflectance"]).collect()
+    let of_detail = models.iter().flat_map(|model| detail_of(*model).needs.iter().copied());
+    of_detail.chain(["detail", "reflectance"]).collect()
 }
 
 /// WGSL of fragment shaders `shade_MODEL`, to be put after the library with [`needed_modules`].
@@ -60,7 +66,7 @@ pub fn fragment_shaders(models: &[Shading]) -> Result<String> {
         let textures_once = textures.lines().filter(is_new).collect::<Vec<_>>().join("\n");
         declared.extend(textures.lines().filter(|line| line.starts_with('@')));
         let footprint = if reader.mean_input.is_some() { FOOTPRINT } else { "" };
-        let detail = wgsl::module(reader.module)?.source;
+        let detail = detail_of(*model).source;
         let parts = [&textures_once, footprint, detail, SHADE].join("\n");
         code += "\n";
         code += &renamed(&parts, &names_of(*model).iter().map(|(a, b)| (*a, b.as_str())).collect::<Vec<_>>());

@@ -10,7 +10,7 @@ use crate::inputs::{Inputs, distribution_words, gaussian_words, weighted_words};
 use crate::table::{covariance, covariance_words, facet_words, ggx_words, one, slope, v3};
 
 /// Words of a distribution.
-const WORDS: usize = 5 + 6 * MAX_GAUSSIANS;
+const WORDS: usize = 4 + 6 * MAX_GAUSSIANS;
 
 fn weighted(a: &[f32]) -> WeightedGaussian {
     WeightedGaussian { weight: a[5], mean: slope(a), covariance: covariance(&a[2..]) }
@@ -22,7 +22,8 @@ fn whole(a: f32) -> usize {
 }
 
 fn distribution(a: &[f32]) -> Distribution {
-    let parts: Vec<_> = (0..whole(a[4])).map(|place| weighted(&a[5 + 6 * place..])).collect();
+    let mut parts: Vec<_> = (0..MAX_GAUSSIANS).map(|place| weighted(&a[4 + 6 * place..])).collect();
+    parts.retain(|part| part.weight > 0.0);
     let mixture = Distribution::mixture(&parts).expect("one to four");
     mixture.with_normal(v3(a).into()).with_base(Base::ALL[whole(a[3])])
 }
@@ -43,9 +44,9 @@ fn gaussian_and_base(inputs: &mut Inputs) -> Vec<f32> {
 fn mixture_words(surface: &MixtureSurface) -> Vec<f32> {
     let parts: Vec<_> = surface.gaussians().collect();
     let weight = |place: usize| parts.get(place).map_or(0.0, |(weight, _)| *weight);
-    // Beyond the count the first is repeated.
+    // Where there is none the first is repeated.
     let part = |place: usize| gaussian_words(parts.get(place).unwrap_or(&parts[0]).1);
-    let weights = (0..MAX_GAUSSIANS).map(weight).chain([parts.len() as f32]);
+    let weights = (0..MAX_GAUSSIANS).map(weight);
     weights.chain((0..MAX_GAUSSIANS).flat_map(part)).collect()
 }
 
@@ -138,14 +139,14 @@ pub fn distribution_twins() -> Vec<Twin> {
         Twin {
             name: "pixel_distribution",
             gives: Gives::Numbers,
-            call: "put_distribution(pixel_distribution(distribution(0u), ratio(29u), part(29u), o()));",
+            call: "put_distribution(pixel_distribution(distribution(0u), ratio(28u), part(28u), o()));",
             arguments: |inputs| [single(inputs), inputs.ratio().to_vec()].concat(),
             rust: pixel_words,
         },
         Twin {
             name: "pixel_mixture",
             gives: Gives::Numbers,
-            call: "put_distribution(pixel_mixture(distribution(0u), ratio(29u), part(29u), o()));",
+            call: "put_distribution(pixel_mixture(distribution(0u), ratio(28u), part(28u), o()));",
             arguments: |inputs| [any(inputs), inputs.ratio().to_vec()].concat(),
             rust: pixel_words,
         },
@@ -220,7 +221,7 @@ pub fn model_twins() -> Vec<Twin> {
         Twin {
             name: "mixture_lobe",
             gives: Gives::Numbers,
-            call: "put(mixture_lobe(mixture_surface(distribution(0u), o()), f3(29u), f3(32u), o()));",
+            call: "put(mixture_lobe(mixture_surface(distribution(0u), o()), f3(28u), f3(31u), o()));",
             arguments: Inputs::mixture_lobe,
             rust: |a, o, _| {
                 let surface = mixture_surface(&distribution(a), o);

@@ -37,7 +37,7 @@ pub enum Gives {
     Numbers,
     /// The six words of a Gaussian, whose determinant is a small difference of products.
     Gaussian,
-    /// The words of a mixture's surface: weights, count, and the words of four Gaussians.
+    /// The words of a mixture's surface: four weights, and the words of four Gaussians.
     Mixture,
     /// The six words of a footprint's axes, of which the shorter is a small difference of products where the footprint is long.
     Axes,
@@ -191,7 +191,7 @@ fn cancellation(gives: Gives, wanted: &[f32]) -> Vec<f32> {
         Gives::Numbers => {}
         Gives::Gaussian => cancellation_of_gaussian(unit, wanted, &mut left),
         Gives::Mixture => {
-            for (wanted, left) in wanted[5..].chunks(6).zip(left[5..].chunks_mut(6)) {
+            for (wanted, left) in wanted[4..].chunks(6).zip(left[4..].chunks_mut(6)) {
                 cancellation_of_gaussian(unit, wanted, left);
             }
         }

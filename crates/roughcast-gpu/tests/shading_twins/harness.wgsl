@@ -146,11 +146,10 @@ fn distribution(i: u32) -> Distribution {
     return Distribution(
         f3(i),
         u32(f(i + 3u) + 0.5),
-        u32(f(i + 4u) + 0.5),
-        weighted(i + 5u),
-        weighted(i + 11u),
-        weighted(i + 17u),
-        weighted(i + 23u),
+        weighted(i + 4u),
+        weighted(i + 10u),
+        weighted(i + 16u),
+        weighted(i + 22u),
     );
 }
 
@@ -164,7 +163,6 @@ fn put_weighted(gaussian: WeightedGaussian) {
 fn put_distribution(d: Distribution) {
     put3(d.normal);
     put(f32(d.base));
-    put(f32(d.count));
     put_weighted(d.first);
     put_weighted(d.second);
     put_weighted(d.third);
@@ -174,7 +172,6 @@ fn put_distribution(d: Distribution) {
 fn put_mixture(surface: MixtureSurface) {
     put2(surface.weights.xy);
     put2(surface.weights.zw);
-    put(f32(surface.count));
     put_gaussian(surface.first);
     put_gaussian(surface.second);
     put_gaussian(surface.third);

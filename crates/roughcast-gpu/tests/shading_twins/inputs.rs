@@ -304,11 +304,16 @@ pub fn weighted_words(gaussian: &WeightedGaussian) -> [f32; 6] {
     [mean.x, mean.y, covariance.xx, covariance.yy, covariance.xy, weight]
 }
 
-/// The filtered normal, base and count as numbers, and four Gaussians, of which those beyond the count are zero.
+/// The filtered normal, the base as a number, and four Gaussians, of which those beyond the distribution's are zero.
 pub fn distribution_words(distribution: &Distribution) -> Vec<f32> {
     let parts = distribution.gaussians();
     let part = |place: usize| parts.get(place).copied().unwrap_or_default();
-    let head = [distribution.base() as u32 as f32, parts.len() as f32];
     let gaussians = (0..MAX_GAUSSIANS).flat_map(|place| weighted_words(&part(place)));
-    distribution.normal().to_array().into_iter().chain(head).chain(gaussians).collect()
+    distribution
+        .normal()
+        .to_array()
+        .into_iter()
+        .chain([distribution.base() as u32 as f32])
+        .chain(gaussians)
+        .collect()
 }

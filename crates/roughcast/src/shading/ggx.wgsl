@@ -24,8 +24,8 @@ fn principal_axes(sigma: vec3f) -> PrincipalAxes {
     let larger = mean + radius;
     // The difference keeps its digits while it is large; the determinant, whose products are rounded once where fma does so, beyond.
     let square = sigma.z * sigma.z;
-    let determinant = fma(sigma.x, sigma.y, -square) + fma(-sigma.z, sigma.z, square);
-    let smaller = select(determinant / larger, mean - radius, radius <= 0.5 * mean);
+    let det = fma(sigma.x, sigma.y, -square) + fma(-sigma.z, sigma.z, square);
+    let smaller = select(det / larger, mean - radius, radius <= 0.5 * mean);
     // The eigenvector of the larger, in the form whose first component does not cancel.
     let wide = vec2f(half_difference + radius, sigma.z);
     let tall = vec2f(sigma.z, radius - half_difference);

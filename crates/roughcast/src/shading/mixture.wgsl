@@ -1,8 +1,7 @@
 // A weighted sum of Gaussians of slopes in the surface frame, for distributions of several.
 
 struct MixtureSurface {
-    weights: vec4f,
-    count: u32,     // Gaussians, 1 to 4; those beyond it are not read
+    weights: vec4f,     // a Gaussian of weight 0 is not read
     first: SlopeGaussian,
     second: SlopeGaussian,
     third: SlopeGaussian,
@@ -18,14 +17,14 @@ fn mixture_surface(distribution: Distribution, options: LobeOptions) -> MixtureS
         distribution.fourth.weight,
     );
     let first = shaded_gaussian(distribution.first, base, options);
-    var surface = MixtureSurface(weights, distribution.count, first, first, first, first);
-    if distribution.count > 1u {
+    var surface = MixtureSurface(weights, first, first, first, first);
+    if weights.y > 0.0 {
         surface.second = shaded_gaussian(distribution.second, base, options);
     }
-    if distribution.count > 2u {
+    if weights.z > 0.0 {
         surface.third = shaded_gaussian(distribution.third, base, options);
     }
-    if distribution.count > 3u {
+    if weights.w > 0.0 {
         surface.fourth = shaded_gaussian(distribution.fourth, base, options);
     }
     return surface;
@@ -33,13 +32,13 @@ fn mixture_surface(distribution: Distribution, options: LobeOptions) -> MixtureS
 
 fn mixture_lobe(surface: MixtureSurface, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {
     var lobe = surface.weights.x * gaussian_lobe(surface.first, view, light, options);
-    if surface.count > 1u {
+    if surface.weights.y > 0.0 {
         lobe += surface.weights.y * gaussian_lobe(surface.second, view, light, options);
     }
-    if surface.count > 2u {
+    if surface.weights.z > 0.0 {
         lobe += surface.weights.z * gaussian_lobe(surface.third, view, light, options);
     }
-    if surface.count > 3u {
+    if surface.weights.w > 0.0 {
         lobe += surface.weights.w * gaussian_lobe(surface.fourth, view, light, options);
     }
     return lobe;
@@ -55,13 +54,13 @@ fn pixel_mixture(
     let base = base_in_map(filtered.base, options);
     var seen = filtered;
     seen.first = pixel_gaussian(filtered.first, ratio, part, base);
-    if filtered.count > 1u {
+    if filtered.second.weight > 0.0 {
         seen.second = pixel_gaussian(filtered.second, ratio, part, base);
     }
-    if filtered.count > 2u {
+    if filtered.third.weight > 0.0 {
         seen.third = pixel_gaussian(filtered.third, ratio, part, base);
     }
-    if filtered.count > 3u {
+    if filtered.fourth.weight > 0.0 {
         seen.fourth = pixel_gaussian(filtered.fourth, ratio, part, base);
     }
     return seen;
