@@ -6,12 +6,12 @@ use common::compare::difference;
 use common::maps::normals;
 use half::f16;
 use roughcast::texture::TextureArray;
-use roughcast::{BakeOptions, SampleType, Samples, SourceOptions};
+use roughcast::{BakeOptions, SampleType, Samples};
 
 fn baked(bits: SampleType) -> TextureArray {
     let options = BakeOptions { bits, ..Default::default() };
     let image = normals(16, 8, 3, SampleType::U8);
-    roughcast::bake(&image, &SourceOptions::default(), None, &options).expect("baked").arrays.remove(0)
+    roughcast::Bake::of(&image).options(options).run().expect("baked").arrays.remove(0)
 }
 
 /// Moves one channel of one texel of the third level of the second texture by so many steps.

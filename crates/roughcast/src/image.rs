@@ -292,12 +292,12 @@ impl SamplesView<'_> {
 /// Rows lie one after the other, without gaps.
 ///
 /// ```
-/// use roughcast::{BakeOptions, ImageView, SamplesView, SourceOptions, bake};
+/// use roughcast::{Bake, ImageView, SamplesView};
 ///
 /// // Normals that point straight up, in someone else's memory.
 /// let pixels: [u8; 12] = [128, 128, 255].repeat(4).try_into().unwrap();
 /// let map = ImageView::new(2, 2, 3, SamplesView::U8(&pixels))?;
-/// let baked = bake(map, &SourceOptions::default(), None, &BakeOptions::default())?;
+/// let baked = Bake::of(map).run()?;
 /// assert_eq!(baked.report.levels.len(), 2);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

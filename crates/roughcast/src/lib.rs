@@ -7,7 +7,7 @@
 //!
 //! # What is in
 //!
-//! - [`bake()`]: a map in memory to a layout's textures, every level of them ([`texture::Layout`] lists the layouts);
+//! - [`Bake`]: a map in memory to a layout's textures, every level of them ([`texture::Layout`] lists the layouts);
 //! - [`texture::decode`]: from any layout back to moments, and [`texture::bounds`]: how far off these can be;
 //! - [`shading`]: models that shade with these textures, each with a WGSL twin for GPUs;
 //! - [`precision`]: which storage type carries which shininess;
@@ -38,7 +38,7 @@
 //!
 //! ```
 //! use roughcast::texture::decode;
-//! use roughcast::{BakeOptions, Image, Samples, SourceOptions, bake};
+//! use roughcast::{Bake, Image, Samples};
 //!
 //! // Normals in 8 bits, not of unit length: (±1/2, 0, 1), and 0 ..= 255 stands for -1 ..= 1.
 //! let texel = |x: usize| if x % 2 == 0 { [191, 128, 255] } else { [64, 128, 255] };
@@ -46,7 +46,7 @@
 //! let map = Image::new(8, 8, 3, Samples::U8(pixels))?;
 //!
 //! // LEAN in 16 bits, of a normal map with green up that repeats: the defaults.
-//! let baked = bake(&map, &SourceOptions::default(), None, &BakeOptions::default())?;
+//! let baked = Bake::of(&map).run()?;
 //! assert_eq!(baked.arrays[0].layers[0].name, "lean1");
 //! assert_eq!(baked.report.levels.len(), 4); // 8, 4, 2, 1
 //!
@@ -82,9 +82,7 @@ pub mod texture;
 mod vectorised;
 pub mod wgsl;
 
-pub use bake::{
-    BakeError, BakePlan, BakeReport, Baked, ScaleAdvice, SlopeLimit, bake, bake_reusing, plan_bake,
-};
+pub use bake::{Bake, BakeError, BakePlan, BakeReport, Baked, ScaleAdvice, SlopeLimit};
 pub use convention::{Green, HeightSense, Kind, NormalChannels, NormalRange, Red, Wrap};
 pub use distribution::{Distribution, MAX_GAUSSIANS, WeightedGaussian};
 pub use image::{Image, ImageError, ImageView, SampleType, Samples, SamplesView};

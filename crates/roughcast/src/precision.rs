@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use crate::bake::{BakeError, Baked, bake};
+use crate::bake::{Bake, BakeError, Baked};
 use crate::options::{BakeOptions, MaxSlope, SourceOptions};
 use crate::texture::{self, Bounds, Layout, Part, Peaks, TextureArray, TextureInfo};
 use crate::{ImageView, Moments, SampleType};
@@ -42,7 +42,7 @@ impl Precision {
 /// Stores a map as LEAN in every type and compares the variances that come back with those of the pyramid.
 ///
 /// # Errors
-/// As [`bake`], for any of the types.
+/// As [`Bake::run`], for any of the types.
 pub fn measure<'a>(
     image: impl Into<ImageView<'a>>,
     source: &SourceOptions,
@@ -51,7 +51,10 @@ pub fn measure<'a>(
     let mut references: Vec<(f32, Vec<TextureArray>)> = Vec::new();
     let mut measured = Vec::new();
     for bits in SampleType::ALL {
-        let baked = bake(image, source, None, &BakeOptions { bits: *bits, ..BakeOptions::default() })?;
+        let baked = Bake::of(image)
+            .source(*source)
+            .options(BakeOptions { bits: *bits, ..BakeOptions::default() })
+            .run()?;
         let limit = baked.report.max_slope;
         // A type's own limit of slopes is no error of the type.
         if !references.iter().any(|(of_limit, _)| *of_limit == limit) {
@@ -71,7 +74,7 @@ fn reference(
 ) -> Result<Vec<TextureArray>, BakeError> {
     let source = SourceOptions { max_slope: MaxSlope::Limit(max_slope), ..*source };
     let options = BakeOptions { layout: Layout::Schilling, bits: SampleType::F32, ..BakeOptions::default() };
-    Ok(bake(image, &source, None, &options)?.arrays)
+    Ok(Bake::of(image).source(source).options(options).run()?.arrays)
 }
 
 fn measure_one(baked: &Baked, bits: SampleType, reference: &TextureArray) -> Precision {

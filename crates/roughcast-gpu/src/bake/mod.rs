@@ -19,7 +19,6 @@ use roughcast::texture::{TextureArray, TextureInfo};
 use roughcast::wgsl::Role;
 use roughcast::{
     BakeOptions, BakePlan, BaseRoughness, Image, MaxSlope, ScaleChoice, SourceCounts, SourceOptions,
-    plan_bake,
 };
 use wgpu::util::DeviceExt;
 
@@ -281,7 +280,7 @@ impl Job {
         options: &BakeOptions,
         path: BakePath,
     ) -> Result<Self, GpuError> {
-        let plan = plan_bake(source, roughness, options)?;
+        let plan = BakePlan::new(source, roughness, options)?;
         let target = Target::new(options)?;
         let base_variance = base_variance_of(&plan.info, roughness)?;
         let map_format = MapFormat::of_texture(map.format())?;

@@ -8,7 +8,7 @@ mod plan;
 mod scales;
 
 pub use error::BakeError;
-pub use plan::{BakePlan, plan_bake};
+pub use plan::BakePlan;
 
 use crate::levels::level_sizes;
 use crate::moments::Moments;
@@ -91,47 +91,86 @@ pub struct Baked {
     pub report: BakeReport,
 }
 
-/// Bakes a map.
+/// A bake, by its named parts: the map, how it is read, the material's base roughness, what is made of it.
 ///
-/// `roughness` is the base roughness of the material, where there is one; a map of another size is resampled. It is folded into the moments if
-/// [`BakeOptions::base`] says so, and always part of `pbr`'s roughness and of Toksvig's gloss factor.
+/// Only the map has to be named; the rest has defaults: an OpenGL normal map that repeats, no base roughness, LEAN in 16 bits.
 ///
-/// The same input gives the same textures for any number of threads.
+/// The same parts give the same textures for any number of threads.
 ///
-/// # Errors
-/// [`BakeError`] where the map has too few channels, or options do not go together.
-pub fn bake<'a>(
-    image: impl Into<ImageView<'a>>,
-    source_options: &SourceOptions,
-    roughness: Option<BaseRoughness<'_>>,
-    options: &BakeOptions,
-) -> Result<Baked, BakeError> {
-    bake_reusing(Vec::new(), image, source_options, roughness, options)
+/// ```
+/// use roughcast::texture::Layout;
+/// use roughcast::{Bake, BakeOptions, BaseRoughness, Image, Kind, SampleType, SourceOptions};
+///
+/// let heights = Image::zeros(64, 32, 1, SampleType::U16);
+/// let baked = Bake::of(&heights)
+///     .source(SourceOptions { kind: Kind::Height, ..SourceOptions::default() })
+///     .roughness(BaseRoughness::Variance(0.01))
+///     .options(BakeOptions { layout: Layout::Variance, ..BakeOptions::default() })
+///     .run()?;
+/// assert_eq!(baked.arrays[0].size(), (64, 32));
+/// assert_eq!(baked.report.steepest, 0.0);
+///
+/// // The next frame of the same size takes over the memory.
+/// let next = Bake::of(&heights).reusing(baked.arrays).run()?;
+/// assert_eq!(next.arrays[0].level_count(), 7);
+/// # Ok::<(), roughcast::BakeError>(())
+/// ```
+#[derive(Clone, Debug)]
+#[must_use = "nothing is baked until it is run"]
+pub struct Bake<'a> {
+    image: ImageView<'a>,
+    source: SourceOptions,
+    roughness: Option<BaseRoughness<'a>>,
+    options: BakeOptions,
+    textures: Vec<TextureArray>,
 }
 
-/// As [`bake`], writing into the textures of an earlier bake where they have the same shape: a map that changes every
-/// frame needs no new memory. Textures of another shape are dropped.
-///
-/// # Errors
-/// As [`bake`].
-pub fn bake_reusing<'a>(
-    textures: Vec<TextureArray>,
-    image: impl Into<ImageView<'a>>,
-    source_options: &SourceOptions,
-    roughness: Option<BaseRoughness<'_>>,
-    options: &BakeOptions,
-) -> Result<Baked, BakeError> {
-    bake_view(textures, image.into(), source_options, roughness, options)
+impl<'a> Bake<'a> {
+    /// A bake of this map, with all else at its default.
+    pub fn of(image: impl Into<ImageView<'a>>) -> Self {
+        Self {
+            image: image.into(),
+            source: SourceOptions::default(),
+            roughness: None,
+            options: BakeOptions::default(),
+            textures: Vec::new(),
+        }
+    }
+
+    /// How the map is read.
+    pub fn source(self, source: SourceOptions) -> Self {
+        Self { source, ..self }
+    }
+
+    /// The base roughness of the material, where there is one; a map of another size is resampled. It is folded into the
+    /// moments if [`BakeOptions::base`] says so, and always part of `pbr`'s roughness and of Toksvig's gloss factor.
+    pub fn roughness(self, roughness: impl Into<Option<BaseRoughness<'a>>>) -> Self {
+        Self { roughness: roughness.into(), ..self }
+    }
+
+    /// What is made of the map.
+    pub fn options(self, options: BakeOptions) -> Self {
+        Self { options, ..self }
+    }
+
+    /// Writes into the textures of an earlier bake where they have the same shape: a map that changes every frame needs no
+    /// new memory. Textures of another shape are dropped.
+    pub fn reusing(self, textures: Vec<TextureArray>) -> Self {
+        Self { textures, ..self }
+    }
+
+    /// Bakes.
+    ///
+    /// # Errors
+    /// [`BakeError`] where the map has too few channels, or options do not go together.
+    pub fn run(self) -> Result<Baked, BakeError> {
+        bake(self)
+    }
 }
 
-// Not generic, so that it is compiled once.
-fn bake_view(
-    textures: Vec<TextureArray>,
-    image: ImageView<'_>,
-    source_options: &SourceOptions,
-    roughness: Option<BaseRoughness<'_>>,
-    options: &BakeOptions,
-) -> Result<Baked, BakeError> {
+fn bake(parts: Bake<'_>) -> Result<Baked, BakeError> {
+    let Bake { image, source: source_options, roughness, options, textures } = parts;
+    let options = &options;
     let size = (image.width(), image.height());
     let fitted = roughness.and_then(|roughness| roughness.fitted(size, source_options.wrap));
     let roughness_resampled_from = fitted.as_ref().and(roughness).and_then(|roughness| roughness.map_size());
@@ -143,7 +182,7 @@ fn bake_view(
         })),
         None => roughness,
     };
-    let BakePlan { source: source_options, mut info } = plan_bake(source_options, roughness, options)?;
+    let BakePlan { source: source_options, mut info } = BakePlan::new(&source_options, roughness, options)?;
     let base = roughness.map(|roughness| BaseSource::new(roughness, use_of_base(options))).transpose()?;
     let extras = options.layout.rules().extras(&info).to_vec();
     let mut source = MapSource::new(image, source_options, base, extras)?;

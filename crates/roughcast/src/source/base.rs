@@ -7,7 +7,7 @@ use crate::roughness::{RoughnessStored, variance_from_stored};
 use crate::row::Extra;
 use crate::{Image, ImageView};
 
-/// A roughness stored in an image. [`crate::bake()`] resamples one whose size differs from that of the map.
+/// A roughness stored in an image. [`Bake`](crate::Bake) resamples one whose size differs from that of the map.
 #[derive(Clone, Copy, Debug)]
 pub struct RoughnessMap<'a> {
     /// The pixels.
