@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use roughcast::texture::{Base, BaseRole, Layout, TextureArray, mark_set};
-use roughcast::{Bake, BakeOptions, Baked, Blocks};
+use roughcast::{Bake, BakeError, BakeOptions, Baked, Blocks};
 use roughcast_io::material_names::{MaterialRole, role_of};
 use roughcast_io::texture_files::{TextureFiles, WriteFilesError, check_destination, leftover_parts};
 use roughcast_io::{CompressError, Container, FileInfo, Stored, stored_of};
@@ -137,8 +137,12 @@ pub(crate) fn run(
         .source(source)
         .roughness(roughness.as_ref().map(Roughness::base))
         .options(options)
+        .watched(&|fraction| watched.report(Some(fraction)))
         .run()
-        .map_err(|source| JobError::Bake { path: path(), source })?;
+        .map_err(|error| match error {
+            BakeError::Stopped => JobError::Cancelled,
+            source => JobError::Bake { path: path(), source },
+        })?;
     if settings.broken_texels == BrokenTexels::Refuse && report.counts.broken() > 0 {
         let (counts, texels) = (report.counts, report.texels);
         return Err(JobError::BrokenTexels { path: path(), counts, texels });

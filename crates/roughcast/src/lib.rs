@@ -70,7 +70,9 @@ mod levels;
 mod moments;
 mod named;
 mod options;
+mod parallel;
 pub mod precision;
+mod progress;
 mod pyramid;
 mod roughness;
 mod row;
@@ -82,6 +84,10 @@ pub mod texture;
 mod vectorised;
 pub mod wgsl;
 
+#[cfg(feature = "serde")]
+#[doc(hidden)]
+pub use serde as __serde;
+
 pub use bake::{Bake, BakeError, BakePlan, BakeReport, Baked, ScaleAdvice, SlopeLimit};
 pub use convention::{Green, HeightSense, Kind, NormalChannels, NormalRange, Red, Wrap};
 pub use distribution::{Distribution, MAX_GAUSSIANS, WeightedGaussian};
@@ -90,6 +96,7 @@ pub use levels::level_sizes;
 pub use moments::{Covariance, Moments, SlopeMatrix};
 pub use named::{Named, UnknownName};
 pub use options::{BakeOptions, Gradient, MaxSlope, PyramidFilter, ScaleChoice, SourceOptions};
+pub use progress::BakeWatch;
 pub use pyramid::{LevelStats, levels_of_four};
 pub use roughness::{Lobe, RoughnessTexture, stored_from_variance, variance_from_stored};
 pub use slope::{

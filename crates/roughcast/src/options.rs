@@ -33,6 +33,11 @@ named_enum! {
 
 /// How a map is turned into slopes.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct SourceOptions {
     /// What the pixels are.
     pub kind: Kind,
@@ -61,6 +66,7 @@ pub struct SourceOptions {
 
 /// The largest length that a slope may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum MaxSlope {
     /// [`MaxSlope::OF_ANY_MAP`], or less where a few steep texels make the range of unsigned texels much larger than the rest
     /// needs: where the steepest 0.1 % cost more than a factor of 4 in usable specular power, the limit is the slope that they
@@ -124,6 +130,7 @@ impl Default for SourceOptions {
 
 /// The range of slopes that unsigned texels cover.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum ScaleChoice {
     /// The smallest that holds every texel.
     Auto,
@@ -133,6 +140,11 @@ pub enum ScaleChoice {
 
 /// What to make of a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct BakeOptions {
     /// The layout.
     pub layout: Layout,

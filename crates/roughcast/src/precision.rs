@@ -3,15 +3,14 @@
 //! Source: "Shiny and CLEAN", with the error of the mean counted in full. With `V = M - B²`, texels of half a code's error
 //! over their range give `e_V = e_M + 2 |B| e_B + e_B²`, and the lobe is safe while `1/s > e_V`.
 
-use rayon::prelude::*;
-
 use crate::bake::{Bake, BakeError, Baked};
 use crate::options::{BakeOptions, MaxSlope, SourceOptions};
 use crate::texture::{self, Bounds, Layout, Part, Peaks, TextureArray, TextureInfo};
-use crate::{ImageView, Moments, SampleType};
+use crate::{ImageView, Moments, SampleType, parallel};
 
 /// What one storage type does to a map stored as LEAN.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Precision {
     /// The storage type.
     pub bits: SampleType,
@@ -83,13 +82,10 @@ fn measure_one(baked: &Baked, bits: SampleType, reference: &TextureArray) -> Pre
     for level in 0..stored.level_count() {
         let (width, height) =
             (stored.layers[0].levels[level].width(), stored.layers[0].levels[level].height());
-        let worst = (0..height)
-            .into_par_iter()
-            .map(|y| {
-                (0..width).map(|x| errors_at(stored, reference, level, x, y)).fold((0.0, 0.0), larger_of_both)
-            })
-            .reduce(|| (0.0, 0.0), larger_of_both);
-        (variance, eigenvalue) = larger_of_both((variance, eigenvalue), worst);
+        let worst = parallel::map((0..height).collect(), |y| {
+            (0..width).map(|x| errors_at(stored, reference, level, x, y)).fold((0.0, 0.0), larger_of_both)
+        });
+        (variance, eigenvalue) = worst.into_iter().fold((variance, eigenvalue), larger_of_both);
     }
     Precision {
         bits,

@@ -6,6 +6,8 @@ mod error;
 mod limit;
 mod plan;
 mod scales;
+#[cfg(test)]
+mod tests;
 
 pub use error::BakeError;
 pub use plan::BakePlan;
@@ -13,6 +15,7 @@ pub use plan::BakePlan;
 use crate::levels::level_sizes;
 use crate::moments::Moments;
 use crate::options::{BakeOptions, SourceOptions};
+use crate::progress::{BakeWatch, Progress};
 use crate::pyramid::{self, LevelStats, PyramidOptions};
 use crate::roughness::{Base, RoughnessStored};
 use crate::source::{BaseRoughness, BaseSource, MapSource, RoughnessMap, UseOfBase};
@@ -26,6 +29,7 @@ use scales::{advice, peaks_of_most, set_scales};
 
 /// Advice on a scale that a few steep texels have made much larger than the rest needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ScaleAdvice {
     /// The largest slope that all but the steepest 0.1 % of the texels stay below.
     pub max_slope: f32,
@@ -35,6 +39,7 @@ pub struct ScaleAdvice {
 
 /// A largest slope that was lowered because a few steep texels cost much: see [`MaxSlope::Auto`](crate::MaxSlope::Auto).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SlopeLimit {
     /// The largest slope.
     pub max_slope: f32,
@@ -46,6 +51,7 @@ pub struct SlopeLimit {
 
 /// What was done, in numbers.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BakeReport {
     /// Texels that had to be repaired.
     pub counts: SourceCounts,
@@ -115,7 +121,7 @@ pub struct Baked {
 /// assert_eq!(next.arrays[0].level_count(), 7);
 /// # Ok::<(), roughcast::BakeError>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 #[must_use = "nothing is baked until it is run"]
 pub struct Bake<'a> {
     image: ImageView<'a>,
@@ -123,6 +129,7 @@ pub struct Bake<'a> {
     roughness: Option<BaseRoughness<'a>>,
     options: BakeOptions,
     textures: Vec<TextureArray>,
+    watch: Option<&'a BakeWatch<'a>>,
 }
 
 impl<'a> Bake<'a> {
@@ -134,6 +141,7 @@ impl<'a> Bake<'a> {
             roughness: None,
             options: BakeOptions::default(),
             textures: Vec::new(),
+            watch: None,
         }
     }
 
@@ -159,6 +167,22 @@ impl<'a> Bake<'a> {
         Self { textures, ..self }
     }
 
+    /// Tells `watch` after each band of rows which fraction is done, 0 ..= 1, and stops with [`BakeError::Stopped`] soon after it
+    /// breaks. It is called from the threads that work, also from several at once, so that fractions may come out of order.
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    ///
+    /// use roughcast::{Bake, BakeError, Image, SampleType};
+    ///
+    /// let map = Image::zeros(64, 64, 3, SampleType::F32);
+    /// let stopped = Bake::of(&map).watched(&|_| ControlFlow::Break(())).run();
+    /// assert_eq!(stopped, Err(BakeError::Stopped));
+    /// ```
+    pub fn watched(self, watch: &'a BakeWatch<'a>) -> Self {
+        Self { watch: Some(watch), ..self }
+    }
+
     /// Bakes.
     ///
     /// # Errors
@@ -168,8 +192,23 @@ impl<'a> Bake<'a> {
     }
 }
 
+impl std::fmt::Debug for Bake<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { image, source, roughness, options, textures, watch } = self;
+        let size = (image.width(), image.height(), image.channels());
+        f.debug_struct("Bake")
+            .field("image", &size)
+            .field("source", source)
+            .field("has_roughness", &roughness.is_some())
+            .field("options", options)
+            .field("reused_textures", &textures.len())
+            .field("is_watched", &watch.is_some())
+            .finish()
+    }
+}
+
 fn bake(parts: Bake<'_>) -> Result<Baked, BakeError> {
-    let Bake { image, source: source_options, roughness, options, textures } = parts;
+    let Bake { image, source: source_options, roughness, options, textures, watch } = parts;
     let options = &options;
     let size = (image.width(), image.height());
     let fitted = roughness.and_then(|roughness| roughness.fitted(size, source_options.wrap));
@@ -188,15 +227,19 @@ fn bake(parts: Bake<'_>) -> Result<Baked, BakeError> {
     let mut source = MapSource::new(image, source_options, base, extras)?;
     let pyramid_options = PyramidOptions { filter: options.filter, wrap: source_options.wrap };
     let sample_type = options.bits;
+    let last = pyramid::work(size.0, size.1, pyramid_options);
+    let before = limit::work(size, source_options.max_slope, pyramid_options, options);
+    let progress = Progress::of(before + last, watch);
     let Ranges { looked_at, needed, limit } =
-        find_ranges(&mut source, source_options.max_slope, pyramid_options, options);
+        find_ranges(&mut source, source_options.max_slope, pyramid_options, options, &progress)?;
+    progress.skip_to_last(last);
     set_scales(&mut info, &needed, options);
-    let mut arrays = allocate(textures, &info, options, (image.width(), image.height()));
+    let mut arrays = allocate(textures, &info, options, size);
     let rules = options.layout.rules();
     let storage = Storage { info: &info, sample_type, blocks: options.blocks, pbr: &options.pbr };
     let encoder = rules.encoder(&storage);
     let outs = level_outs(&mut arrays, encoder.as_ref());
-    let built = pyramid::build(&source, pyramid_options, outs);
+    let built = pyramid::build(&source, pyramid_options, outs, &progress)?;
     let finest = &built.levels[0];
     let peaks = Peaks {
         component: finest.largest_component,

@@ -11,6 +11,7 @@ use crate::texture::TextureInfo;
 /// Checked options and what follows from them, for those who bake by other means than [`Bake`](crate::Bake), such as a GPU, whose map
 /// is no image in memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BakePlan {
     /// How the map is read. The largest slope is lowered to what the texels can hold; it is only [`MaxSlope::Auto`](crate::MaxSlope::Auto) where it
     /// depends on the map.

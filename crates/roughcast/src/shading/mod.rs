@@ -175,6 +175,11 @@ pub enum Wanted {
 
 /// How lobes are evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct LobeOptions {
     /// Blinn-Phong exponent `s` of the base roughness; its slope variance is `1 / s`.
     pub specular_power: f32,

@@ -145,6 +145,7 @@ impl Units {
 /// What a layout's textures can be relied upon to give back. Largest absolute errors of a decoded texel against what
 /// was encoded.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Bounds {
     /// Of each component of the mean slope.
     pub slope: f32,
@@ -168,6 +169,7 @@ impl Bounds {
 
 /// The largest magnitudes of what is stored, over all levels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Peaks {
     /// Of a component of the slope.
     pub component: f32,

@@ -1,13 +1,13 @@
 //! From stored textures back to moments.
 
-use rayon::prelude::*;
-
 use super::codec::Units;
 use super::{Layout, Part, ShapeFault, TextureArray, TextureInfo, join_layers};
 use crate::moments::Moments;
+use crate::parallel;
 
 /// A level of moments, row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MomentLevel {
     /// Texels in a row.
     pub width: usize,
@@ -77,7 +77,7 @@ pub fn decode(arrays: &[TextureArray]) -> Result<Vec<MomentLevel>, DecodeError> 
     let levels = files.main().layers[0].levels.iter().enumerate().map(|(level, image)| {
         let (width, height) = (image.width(), image.height());
         let mut moments = vec![Moments::default(); width * height];
-        moments.par_chunks_mut(width).enumerate().for_each_init(Vec::new, |texel, (y, row)| {
+        parallel::map_with(moments.chunks_mut(width).enumerate().collect(), Vec::new, |texel, (y, row)| {
             for (x, moments) in row.iter_mut().enumerate() {
                 files.load(level, x, y, texel);
                 let decoded = decode_texel(texel);

@@ -37,6 +37,7 @@ named_enum! {
 
 /// What the texels of a file mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TextureInfo {
     /// The layout.
     pub layout: Layout,
@@ -49,6 +50,7 @@ pub struct TextureInfo {
     /// Whether base roughness is in the second moments.
     pub base: Base,
     /// Slope variance of the base roughness per axis, `alpha^2 / 2`; 0 without one, NaN where it varies over the map.
+    #[cfg_attr(feature = "serde", serde(with = "nan_as_none"))]
     pub base_variance: f32,
     /// The lobe for which the roughness is meant.
     pub brdf: Brdf,
@@ -66,6 +68,20 @@ pub struct TextureInfo {
     pub normal_range: NormalRange,
     /// The channels of `pbr`'s roughness.
     pub roughness_texture: RoughnessTexture,
+}
+
+/// JSON has no NaN.
+#[cfg(feature = "serde")]
+mod nan_as_none {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(value: &f32, serializer: S) -> Result<S::Ok, S::Error> {
+        (!value.is_nan()).then_some(*value).serialize(serializer)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f32, D::Error> {
+        Ok(Option::deserialize(deserializer)?.unwrap_or(f32::NAN))
+    }
 }
 
 /// Why the metadata of a file could not be read.

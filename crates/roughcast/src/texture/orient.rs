@@ -8,11 +8,10 @@
 //! unorganized points", 1992: pairs of strongly anisotropic texels whose axes are nearly parallel are joined first. Where no
 //! signs agree everywhere (half a turn around a point, as in a fingerprint), the seam thus lies where it is seen least.
 
-use rayon::prelude::*;
-
 use super::Texture;
 use super::codec::Affine;
 use crate::convention::Wrap;
+use crate::parallel;
 use crate::{Image, Samples};
 
 /// Gives the directions in the first two channels of all levels signs that agree. The third channel is their strength.
@@ -135,9 +134,10 @@ impl Graph {
         let mut graph = Self {
             sizes: levels.iter().map(|image| (image.width(), image.height())).collect(),
             wrap,
-            angles: Vec::with_capacity(nodes),
-            strengths: Vec::with_capacity(nodes),
+            angles: vec![0; nodes],
+            strengths: vec![0; nodes],
         };
+        let (mut angles, mut strengths) = (graph.angles.as_mut_slice(), graph.strengths.as_mut_slice());
         for image in levels {
             let (samples, channels) = (image.samples(), image.channels());
             let read = |texel: usize| {
@@ -148,10 +148,16 @@ impl Graph {
                 let angle = (turns * 65536.0).round() as i32 as u16;
                 (angle, (samples.get(first + 2) * 255.0).round() as u8)
             };
-            let texels = image.width() * image.height();
-            let (angles, strengths): (Vec<_>, Vec<_>) = (0..texels).into_par_iter().map(read).unzip();
-            graph.angles.extend(angles);
-            graph.strengths.extend(strengths);
+            let (width, texels) = (image.width(), image.width() * image.height());
+            let (these_angles, these_strengths);
+            (these_angles, angles) = angles.split_at_mut(texels);
+            (these_strengths, strengths) = strengths.split_at_mut(texels);
+            let rows = these_angles.chunks_mut(width).zip(these_strengths.chunks_mut(width)).enumerate();
+            parallel::for_each(rows.collect(), |(y, (angles, strengths))| {
+                for (x, (angle, strength)) in angles.iter_mut().zip(strengths).enumerate() {
+                    (*angle, *strength) = read(y * width + x);
+                }
+            });
         }
         graph
     }

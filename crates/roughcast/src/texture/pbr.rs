@@ -48,6 +48,11 @@ named_enum! {
 
 /// The choices of [`Layout::Pbr`](super::Layout::Pbr). No other layout reads them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct PbrOptions {
     /// How roughness is stored.
     pub roughness_stored: RoughnessStored,
