@@ -6,7 +6,7 @@ use common::compare::difference;
 use common::maps::normals;
 use half::f16;
 use roughcast::texture::TextureArray;
-use roughcast::{BakeOptions, SampleType, Samples};
+use roughcast::{BakeOptions, SampleType, SamplesMut};
 
 fn baked(bits: SampleType) -> TextureArray {
     let options = BakeOptions { bits, ..Default::default() };
@@ -18,10 +18,10 @@ fn baked(bits: SampleType) -> TextureArray {
 fn moved(array: &TextureArray, steps: u16) -> TextureArray {
     let mut moved = array.clone();
     match moved.layers[1].levels[2].samples_mut() {
-        Samples::U8(v) => v[5] = v[5].wrapping_add(steps as u8),
-        Samples::U16(v) => v[5] = v[5].wrapping_add(steps),
-        Samples::F16(v) => v[5] = f16::from_bits(v[5].to_bits().wrapping_add(steps)),
-        Samples::F32(_) => unreachable!("the GPU bakes no single floats"),
+        SamplesMut::U8(v) => v[5] = v[5].wrapping_add(steps as u8),
+        SamplesMut::U16(v) => v[5] = v[5].wrapping_add(steps),
+        SamplesMut::F16(v) => v[5] = f16::from_bits(v[5].to_bits().wrapping_add(steps)),
+        SamplesMut::F32(_) => unreachable!("the GPU bakes no single floats"),
     }
     moved
 }
@@ -43,7 +43,7 @@ fn a_texel_that_is_off_is_found_and_measured() {
 fn halves_are_counted_across_zero_and_nan_is_no_neighbour() {
     let with = |value: f16| {
         let mut array = baked(SampleType::F16);
-        let Samples::F16(v) = array.layers[0].levels[0].samples_mut() else { unreachable!("asked for") };
+        let SamplesMut::F16(v) = array.layers[0].levels[0].samples_mut() else { unreachable!("asked for") };
         v[0] = value;
         array
     };

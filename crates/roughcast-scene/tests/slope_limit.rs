@@ -7,7 +7,7 @@ use std::sync::Arc;
 use common::picture;
 use roughcast::detect::{guess_channels, guess_range};
 use roughcast::shading::{LobeOptions, Material, Shading};
-use roughcast::{Bake, BakeOptions, BakeReport, Green, Image, MaxSlope, Samples, SourceOptions};
+use roughcast::{Bake, BakeOptions, BakeReport, Green, Image, MaxSlope, SamplesMut, SourceOptions};
 use roughcast_scene::metrics::rmse;
 use roughcast_scene::render::{Method, Truth, unwatched};
 use roughcast_scene::{
@@ -41,7 +41,7 @@ impl Far {
         let (range, mut image) = (guess_range(&decoded.image), decoded.image);
         let channels = image.channels();
         for (i, texel) in texels.iter().enumerate() {
-            let Samples::U8(samples) = image.samples_mut() else { panic!("{path} has 8 bits") };
+            let SamplesMut::U8(samples) = image.samples_mut() else { panic!("{path} has 8 bits") };
             let at = channels * (9_973 * i + 1_234);
             samples[at..at + 3].copy_from_slice(texel);
         }

@@ -114,7 +114,8 @@ pub struct Image {
 }
 
 /// Why samples do not make an image.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, thiserror::Error)]
+#[non_exhaustive]
 pub enum ImageError {
     /// A side or the number of channels is zero.
     #[error(
@@ -193,10 +194,14 @@ impl Image {
         }
     }
 
-    /// The samples, to write to. Their number cannot change through a slice pattern; replacing the vector by one of
-    /// another length is a mistake that the next use of the image shows as a panic.
-    pub fn samples_mut(&mut self) -> &mut Samples {
-        &mut self.samples
+    /// The samples, to write to. Their number and their type stay.
+    pub fn samples_mut(&mut self) -> SamplesMut<'_> {
+        match &mut self.samples {
+            Samples::U8(v) => SamplesMut::U8(v),
+            Samples::U16(v) => SamplesMut::U16(v),
+            Samples::F16(v) => SamplesMut::F16(v),
+            Samples::F32(v) => SamplesMut::F32(v),
+        }
     }
 
     /// The samples, taken out.
@@ -282,6 +287,31 @@ impl SamplesView<'_> {
             SamplesView::U16(v) => Samples::U16(v.to_vec()),
             SamplesView::F16(v) => Samples::F16(v.to_vec()),
             SamplesView::F32(v) => Samples::F32(v.to_vec()),
+        }
+    }
+}
+
+/// The samples of an [`Image`], to write to.
+#[derive(Debug, PartialEq)]
+pub enum SamplesMut<'a> {
+    /// 8-bit unsigned normalised: 0 ..= 255 stands for 0 ..= 1.
+    U8(&'a mut [u8]),
+    /// 16-bit unsigned normalised: 0 ..= 65535 stands for 0 ..= 1.
+    U16(&'a mut [u16]),
+    /// Half float, the value itself.
+    F16(&'a mut [f16]),
+    /// Single float, the value itself.
+    F32(&'a mut [f32]),
+}
+
+impl SamplesMut<'_> {
+    /// How they are stored.
+    pub fn sample_type(&self) -> SampleType {
+        match self {
+            SamplesMut::U8(_) => SampleType::U8,
+            SamplesMut::U16(_) => SampleType::U16,
+            SamplesMut::F16(_) => SampleType::F16,
+            SamplesMut::F32(_) => SampleType::F32,
         }
     }
 }
@@ -375,10 +405,10 @@ mod tests {
         for sample_type in types {
             let mut image = Image::zeros(3, 2, 2, sample_type);
             match image.samples_mut() {
-                Samples::U8(v) => v[9] = 51,
-                Samples::U16(v) => v[9] = 13107,
-                Samples::F16(v) => v[9] = f16::from_f32(0.2),
-                Samples::F32(v) => v[9] = 0.2,
+                SamplesMut::U8(v) => v[9] = 51,
+                SamplesMut::U16(v) => v[9] = 13107,
+                SamplesMut::F16(v) => v[9] = f16::from_f32(0.2),
+                SamplesMut::F32(v) => v[9] = 0.2,
             }
             let view = image.view();
             assert_eq!((view.width(), view.height(), view.channels()), (3, 2, 2));

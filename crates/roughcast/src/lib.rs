@@ -91,7 +91,7 @@ pub use serde as __serde;
 pub use bake::{Bake, BakeError, BakePlan, BakeReport, Baked, ScaleAdvice, SlopeLimit};
 pub use convention::{Green, HeightSense, Kind, NormalChannels, NormalRange, Red, Wrap};
 pub use distribution::{Distribution, MAX_GAUSSIANS, WeightedGaussian};
-pub use image::{Image, ImageError, ImageView, SampleType, Samples, SamplesView};
+pub use image::{Image, ImageError, ImageView, SampleType, Samples, SamplesMut, SamplesView};
 pub use levels::level_sizes;
 pub use moments::{Covariance, Moments, SlopeMatrix};
 pub use named::{Named, UnknownName};

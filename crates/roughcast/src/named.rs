@@ -95,7 +95,7 @@ pub trait Named: Copy + 'static {
 }
 
 /// A name that stands for no variant.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 #[error("no {what} is called '{got}': choose one of {known}")]
 pub struct UnknownName {
     /// What was looked for.

@@ -21,6 +21,7 @@ named_enum! {
 named_enum! {
     /// The kernel that makes a level of the one before. All are non-negative: with lobes below zero the covariance
     /// would stop being one.
+    #[non_exhaustive]
     pub enum PyramidFilter: "filter" {
         /// Exact area average.
         Box = "box",

@@ -11,6 +11,7 @@ use crate::{ImageView, Moments, SampleType, parallel};
 /// What one storage type does to a map stored as LEAN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Precision {
     /// The storage type.
     pub bits: SampleType,

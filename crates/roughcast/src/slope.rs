@@ -106,7 +106,7 @@ pub fn normal_from_slope(slope: Slope) -> Normal {
 /// A broken normal is made *neutral*: it gets the mean slope of those of its eight neighbours that are not broken, or a flat
 /// one where all of them are. Beyond an edge lie the texels that the wrap mode specifies; where the map does not repeat, those of
 /// the edge once more.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SourceCounts {
     /// Texels steeper than the largest slope, scaled back to it, direction kept.

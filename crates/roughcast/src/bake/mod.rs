@@ -30,6 +30,7 @@ use scales::{advice, peaks_of_most, set_scales};
 /// Advice on a scale that a few steep texels have made much larger than the rest needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct ScaleAdvice {
     /// The largest slope that all but the steepest 0.1 % of the texels stay below.
     pub max_slope: f32,
@@ -40,6 +41,7 @@ pub struct ScaleAdvice {
 /// A largest slope that was lowered because a few steep texels cost much: see [`MaxSlope::Auto`](crate::MaxSlope::Auto).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct SlopeLimit {
     /// The largest slope.
     pub max_slope: f32,
@@ -52,6 +54,7 @@ pub struct SlopeLimit {
 /// What was done, in numbers.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct BakeReport {
     /// Texels that had to be repaired.
     pub counts: SourceCounts,

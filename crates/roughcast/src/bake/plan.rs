@@ -12,6 +12,7 @@ use crate::texture::TextureInfo;
 /// is no image in memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct BakePlan {
     /// How the map is read. The largest slope is lowered to what the texels can hold; it is only [`MaxSlope::Auto`](crate::MaxSlope::Auto) where it
     /// depends on the map.

@@ -12,7 +12,7 @@ mod level_out;
 mod resample;
 pub(crate) mod weights;
 
-pub(crate) use level_out::{LevelOut, PartOut, SamplesMut, largest, largest_component_and_square};
+pub(crate) use level_out::{LevelOut, PartOut, largest, largest_component_and_square};
 
 use crate::convention::Wrap;
 use crate::levels::level_sizes;
@@ -34,6 +34,7 @@ pub fn levels_of_four(width: usize, height: usize) -> usize {
 /// What a level holds, measured while it was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct LevelStats {
     /// Mean over the level of the variance along x.
     pub mean_variance_x: f64,

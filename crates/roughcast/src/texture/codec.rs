@@ -13,7 +13,7 @@ pub(crate) trait RowEncoder: Sync {
 }
 
 /// One texture of a layout.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct LayerSpec {
     /// Its name.
     pub name: &'static str,
@@ -23,6 +23,7 @@ pub struct LayerSpec {
 
 named_enum! {
     /// Whether textures are shaped for block compression: two channels for what will be BC5, one for BC4.
+    #[non_exhaustive]
     pub enum Blocks: "compression" {
         /// Plain texels.
         None = "none",

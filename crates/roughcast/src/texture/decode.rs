@@ -18,7 +18,7 @@ pub struct MomentLevel {
 }
 
 /// Why textures do not decode.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 #[non_exhaustive]
 pub enum DecodeError {
     /// There is nothing to decode.

@@ -13,6 +13,7 @@ use crate::roughness::{Base, Brdf, RoughnessStored, RoughnessTexture};
 
 named_enum! {
     /// Which of a layout's files this is; layouts whose textures share one format have a single part.
+    #[non_exhaustive]
     pub enum Part: "part" {
         /// The only file of the layout.
         Whole = "whole",
@@ -85,7 +86,7 @@ mod nan_as_none {
 }
 
 /// Why the metadata of a file could not be read.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 #[non_exhaustive]
 pub enum InfoError {
     /// It is not a file of ours, or its metadata was stripped.

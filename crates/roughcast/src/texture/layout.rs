@@ -12,6 +12,7 @@ use crate::shading::Wanted;
 
 named_enum! {
     /// The layouts in which moments are stored, one file each in [`crate::texture`].
+    #[non_exhaustive]
     pub enum Layout: "layout" {
         /// LEAN mapping: mean normal, mean slope and second moments in two RGBA layers.
         Lean = "lean",

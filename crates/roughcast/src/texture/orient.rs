@@ -12,7 +12,7 @@ use super::Texture;
 use super::codec::Affine;
 use crate::convention::Wrap;
 use crate::parallel;
-use crate::{Image, Samples};
+use crate::{Image, Samples, SamplesMut};
 
 /// Gives the directions in the first two channels of all levels signs that agree. The third channel is their strength.
 ///
@@ -62,10 +62,10 @@ fn fill_from_coarser(finer: &mut Image, coarser: &Image) {
     let (size, channels) = ((finer.width(), finer.height()), finer.channels());
     let above = (coarser.width(), coarser.height());
     match (finer.samples_mut(), coarser.samples()) {
-        (Samples::U8(f), Samples::U8(c)) => fill(f, size, (c, above), channels, |s| s > 0),
-        (Samples::U16(f), Samples::U16(c)) => fill(f, size, (c, above), channels, |s| s > 0),
-        (Samples::F16(f), Samples::F16(c)) => fill(f, size, (c, above), channels, |s| s.to_f32() > 0.0),
-        (Samples::F32(f), Samples::F32(c)) => fill(f, size, (c, above), channels, |s| s > 0.0),
+        (SamplesMut::U8(f), Samples::U8(c)) => fill(f, size, (c, above), channels, |s| s > 0),
+        (SamplesMut::U16(f), Samples::U16(c)) => fill(f, size, (c, above), channels, |s| s > 0),
+        (SamplesMut::F16(f), Samples::F16(c)) => fill(f, size, (c, above), channels, |s| s.to_f32() > 0.0),
+        (SamplesMut::F32(f), Samples::F32(c)) => fill(f, size, (c, above), channels, |s| s > 0.0),
         _ => unreachable!("all levels have one sample type"),
     }
 }
@@ -89,12 +89,12 @@ fn turn(image: &mut Image, unit: Affine, first_node: usize, signs: &mut Signs) -
     // The stored value of zero lies between those of v and -v.
     let twice_zero = 2.0 * unit.add;
     match image.samples_mut() {
-        Samples::U8(v) => each(v, channels, first_node, signs, |code| u8::MAX - code),
-        Samples::U16(v) => each(v, channels, first_node, signs, |code| u16::MAX - code),
-        Samples::F16(v) => {
+        SamplesMut::U8(v) => each(v, channels, first_node, signs, |code| u8::MAX - code),
+        SamplesMut::U16(v) => each(v, channels, first_node, signs, |code| u16::MAX - code),
+        SamplesMut::F16(v) => {
             each(v, channels, first_node, signs, |value| half::f16::from_f32(twice_zero - value.to_f32()));
         }
-        Samples::F32(v) => each(v, channels, first_node, signs, |value| twice_zero - value),
+        SamplesMut::F32(v) => each(v, channels, first_node, signs, |value| twice_zero - value),
     }
     first_node + texels
 }

@@ -38,6 +38,7 @@ use crate::slope::{LEAST_NORMAL_Z, Normal, Slope, normal_from_slope, slope_from_
 
 named_enum! {
     /// How `pbr` says in which direction a roughness is larger.
+    #[non_exhaustive]
     pub enum AnisotropyOutput: "form of anisotropy" {
         /// Direction and strength, as KHR_materials_anisotropy has them; the roughness is the one across.
         Khr = "khr",

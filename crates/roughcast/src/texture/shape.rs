@@ -4,7 +4,7 @@ use super::{DecodeError, Layout, Part, Texture, TextureArray};
 use crate::levels::level_sizes;
 
 /// Why textures are not those of their layout.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShapeFault {
     /// A file has no layers.
