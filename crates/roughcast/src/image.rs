@@ -105,6 +105,19 @@ impl Samples {
 }
 
 /// An image of `height` rows of `width` pixels of `channels` interleaved samples. Row 0 is the top.
+///
+/// ```
+/// use roughcast::{Image, Samples, SamplesMut};
+///
+/// let mut image = Image::new(2, 1, 3, Samples::U8(vec![0, 0, 255, 51, 0, 255]))?;
+/// assert_eq!(image.get(1, 0, 0), 0.2);
+/// if let SamplesMut::U8(samples) = image.samples_mut() {
+///     samples[3] = 255;
+/// }
+/// assert_eq!(image.get(1, 0, 0), 1.0);
+/// assert!(Image::new(2, 1, 3, Samples::U8(vec![0; 5])).is_err());
+/// # Ok::<(), roughcast::ImageError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
     width: usize,

@@ -5,13 +5,18 @@
 //! filter may average, and from which a shader gets the lost bumps back as roughness with a direction (Olano & Baker,
 //! "LEAN Mapping", 2010, and its relatives).
 //!
-//! # What is in
+//! # A short tour
 //!
-//! - [`Bake`]: a map in memory to a layout's textures, every level of them ([`texture::Layout`] lists the layouts);
-//! - [`texture::decode`]: from any layout back to moments, and [`texture::bounds`]: how far off these can be;
-//! - [`shading`]: models that shade with these textures, each with a WGSL twin for GPUs;
-//! - [`precision`]: which storage type carries which shininess;
-//! - [`detect`]: whether an image holds normals or heights, in which channels, with green up or down.
+//! 1. An [`Image`] has the pixels of a map; an [`ImageView`] sees those that belong to someone else. [`detect`] says what they
+//!    are: normals or heights, in which channels, with green up or down.
+//! 2. [`SourceOptions`] say how the map is read, [`BakeOptions`] what is made of it, and [`BaseRoughness`] what the material has
+//!    already.
+//! 3. [`Bake`] makes a layout's textures of it, every level of them, and a [`BakeReport`] of what was found, repaired and lost. It
+//!    can be watched and stopped. [`texture::Layout`] lists the layouts.
+//! 4. [`texture::decode`] goes back from any layout to [`Moments`], and [`texture::bounds`] says how far off these can be;
+//!    [`precision`] says which storage type carries which shininess.
+//! 5. A [`texture::TexelReader`] makes a [`Distribution`] of slopes of filtered texels, and [`shading`] has the models that shade
+//!    with it. Each has a twin for GPUs in [`wgsl`].
 //!
 //! # What is out of scope
 //!
@@ -30,6 +35,26 @@
 //! - Level k+1 of a texture has `max(1, floor(n / 2))` texels each way. The means of slopes and of second moments are the
 //!   same on every level.
 //! - The same input gives the same bits, for any number of threads and whatever vector instructions the processor has.
+//!
+//! # What stays
+//!
+//! - *Options* ([`SourceOptions`], [`BakeOptions`], [`PbrOptions`], [`shading::LobeOptions`]) and what files say of themselves
+//!   ([`texture::TextureInfo`]) are plain structs of public fields. Write `..Default::default()`, or `..TextureInfo::new(…)`, at their
+//!   end, also where all fields are named: a minor version may add a field, whose default changes no byte.
+//! - *Reports* are `#[non_exhaustive]`: they are read, not made.
+//! - *Enums* that will grow (layouts, parts, models, their options, errors) are `#[non_exhaustive]`. Closed are those that whoever
+//!   reads maps or samples textures by other means has to know in full: [`SampleType`], [`Wrap`], [`Gradient`], [`MaxSlope`] and the
+//!   conventions of maps.
+//! - *Values* ([`Slope`], [`Moments`], [`Covariance`]) have the components that they have in the papers, and no others.
+//!
+//! # Features
+//!
+//! The bytes of a bake depend on none of them.
+//!
+//! - `rayon` (default): work is shared by the threads of the rayon pool in which it is called. Without it the calling thread does all.
+//! - `multiversion` (default): inner loops are compiled for several instruction sets, and the best is chosen as the program runs.
+//! - `serde`: `Serialize` and `Deserialize` for values, options and reports; named enums by their names. What is left out of options
+//!   is the default, what is unknown in them is an error. JSON has no infinity, which the bounds of a report may be.
 //!
 //! # Example
 //!

@@ -8,6 +8,8 @@ use crate::texture::{Blocks, Layout, PbrOptions};
 
 named_enum! {
     /// How a height map's gradient is estimated. All are in texels of level 0.
+    ///
+    /// Closed, since whoever makes slopes by other means, such as a GPU, has to know them all.
     pub enum Gradient: "gradient" {
         /// The 8-tap Sobel filter divided by 8.
         Sobel = "sobel",
@@ -32,7 +34,7 @@ named_enum! {
     }
 }
 
-/// How a map is turned into slopes.
+/// How a map is turned into slopes. Write `..Default::default()` at the end: a minor version may add a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -129,7 +131,7 @@ impl Default for SourceOptions {
     }
 }
 
-/// The range of slopes that unsigned texels cover.
+/// The range of slopes that unsigned texels cover: found or given, and nothing else.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum ScaleChoice {
@@ -139,7 +141,7 @@ pub enum ScaleChoice {
     Fixed(f32),
 }
 
-/// What to make of a map.
+/// What to make of a map. Write `..Default::default()` at the end: a minor version may add a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",

@@ -9,6 +9,20 @@ use crate::texture::{self, Bounds, Layout, Part, Peaks, TextureArray, TextureInf
 use crate::{ImageView, Moments, SampleType, parallel};
 
 /// What one storage type does to a map stored as LEAN.
+///
+/// ```
+/// use roughcast::precision::{measure, recommend, unorm_specular_power};
+/// use roughcast::{Image, Kind, SampleType, SourceOptions};
+///
+/// // Shiny and CLEAN: slopes up to one in 8 bits carry an exponent of about 100.
+/// assert!((95.0..105.0).contains(&unorm_specular_power(SampleType::U8, 1.0)));
+///
+/// let flat = Image::zeros(8, 8, 1, SampleType::U8);
+/// let measured = measure(&flat, &SourceOptions { kind: Kind::Height, ..SourceOptions::default() })?;
+/// assert_eq!(measured.len(), SampleType::ALL.len());
+/// assert_eq!(recommend(&measured, 50.0), Some(SampleType::U8));
+/// # Ok::<(), roughcast::BakeError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

@@ -111,8 +111,9 @@ pub struct Baked {
 /// use roughcast::{Bake, BakeOptions, BaseRoughness, Image, Kind, SampleType, SourceOptions};
 ///
 /// let heights = Image::zeros(64, 32, 1, SampleType::U16);
+/// let source = SourceOptions { kind: Kind::Height, ..SourceOptions::default() };
 /// let baked = Bake::of(&heights)
-///     .source(SourceOptions { kind: Kind::Height, ..SourceOptions::default() })
+///     .source(source)
 ///     .roughness(BaseRoughness::Variance(0.01))
 ///     .options(BakeOptions { layout: Layout::Variance, ..BakeOptions::default() })
 ///     .run()?;
@@ -120,7 +121,7 @@ pub struct Baked {
 /// assert_eq!(baked.report.steepest, 0.0);
 ///
 /// // The next frame of the same size takes over the memory.
-/// let next = Bake::of(&heights).reusing(baked.arrays).run()?;
+/// let next = Bake::of(&heights).source(source).reusing(baked.arrays).run()?;
 /// assert_eq!(next.arrays[0].level_count(), 7);
 /// # Ok::<(), roughcast::BakeError>(())
 /// ```

@@ -67,6 +67,22 @@ pub enum DecodeError {
 ///
 /// # Errors
 /// [`DecodeError`] where a part is missing or the textures do not belong together.
+///
+/// ```
+/// use roughcast::texture::{Layout, decode};
+/// use roughcast::{Bake, BakeOptions, Image, Samples};
+///
+/// // Normals that all lean to the left at 45 degrees.
+/// let normals = Samples::F32([-0.5, 0.0, 0.5].repeat(16));
+/// let map = Image::new(4, 4, 3, normals)?;
+/// let source = roughcast::SourceOptions { range: roughcast::NormalRange::Signed, ..Default::default() };
+/// let options = BakeOptions { layout: Layout::Clean, ..BakeOptions::default() };
+/// let levels = decode(&Bake::of(&map).source(source).options(options).run()?.arrays)?;
+/// assert_eq!((levels.len(), levels[0].width, levels[0].moments.len()), (3, 4, 16));
+/// let whole = levels[2].moments[0];
+/// assert!((whole.mean.x + 1.0).abs() < 1e-4 && whole.covariance().trace() < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn decode(arrays: &[TextureArray]) -> Result<Vec<MomentLevel>, DecodeError> {
     if arrays.iter().any(|array| array.info.layer.is_some()) {
         return decode(&join_layers(arrays.to_vec())?);
