@@ -1,6 +1,6 @@
 //! LEAN and CLEAN maps made on the GPU, fast enough for bumps that move every frame.
 //!
-//! The result is that of [`roughcast::bake`] to within one step of the format on every texel of every level: the same
+//! The result is that of [`roughcast::Bake`] to within one step of the format on every texel of every level: the same
 //! options, the same order of additions, quotients and roots rounded as the CPU rounds them.
 
 mod bandwidth;
