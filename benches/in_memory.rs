@@ -8,7 +8,7 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
-use roughcast::{BakeOptions, Image, Samples, ScaleChoice, SourceOptions, bake_reusing};
+use roughcast::{Bake, BakeOptions, Image, Samples, ScaleChoice, SourceOptions};
 
 const ROUNDS: usize = 15;
 const CHANNELS: usize = 3;
@@ -63,11 +63,17 @@ fn main() {
         for (options, times) in [(&fixed, &mut fixed_times), (&auto, &mut auto_times)] {
             times.push(timed(|| {
                 let reused = std::mem::take(&mut textures);
-                textures = bake_reusing(reused, &map, &source, None, options).expect("a plain bake").arrays;
+                textures = Bake::of(&map)
+                    .source(source)
+                    .options(*options)
+                    .reusing(reused)
+                    .run()
+                    .expect("a plain bake")
+                    .arrays;
             }));
         }
         fresh_times.push(timed(|| {
-            black_box(bake_reusing(Vec::new(), &map, &source, None, &fixed).expect("a plain bake"));
+            black_box(Bake::of(&map).source(source).options(fixed).run().expect("a plain bake"));
         }));
     }
     let copy = summary(copy);

@@ -4,8 +4,7 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use roughcast::texture::{Layout, decode};
 use roughcast::{
-    BakeOptions, BaseRoughness, Image, Kind, PyramidFilter, SampleType, Samples, SourceOptions, bake,
-    bake_reusing,
+    Bake, BakeOptions, BaseRoughness, Image, Kind, PyramidFilter, SampleType, Samples, SourceOptions,
 };
 
 /// Texels each way; small enough that a whole run takes seconds.
@@ -46,8 +45,14 @@ fn layout(bencher: Bencher, layout: &Layout) {
     let mut textures = Vec::new();
     bencher.counter(ItemsCount::new(SIDE * SIDE)).bench_local(|| {
         let reused = std::mem::take(&mut textures);
-        textures =
-            bake_reusing(reused, &map, &heights(), base, &options(*layout)).expect("a plain bake").arrays;
+        textures = Bake::of(&map)
+            .source(heights())
+            .roughness(base)
+            .options(options(*layout))
+            .reusing(reused)
+            .run()
+            .expect("a plain bake")
+            .arrays;
     });
 }
 
@@ -55,24 +60,24 @@ fn layout(bencher: Bencher, layout: &Layout) {
 fn filter(bencher: Bencher, filter: &PyramidFilter) {
     let map = hills(SIDE, SIDE);
     let options = BakeOptions { filter: *filter, ..BakeOptions::default() };
-    bencher
-        .counter(ItemsCount::new(SIDE * SIDE))
-        .bench_local(|| bake(black_box(&map), &heights(), None, &options).expect("a plain bake"));
+    bencher.counter(ItemsCount::new(SIDE * SIDE)).bench_local(|| {
+        Bake::of(black_box(&map)).source(heights()).options(options).run().expect("a plain bake")
+    });
 }
 
 /// Sizes that do not halve evenly use the general code.
 #[divan::bench]
 fn odd_size(bencher: Bencher) {
     let map = hills(SIDE + 1, SIDE + 1);
-    bencher.counter(ItemsCount::new((SIDE + 1) * (SIDE + 1))).bench_local(|| {
-        bake(black_box(&map), &heights(), None, &BakeOptions::default()).expect("a plain bake")
-    });
+    bencher
+        .counter(ItemsCount::new((SIDE + 1) * (SIDE + 1)))
+        .bench_local(|| Bake::of(black_box(&map)).source(heights()).run().expect("a plain bake"));
 }
 
 #[divan::bench]
 fn decode_lean(bencher: Bencher) {
     let map = hills(SIDE, SIDE);
-    let baked = bake(&map, &heights(), None, &BakeOptions::default()).expect("a plain bake");
+    let baked = Bake::of(&map).source(heights()).run().expect("a plain bake");
     bencher
         .counter(ItemsCount::new(SIDE * SIDE))
         .bench_local(|| decode(black_box(&baked.arrays)).expect("a whole layout"));

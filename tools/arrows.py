@@ -38,9 +38,10 @@ WITHOUT_FEATURES = {
 FIXTURES = "roughcast-testdata"
 
 # Crates of others that the library may use (tests are free). It is arithmetic on images in memory, and whoever takes it
-# into an engine takes these along.
+# into an engine takes these along; the optional ones only where a feature asks for them.
 LIBRARY = "roughcast"
-LIBRARY_MAY_USE = {"half", "multiversion", "rayon", "thiserror"}
+LIBRARY_MAY_USE = {"half", "thiserror"}
+LIBRARY_MAY_OFFER = {"multiversion", "rayon", "serde"}
 
 
 def arrow_faults(package, workspace_names):
@@ -62,7 +63,11 @@ def arrow_faults(package, workspace_names):
         elif dependency["source"] is None:
             yield f"{name} -> {target}: a path outside the workspace"
         elif name == LIBRARY and not in_tests and target not in LIBRARY_MAY_USE:
-            yield f"{name} -> {target}: the library may use only {', '.join(sorted(LIBRARY_MAY_USE))}"
+            if target not in LIBRARY_MAY_OFFER:
+                may_use = ", ".join(sorted(LIBRARY_MAY_USE | LIBRARY_MAY_OFFER))
+                yield f"{name} -> {target}: the library may use only {may_use}"
+            elif not dependency.get("optional"):
+                yield f"{name} -> {target}: this dependency of the library must be optional"
 
 
 def faults(metadata):

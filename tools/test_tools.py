@@ -33,7 +33,7 @@ class TestData(unittest.TestCase):
 
 
 class Arrows(unittest.TestCase):
-    library = package("roughcast", ("rayon", None, "registry"), ("image", "dev", "registry"))
+    library = package("roughcast", ("half", None, "registry"), ("image", "dev", "registry"))
 
     def faults(self, *packages):
         return arrows.faults(metadata(self.library, *packages))
@@ -78,8 +78,14 @@ class Arrows(unittest.TestCase):
 
     def test_a_further_dependency_of_the_library_fails(self):
         for kind in [None, "build"]:
-            library = package("roughcast", ("serde", kind, "registry"))
-            self.assertIn("roughcast -> serde", arrows.faults(metadata(library))[0])
+            library = package("roughcast", ("serde_json", kind, "registry"))
+            self.assertIn("roughcast -> serde_json", arrows.faults(metadata(library))[0])
+
+    def test_what_the_library_offers_is_optional(self):
+        library = package("roughcast", ("serde", None, "registry"))
+        self.assertIn("must be optional", arrows.faults(metadata(library))[0])
+        library["dependencies"][0]["optional"] = True
+        self.assertEqual(arrows.faults(metadata(library)), [])
 
     def test_a_workspace_without_the_library_fails(self):
         self.assertEqual(len(arrows.faults(metadata(package("roughcast-io")))), 1)

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result};
 use clap::ValueHint;
 use roughcast::texture::{Layout, MomentLevel, Texture, TextureArray, TextureInfo, decode};
-use roughcast::{BakeOptions, Image, SampleType, bake};
+use roughcast::{Bake, BakeOptions, Image, SampleType};
 use roughcast_io::texture_files::{layout_named_in, name_of_layer};
 use roughcast_io::{Decoded, FileInfo, read_image_of};
 use roughcast_pipeline::map_of;
@@ -157,7 +157,7 @@ impl Findings {
         }
         warn_of(&args.file, &map);
         let options = BakeOptions { layout: Layout::Moments, bits: SampleType::F32, ..Default::default() };
-        let baked = bake(&map.image, &map.options, None, &options)?;
+        let baked = Bake::of(&map.image).source(map.options).options(options).run()?;
         let repaired = baked.report.counts.total();
         self.put("repaired", json!(repaired), format!("{repaired} texels"));
         self.slopes(&decode(&baked.arrays)?);

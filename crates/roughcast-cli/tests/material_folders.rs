@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use common::{Outcome, bake, data, names, scratch, text};
-use roughcast::{Image, Samples};
+use roughcast::{Image, Samples, SamplesMut};
 use roughcast_io::{ReadOptions, png_levels, read_image_file};
 
 /// Normals with green up.
@@ -33,7 +33,7 @@ fn write(path: &Path, channels: usize, samples: Vec<u8>) {
 /// The normal map with green turned over.
 fn green_down(path: &Path) {
     let mut map = read_image_file(&data(NORMALS), &ReadOptions::default()).expect("the map").image;
-    let Samples::U8(samples) = map.samples_mut() else { panic!("8 bits") };
+    let SamplesMut::U8(samples) = map.samples_mut() else { panic!("8 bits") };
     samples.iter_mut().skip(1).step_by(3).for_each(|green| *green = 255 - *green);
     png_levels::write_level(&map, &Default::default(), fs::File::create(path).expect("space"))
         .expect("space");

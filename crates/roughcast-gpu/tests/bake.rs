@@ -60,7 +60,11 @@ impl<'a> Case<'a> {
     }
 
     fn check(&self, gpu: &Gpu) {
-        let mut cpu = roughcast::bake(self.image, &self.source, self.roughness, &self.options)
+        let mut cpu = roughcast::Bake::of(self.image)
+            .source(self.source)
+            .roughness(self.roughness)
+            .options(self.options)
+            .run()
             .unwrap_or_else(|error| panic!("{self}: {error}"));
         let (baker, array) = self.on_gpu(gpu);
         let expected = cpu.arrays.remove(0);
@@ -239,8 +243,13 @@ fn the_automatic_limit_of_slopes_matches_the_cpu() {
                 case.options.base = base;
                 case.roughness = Some(BaseRoughness::Variance(0.04));
                 case.check(&gpu);
-                let report =
-                    roughcast::bake(&image, &source, case.roughness, &case.options).expect("a map").report;
+                let report = roughcast::Bake::of(&image)
+                    .source(source)
+                    .roughness(case.roughness)
+                    .options(case.options)
+                    .run()
+                    .expect("a map")
+                    .report;
                 let (baker, _) = case.on_gpu(&gpu);
                 let got = block_on(baker.max_slope()).expect("read back");
                 assert!(
@@ -334,7 +343,8 @@ fn moving_bumps_reuse_textures_and_follow_their_inputs() {
             baker.upload(frame).expect("of the same kind");
             baker.run();
             let array = block_on(baker.read_back()).expect("read back");
-            let cpu = roughcast::bake(frame, &normal_source(), None, &options).expect("baked");
+            let cpu =
+                roughcast::Bake::of(frame).source(normal_source()).options(options).run().expect("baked");
             let found = difference(&array, &cpu.arrays[0]).expect("one shape");
             assert!(found.steps <= ALLOWED_STEPS, "{path:?}: {found:?}");
             assert_eq!(baker.textures(), textures);
@@ -377,7 +387,7 @@ fn textures_already_on_the_gpu_match_the_cpu() {
             view_formats: &[],
         };
         let map = gpu.device.create_texture_with_data(&gpu.queue, &descriptor, Default::default(), bytes);
-        let cpu = roughcast::bake(&image, &source, None, &options).expect("baked");
+        let cpu = roughcast::Bake::of(&image).source(source).options(options).run().expect("baked");
         for path in PATHS {
             let baker =
                 block_on(GpuBaker::for_texture(&gpu, &map, &source, None, &options, path)).expect("made");

@@ -6,22 +6,22 @@ use common::compare::difference;
 use common::maps::normals;
 use half::f16;
 use roughcast::texture::TextureArray;
-use roughcast::{BakeOptions, SampleType, Samples, SourceOptions};
+use roughcast::{BakeOptions, SampleType, SamplesMut};
 
 fn baked(bits: SampleType) -> TextureArray {
     let options = BakeOptions { bits, ..Default::default() };
     let image = normals(16, 8, 3, SampleType::U8);
-    roughcast::bake(&image, &SourceOptions::default(), None, &options).expect("baked").arrays.remove(0)
+    roughcast::Bake::of(&image).options(options).run().expect("baked").arrays.remove(0)
 }
 
 /// Moves one channel of one texel of the third level of the second texture by so many steps.
 fn moved(array: &TextureArray, steps: u16) -> TextureArray {
     let mut moved = array.clone();
     match moved.layers[1].levels[2].samples_mut() {
-        Samples::U8(v) => v[5] = v[5].wrapping_add(steps as u8),
-        Samples::U16(v) => v[5] = v[5].wrapping_add(steps),
-        Samples::F16(v) => v[5] = f16::from_bits(v[5].to_bits().wrapping_add(steps)),
-        Samples::F32(_) => unreachable!("the GPU bakes no single floats"),
+        SamplesMut::U8(v) => v[5] = v[5].wrapping_add(steps as u8),
+        SamplesMut::U16(v) => v[5] = v[5].wrapping_add(steps),
+        SamplesMut::F16(v) => v[5] = f16::from_bits(v[5].to_bits().wrapping_add(steps)),
+        SamplesMut::F32(_) => unreachable!("the GPU bakes no single floats"),
     }
     moved
 }
@@ -43,7 +43,7 @@ fn a_wrong_texel_is_detected_and_measured() {
 fn half_steps_are_counted_across_zero_and_nan_is_far_from_everything() {
     let with = |value: f16| {
         let mut array = baked(SampleType::F16);
-        let Samples::F16(v) = array.layers[0].levels[0].samples_mut() else { unreachable!("asked for") };
+        let SamplesMut::F16(v) = array.layers[0].levels[0].samples_mut() else { unreachable!("asked for") };
         v[0] = value;
         array
     };

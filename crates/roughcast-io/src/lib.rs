@@ -21,11 +21,11 @@
 //! # Example
 //!
 //! ```
-//! use roughcast::{BakeOptions, Image, SampleType, SourceOptions, bake};
+//! use roughcast::{Bake, Image, SampleType};
 //! use roughcast_io::{Limits, Payload, ReadOptions, Supercompression, ktx2};
 //!
 //! let map = Image::zeros(16, 16, 3, SampleType::F32);
-//! let baked = bake(&map, &SourceOptions::default(), None, &BakeOptions::default())?;
+//! let baked = Bake::of(&map).run()?;
 //!
 //! let mut file = Vec::new();
 //! ktx2::write(Payload::Texels(&baked.arrays[0]), Supercompression::Zstd, &mut file)?;

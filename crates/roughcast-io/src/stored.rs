@@ -202,9 +202,7 @@ mod tests {
     use std::sync::Mutex;
 
     use roughcast::texture::Layout;
-    use roughcast::{
-        BakeOptions, BaseRoughness, Image, PbrOptions, SampleType, Samples, SourceOptions, bake,
-    };
+    use roughcast::{Bake, BakeOptions, BaseRoughness, Image, PbrOptions, SampleType, Samples};
 
     use super::*;
 
@@ -225,9 +223,7 @@ mod tests {
             },
             ..BakeOptions::default()
         };
-        bake(&map, &SourceOptions::default(), Some(BaseRoughness::Variance(0.01)), &options)
-            .expect("a map")
-            .arrays
+        Bake::of(&map).roughness(BaseRoughness::Variance(0.01)).options(options).run().expect("a map").arrays
     }
 
     #[test]

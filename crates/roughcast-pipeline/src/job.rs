@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use roughcast::texture::{Base, BaseRole, Layout, TextureArray, mark_set};
-use roughcast::{BakeOptions, Baked, Blocks, bake};
+use roughcast::{Bake, BakeError, BakeOptions, Baked, Blocks};
 use roughcast_io::material_names::{MaterialRole, role_of};
 use roughcast_io::texture_files::{TextureFiles, WriteFilesError, check_destination, leftover_parts};
 use roughcast_io::{CompressError, Container, FileInfo, Stored, stored_of};
@@ -133,8 +133,16 @@ pub(crate) fn run(
     let options = choices.options(container, roughness.as_ref());
 
     watched.begin(Stage::Baking)?;
-    let Baked { arrays, report } = bake(&image, &source, roughness.as_ref().map(Roughness::base), &options)
-        .map_err(|source| JobError::Bake { path: path(), source })?;
+    let Baked { arrays, report } = Bake::of(&image)
+        .source(source)
+        .roughness(roughness.as_ref().map(Roughness::base))
+        .options(options)
+        .watched(&|fraction| watched.report(Some(fraction)))
+        .run()
+        .map_err(|error| match error {
+            BakeError::Stopped => JobError::Cancelled,
+            source => JobError::Bake { path: path(), source },
+        })?;
     if settings.broken_texels == BrokenTexels::Refuse && report.counts.broken() > 0 {
         let (counts, texels) = (report.counts, report.texels);
         return Err(JobError::BrokenTexels { path: path(), counts, texels });

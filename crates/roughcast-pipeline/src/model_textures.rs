@@ -3,8 +3,8 @@
 use roughcast::shading::Shading;
 use roughcast::texture::{BaseRole, TextureArray};
 use roughcast::{
-    AnisotropyOutput, BakeError, BakeOptions, BaseRoughness, ImageView, Lobe, PbrOptions, SampleType,
-    SourceOptions, bake,
+    AnisotropyOutput, Bake, BakeError, BakeOptions, BaseRoughness, ImageView, Lobe, PbrOptions, SampleType,
+    SourceOptions,
 };
 
 /// How a model's textures are baked.
@@ -37,5 +37,5 @@ pub fn bake_for<'a>(
     };
     let stores_base = shading.layout().base_role() != BaseRole::OnRequest;
     let base = stores_base.then_some(BaseRoughness::Variance(1.0 / options.specular_power));
-    Ok(bake(map, source, base, &bake_options)?.arrays)
+    Ok(Bake::of(map).source(*source).roughness(base).options(bake_options).run()?.arrays)
 }

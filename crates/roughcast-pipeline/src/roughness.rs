@@ -99,7 +99,7 @@ pub enum Roughness {
 }
 
 impl Roughness {
-    /// As [`roughcast::bake()`] takes it.
+    /// As [`roughcast::Bake`] takes it.
     pub fn base(&self) -> BaseRoughness<'_> {
         match self {
             Roughness::Variance(variance) => BaseRoughness::Variance(*variance),

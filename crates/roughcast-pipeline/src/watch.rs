@@ -45,9 +45,8 @@ pub struct Progress<'a> {
 /// Receives the progress of jobs, and may stop them.
 ///
 /// Any closure `Fn(&Progress) -> ControlFlow<()> + Sync` is one. It is called from any thread, also from several at once, at
-/// the beginning of each stage and, while blocks are compressed and files are written, within it. After
-/// `ControlFlow::Break` a job ends with [`JobError::Cancelled`] and leaves no file behind, and a folder begins no further job. The stage
-/// [`Stage::Baking`] runs to its end, since the bake itself cannot be stopped.
+/// the beginning of each stage and, but for the first, within it. After `ControlFlow::Break` a job ends with [`JobError::Cancelled`] and
+/// leaves no file behind, and a folder begins no further job.
 pub trait Watch: Sync {
     /// Receives the progress of a job.
     fn progress(&self, progress: &Progress<'_>) -> ControlFlow<()>;

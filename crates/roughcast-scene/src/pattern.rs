@@ -126,7 +126,7 @@ fn random(seed: u64, index: u64) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use roughcast::texture::{Layout, decode};
-    use roughcast::{BakeOptions, Moments, SampleType, bake};
+    use roughcast::{Bake, BakeOptions, Moments, SampleType};
 
     use super::*;
 
@@ -137,7 +137,11 @@ mod tests {
     fn whole(pattern: &Pattern) -> Moments {
         let options =
             BakeOptions { layout: Layout::Moments, bits: SampleType::F32, ..BakeOptions::default() };
-        let baked = bake(&pattern.heights, &pattern.source_options(), None, &options).expect("a map");
+        let baked = Bake::of(&pattern.heights)
+            .source(pattern.source_options())
+            .options(options)
+            .run()
+            .expect("a map");
         decode(&baked.arrays).expect("moments").last().expect("a level").moments[0]
     }
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use common::picture;
 use roughcast::shading::{FootprintModel, LobeOptions, Material, Shading};
 use roughcast::texture::TextureArray;
-use roughcast::{BakeOptions, Green, Image, SourceOptions, Wrap, bake};
+use roughcast::{Bake, BakeOptions, Green, Image, SourceOptions, Wrap};
 use roughcast_scene::metrics::rmse;
 use roughcast_scene::render::{Method, Truth, unwatched};
 use roughcast_scene::{
@@ -46,7 +46,7 @@ impl Seen {
 
     fn maps(&self, shading: Shading) -> Vec<TextureArray> {
         let options = BakeOptions { layout: shading.layout(), ..BakeOptions::default() };
-        bake(&self.image, &self.source, None, &options).expect("a map").arrays
+        Bake::of(&self.image).source(self.source).options(options).run().expect("a map").arrays
     }
 
     fn truth(&self, shading: Shading) -> Picture {

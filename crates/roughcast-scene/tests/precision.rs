@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use roughcast::shading::{LobeOptions, Material, Shading};
-use roughcast::{BakeOptions, Image, SampleType, SourceOptions, bake};
+use roughcast::{Bake, BakeOptions, Image, SampleType};
 use roughcast_io::{ReadOptions, read_image_file};
 use roughcast_scene::metrics::{DEFAULT_PIXELS_PER_DEGREE, hdr_flip};
 use roughcast_scene::render::{Method, unwatched};
@@ -25,7 +25,7 @@ fn map(name: &str) -> Image {
 
 fn picture(map: &Image, bits: SampleType, view: View) -> Picture {
     let options = BakeOptions { bits, ..BakeOptions::default() };
-    let baked = bake(map, &SourceOptions::default(), None, &options).expect("a map");
+    let baked = Bake::of(map).options(options).run().expect("a map");
     let textures = BakedTextures::of_model(Shading::Lean, &baked.arrays).expect("LEAN's textures");
     let plane = Arc::new(Shape::Plane(Plane::default()));
     let scene = view.scene(plane, (map.width(), map.height()), SIZE, Material::default());

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use common::picture;
 use roughcast::shading::{Form, LobeOptions, Material, Shading};
-use roughcast::{BakeOptions, SourceOptions, Wrap, bake};
+use roughcast::{Bake, SourceOptions, Wrap};
 use roughcast_scene::metrics::{energy_error, rmse};
 use roughcast_scene::render::{Method, Truth, unwatched};
 use roughcast_scene::{
@@ -28,7 +28,7 @@ fn lean_has_smaller_errors_on_real_maps() {
     for (name, factor) in roughcast_testdata::rows_with_files(MAPS, |row| row.0) {
         let map = picture(name).image;
         let source = SourceOptions::default();
-        let arrays = bake(&map, &source, None, &BakeOptions::default()).unwrap().arrays;
+        let arrays = Bake::of(&map).source(source).run().unwrap().arrays;
         let slopes = SlopeMap::of(&map, &source).unwrap();
         let plane = Arc::new(Shape::Plane(Plane::default()));
         let scene = View::Far.scene(plane, (map.width(), map.height()), SIZE, Material::default());

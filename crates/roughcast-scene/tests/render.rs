@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use glam::DVec3;
 use roughcast::shading::{Form, LobeOptions, Material, Shading};
 use roughcast::texture::{Part, TextureArray};
-use roughcast::{BakeOptions, BaseRoughness, PbrOptions, RoughnessTexture, SampleType, Wrap, bake};
+use roughcast::{Bake, BakeOptions, BaseRoughness, PbrOptions, RoughnessTexture, SampleType, Wrap};
 use roughcast_scene::metrics::{energy_error, flicker, rmse};
 use roughcast_scene::pattern::{self, Pattern};
 use roughcast_scene::render::{Method, RenderError, Truth, unwatched};
@@ -38,7 +38,13 @@ impl Map {
             _ => options,
         };
         let roughness = Some(BaseRoughness::Variance(1.0 / specular_power));
-        bake(&self.pattern.heights, &self.pattern.source_options(), roughness, &options).unwrap().arrays
+        Bake::of(&self.pattern.heights)
+            .source(self.pattern.source_options())
+            .roughness(roughness)
+            .options(options)
+            .run()
+            .unwrap()
+            .arrays
     }
 
     fn method(&self, scene: &Scene, shading: Shading, filter: Filter, options: LobeOptions) -> Picture {
@@ -282,7 +288,12 @@ fn packed_roughness_shades_as_roughness_alone() {
         let pbr = PbrOptions { roughness_texture, ..PbrOptions::default() };
         let bake_options = BakeOptions { layout: Shading::Ggx.layout(), pbr, ..BakeOptions::default() };
         let base = Some(BaseRoughness::Variance(1.0 / 64.0));
-        let baked = bake(&map.pattern.heights, &map.pattern.source_options(), base, &bake_options).unwrap();
+        let baked = Bake::of(&map.pattern.heights)
+            .source(map.pattern.source_options())
+            .roughness(base)
+            .options(bake_options)
+            .run()
+            .unwrap();
         let textures = BakedTextures::of_model(Shading::Ggx, &baked.arrays).unwrap();
         let method = Method { shading: Shading::Ggx, detail: &textures.sampled(Sampler::default()), options };
         method.render(&scene, SIZE, &unwatched).unwrap()

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use common::{Numbers, hits};
 use glam::{DVec2, DVec3};
 use roughcast::shading::{LobeOptions, Material, Shading};
-use roughcast::{BakeOptions, Moments, SampleType, Slope, bake};
+use roughcast::{Bake, BakeOptions, Moments, SampleType, Slope};
 use roughcast_scene::render::{Method, unwatched};
 use roughcast_scene::{
     BakedTextures, Camera, Filter, Hit, Light, Mesh, Picture, Plane, Ray, Sampler, Scene, Shape, SlopeFrame,
@@ -351,7 +351,7 @@ fn picture(quad: Quad, mirror: fn(DVec3) -> DVec3) -> Picture {
     let bumps = pattern::random_bumps(64, 0.15, 5);
     let options =
         BakeOptions { layout: Shading::Lean.layout(), bits: SampleType::F32, ..BakeOptions::default() };
-    let maps = bake(&bumps.heights, &bumps.source_options(), None, &options).unwrap().arrays;
+    let maps = Bake::of(&bumps.heights).source(bumps.source_options()).options(options).run().unwrap().arrays;
     let textures = BakedTextures::of_model(Shading::Lean, &maps).unwrap();
     let middle = quad.point(DVec2::splat(0.5));
     let eye = middle + mirror(DVec3::new(0.6, -0.4, 1.9));

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use common::picture;
 use roughcast::detect::{guess_channels, guess_range};
 use roughcast::shading::{LobeOptions, Material, Shading};
-use roughcast::{BakeOptions, BakeReport, Green, Image, MaxSlope, Samples, SourceOptions, bake};
+use roughcast::{Bake, BakeOptions, BakeReport, Green, Image, MaxSlope, SamplesMut, SourceOptions};
 use roughcast_scene::metrics::rmse;
 use roughcast_scene::render::{Method, Truth, unwatched};
 use roughcast_scene::{BakedTextures, Picture, Plane, Sampler, Scene, Shape, SlopeDetail, SlopeMap, View};
@@ -39,7 +39,7 @@ impl Far {
         let (range, mut image) = (guess_range(&decoded.image), decoded.image);
         let channels = image.channels();
         for (i, texel) in texels.iter().enumerate() {
-            let Samples::U8(samples) = image.samples_mut() else { panic!("{path} has 8 bits") };
+            let SamplesMut::U8(samples) = image.samples_mut() else { panic!("{path} has 8 bits") };
             let at = channels * (9_973 * i + 1_234);
             samples[at..at + 3].copy_from_slice(texel);
         }
@@ -64,7 +64,7 @@ impl Far {
     fn error(&self, model: usize, max_slope: MaxSlope) -> (f64, BakeReport) {
         let options = BakeOptions { layout: MODELS[model].layout(), ..BakeOptions::default() };
         let source = SourceOptions { max_slope, ..self.source };
-        let baked = bake(&self.image, &source, None, &options).expect("a map");
+        let baked = Bake::of(&self.image).source(source).options(options).run().expect("a map");
         let textures = BakedTextures::of_model(MODELS[model], &baked.arrays).expect("the model's maps");
         let method = Method {
             shading: MODELS[model],

@@ -55,6 +55,7 @@ impl NormalRange {
 
 named_enum! {
     /// Which channels hold a normal's components.
+    #[non_exhaustive]
     pub enum NormalChannels: "choice of channels" {
         /// Red, green, blue: x, y, z. Used by direction; the length does not matter.
         Xyz = "xyz",

@@ -2,6 +2,22 @@
 //!
 //! The caller may act on the answers or overrule them: if the pixels do not decide, the answer
 //! says so. All of it is deterministic; large images are judged by a regular sample of their texels.
+//!
+//! ```
+//! use roughcast::detect::{KindGuess, guess_channels, guess_kind, guess_range};
+//! use roughcast::{Image, Kind, NormalChannels, Samples};
+//!
+//! // Unit normals that lean to the right by several angles, in 8 bits.
+//! let texel = |i: usize| {
+//!     let (sin, cos) = (0.1 * (i % 7) as f32).sin_cos();
+//!     [sin, 0.0, cos].map(|v| (v * 127.5 + 127.5).round() as u8)
+//! };
+//! let map = Image::new(16, 16, 3, Samples::U8((0..256).flat_map(texel).collect()))?;
+//! let range = guess_range(&map);
+//! assert_eq!(guess_kind(&map, &["R", "G", "B"], range), KindGuess::Certain(Kind::Normal));
+//! assert_eq!(guess_channels(&map, &["R", "G", "B"], range), NormalChannels::Xyz);
+//! # Ok::<(), roughcast::ImageError>(())
+//! ```
 
 mod channels;
 mod correlation;

@@ -12,6 +12,7 @@ pub const MAX_GAUSSIANS: usize = 4;
 
 /// One Gaussian of a distribution of slopes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WeightedGaussian {
     /// Its part of the whole, 0 to 1.
     pub weight: f32,
@@ -33,11 +34,45 @@ pub struct WeightedGaussian {
 /// assert_eq!(mirrored.moments().mean.x, -0.5);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "Parts", into = "Parts")
+)]
 pub struct Distribution {
     normal: Normal,
     base: Base,
     count: usize,
     gaussians: [WeightedGaussian; MAX_GAUSSIANS],
+}
+
+/// A distribution as it is serialized: without room for Gaussians that are not there.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Parts {
+    normal: Normal,
+    base: Base,
+    gaussians: Vec<WeightedGaussian>,
+}
+
+#[cfg(feature = "serde")]
+impl From<Distribution> for Parts {
+    fn from(distribution: Distribution) -> Self {
+        let gaussians = distribution.gaussians().to_vec();
+        Self { normal: distribution.normal, base: distribution.base, gaussians }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Parts> for Distribution {
+    type Error = String;
+
+    fn try_from(parts: Parts) -> Result<Self, String> {
+        let count = parts.gaussians.len();
+        let mixture = Self::mixture(&parts.gaussians)
+            .ok_or_else(|| format!("a distribution has 1 to {MAX_GAUSSIANS} Gaussians, not {count}"))?;
+        Ok(mixture.with_normal(parts.normal).with_base(parts.base))
+    }
 }
 
 impl Distribution {

@@ -105,6 +105,19 @@ impl Samples {
 }
 
 /// An image of `height` rows of `width` pixels of `channels` interleaved samples. Row 0 is the top.
+///
+/// ```
+/// use roughcast::{Image, Samples, SamplesMut};
+///
+/// let mut image = Image::new(2, 1, 3, Samples::U8(vec![0, 0, 255, 51, 0, 255]))?;
+/// assert_eq!(image.get(1, 0, 0), 0.2);
+/// if let SamplesMut::U8(samples) = image.samples_mut() {
+///     samples[3] = 255;
+/// }
+/// assert_eq!(image.get(1, 0, 0), 1.0);
+/// assert!(Image::new(2, 1, 3, Samples::U8(vec![0; 5])).is_err());
+/// # Ok::<(), roughcast::ImageError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
     width: usize,
@@ -114,7 +127,8 @@ pub struct Image {
 }
 
 /// Why samples do not make an image.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, thiserror::Error)]
+#[non_exhaustive]
 pub enum ImageError {
     /// A side or the number of channels is zero.
     #[error(
@@ -193,10 +207,14 @@ impl Image {
         }
     }
 
-    /// The samples, to write to. Their number cannot change through a slice pattern; replacing the vector by one of
-    /// another length is a mistake that the next use of the image shows as a panic.
-    pub fn samples_mut(&mut self) -> &mut Samples {
-        &mut self.samples
+    /// The samples, to write to. Their number and their type stay.
+    pub fn samples_mut(&mut self) -> SamplesMut<'_> {
+        match &mut self.samples {
+            Samples::U8(v) => SamplesMut::U8(v),
+            Samples::U16(v) => SamplesMut::U16(v),
+            Samples::F16(v) => SamplesMut::F16(v),
+            Samples::F32(v) => SamplesMut::F32(v),
+        }
     }
 
     /// The samples, taken out.
@@ -286,18 +304,43 @@ impl SamplesView<'_> {
     }
 }
 
+/// The samples of an [`Image`], to write to.
+#[derive(Debug, PartialEq)]
+pub enum SamplesMut<'a> {
+    /// 8-bit unsigned normalised: 0 ..= 255 stands for 0 ..= 1.
+    U8(&'a mut [u8]),
+    /// 16-bit unsigned normalised: 0 ..= 65535 stands for 0 ..= 1.
+    U16(&'a mut [u16]),
+    /// Half float, the value itself.
+    F16(&'a mut [f16]),
+    /// Single float, the value itself.
+    F32(&'a mut [f32]),
+}
+
+impl SamplesMut<'_> {
+    /// How they are stored.
+    pub fn sample_type(&self) -> SampleType {
+        match self {
+            SamplesMut::U8(_) => SampleType::U8,
+            SamplesMut::U16(_) => SampleType::U16,
+            SamplesMut::F16(_) => SampleType::F16,
+            SamplesMut::F32(_) => SampleType::F32,
+        }
+    }
+}
+
 /// An [`Image`] whose samples belong to someone else: an array of NumPy, the memory of a browser, another library's picture. Whatever
 /// reads images takes views, and `&Image` is one by [`Into`].
 ///
 /// Rows lie one after the other, without gaps.
 ///
 /// ```
-/// use roughcast::{BakeOptions, ImageView, SamplesView, SourceOptions, bake};
+/// use roughcast::{Bake, ImageView, SamplesView};
 ///
 /// // Normals that point straight up, in someone else's memory.
 /// let pixels: [u8; 12] = [128, 128, 255].repeat(4).try_into().unwrap();
 /// let map = ImageView::new(2, 2, 3, SamplesView::U8(&pixels))?;
-/// let baked = bake(map, &SourceOptions::default(), None, &BakeOptions::default())?;
+/// let baked = Bake::of(map).run()?;
 /// assert_eq!(baked.report.levels.len(), 2);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -375,10 +418,10 @@ mod tests {
         for sample_type in types {
             let mut image = Image::zeros(3, 2, 2, sample_type);
             match image.samples_mut() {
-                Samples::U8(v) => v[9] = 51,
-                Samples::U16(v) => v[9] = 13107,
-                Samples::F16(v) => v[9] = f16::from_f32(0.2),
-                Samples::F32(v) => v[9] = 0.2,
+                SamplesMut::U8(v) => v[9] = 51,
+                SamplesMut::U16(v) => v[9] = 13107,
+                SamplesMut::F16(v) => v[9] = f16::from_f32(0.2),
+                SamplesMut::F32(v) => v[9] = 0.2,
             }
             let view = image.view();
             assert_eq!((view.width(), view.height(), view.channels()), (3, 2, 2));

@@ -8,6 +8,7 @@ use crate::slope::Slope;
 
 /// Mean slope and raw second moments. Linear: any non-negative filter may average them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Moments {
     /// Mean slope `B = E[b]`.
     pub mean: Slope,
@@ -21,6 +22,7 @@ pub struct Moments {
 
 /// Covariance of slopes, `M - B B^T`: the variance per axis and its mixed term.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Covariance {
     /// Variance along x.
     pub xx: f32,

@@ -1,6 +1,7 @@
 //! Enums whose variants have a name: the one that the command line, the files' metadata and Python all use.
 
-/// Declares an enum with `ALL`, `name()`, `Display` and `FromStr`, from one list of variants. For the crates of this
+/// Declares an enum with `ALL`, `name()`, `Display` and `FromStr`, from one list of variants; with the feature `serde` it is
+/// serialized by its names. For the crates of this
 /// workspace, so that all names that a user types behave alike.
 #[macro_export]
 macro_rules! named_enum {
@@ -34,6 +35,8 @@ macro_rules! named_enum {
             }
         }
 
+        $crate::__serde_by_name!($type);
+
         impl std::fmt::Display for $type {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
                 f.pad(self.name())
@@ -53,6 +56,35 @@ macro_rules! named_enum {
     };
 }
 
+/// Serializes a named enum by its names.
+#[cfg(feature = "serde")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __serde_by_name {
+    ($type:ident) => {
+        impl $crate::__serde::Serialize for $type {
+            fn serialize<S: $crate::__serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                serializer.serialize_str(self.name())
+            }
+        }
+
+        impl<'de> $crate::__serde::Deserialize<'de> for $type {
+            fn deserialize<D: $crate::__serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let name = <String as $crate::__serde::Deserialize>::deserialize(deserializer)?;
+                name.parse().map_err($crate::__serde::de::Error::custom)
+            }
+        }
+    };
+}
+
+/// Nothing: the feature `serde` is off.
+#[cfg(not(feature = "serde"))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __serde_by_name {
+    ($type:ident) => {};
+}
+
 /// An enum whose variants have names.
 pub trait Named: Copy + 'static {
     /// Every variant, in the order of declaration.
@@ -63,7 +95,7 @@ pub trait Named: Copy + 'static {
 }
 
 /// A name that stands for no variant.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 #[error("no {what} is called '{got}': choose one of {known}")]
 pub struct UnknownName {
     /// What was looked for.

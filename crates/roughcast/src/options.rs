@@ -8,6 +8,8 @@ use crate::texture::{Blocks, Layout, PbrOptions};
 
 named_enum! {
     /// How a height map's gradient is estimated. All are in texels of level 0.
+    ///
+    /// Closed, since whoever makes slopes by other means, such as a GPU, has to know them all.
     pub enum Gradient: "gradient" {
         /// The 8-tap Sobel filter divided by 8.
         Sobel = "sobel",
@@ -21,6 +23,7 @@ named_enum! {
 named_enum! {
     /// The kernel that makes a level from the previous one. All are non-negative: with lobes below zero the covariance
     /// would stop being one.
+    #[non_exhaustive]
     pub enum PyramidFilter: "filter" {
         /// Exact area average.
         Box = "box",
@@ -31,8 +34,13 @@ named_enum! {
     }
 }
 
-/// How a map is turned into slopes.
+/// How a map is turned into slopes. Write `..Default::default()` at the end: a minor version may add a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct SourceOptions {
     /// What the pixels are.
     pub kind: Kind,
@@ -61,6 +69,7 @@ pub struct SourceOptions {
 
 /// The largest length that a slope may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum MaxSlope {
     /// [`MaxSlope::OF_ANY_MAP`], or less where a few steep texels make the range of unsigned texels much larger than the rest
     /// needs: where the steepest 0.1 % cost more than a factor of 4 in usable specular power, the limit is the slope that they
@@ -122,8 +131,9 @@ impl Default for SourceOptions {
     }
 }
 
-/// The range of slopes that unsigned texels cover.
+/// The range of slopes that unsigned texels cover: found or given, and nothing else.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum ScaleChoice {
     /// The smallest that holds every texel.
     Auto,
@@ -131,8 +141,13 @@ pub enum ScaleChoice {
     Fixed(f32),
 }
 
-/// What to bake from a map.
+/// What to bake from a map. Write `..Default::default()` at the end: a minor version may add a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct BakeOptions {
     /// The layout.
     pub layout: Layout,

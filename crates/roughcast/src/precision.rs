@@ -3,15 +3,29 @@
 //! Source: "Shiny and CLEAN", with the error of the mean counted in full. With `V = M - B²`, texels of half a code's error
 //! over their range give `e_V = e_M + 2 |B| e_B + e_B²`, and the lobe is safe while `1/s > e_V`.
 
-use rayon::prelude::*;
-
-use crate::bake::{BakeError, Baked, bake};
+use crate::bake::{Bake, BakeError, Baked};
 use crate::options::{BakeOptions, MaxSlope, SourceOptions};
 use crate::texture::{self, Bounds, Layout, Part, Peaks, TextureArray, TextureInfo};
-use crate::{ImageView, Moments, SampleType};
+use crate::{ImageView, Moments, SampleType, parallel};
 
 /// The errors of one storage type for a map stored as LEAN.
+///
+/// ```
+/// use roughcast::precision::{measure, recommend, unorm_specular_power};
+/// use roughcast::{Image, Kind, SampleType, SourceOptions};
+///
+/// // Shiny and CLEAN: slopes up to one in 8 bits carry an exponent of about 100.
+/// assert!((95.0..105.0).contains(&unorm_specular_power(SampleType::U8, 1.0)));
+///
+/// let flat = Image::zeros(8, 8, 1, SampleType::U8);
+/// let measured = measure(&flat, &SourceOptions { kind: Kind::Height, ..SourceOptions::default() })?;
+/// assert_eq!(measured.len(), SampleType::ALL.len());
+/// assert_eq!(recommend(&measured, 50.0), Some(SampleType::U8));
+/// # Ok::<(), roughcast::BakeError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Precision {
     /// The storage type.
     pub bits: SampleType,
@@ -42,7 +56,7 @@ impl Precision {
 /// Stores a map as LEAN in every type and compares the variances that come back with those of the pyramid.
 ///
 /// # Errors
-/// As [`bake`], for any of the types.
+/// As [`Bake::run`], for any of the types.
 pub fn measure<'a>(
     image: impl Into<ImageView<'a>>,
     source: &SourceOptions,
@@ -51,7 +65,10 @@ pub fn measure<'a>(
     let mut references: Vec<(f32, Vec<TextureArray>)> = Vec::new();
     let mut measured = Vec::new();
     for bits in SampleType::ALL {
-        let baked = bake(image, source, None, &BakeOptions { bits: *bits, ..BakeOptions::default() })?;
+        let baked = Bake::of(image)
+            .source(*source)
+            .options(BakeOptions { bits: *bits, ..BakeOptions::default() })
+            .run()?;
         let limit = baked.report.max_slope;
         // A type's own limit of slopes is no error of the type.
         if !references.iter().any(|(of_limit, _)| *of_limit == limit) {
@@ -71,7 +88,7 @@ fn reference(
 ) -> Result<Vec<TextureArray>, BakeError> {
     let source = SourceOptions { max_slope: MaxSlope::Limit(max_slope), ..*source };
     let options = BakeOptions { layout: Layout::Schilling, bits: SampleType::F32, ..BakeOptions::default() };
-    Ok(bake(image, &source, None, &options)?.arrays)
+    Ok(Bake::of(image).source(source).options(options).run()?.arrays)
 }
 
 fn measure_one(baked: &Baked, bits: SampleType, reference: &TextureArray) -> Precision {
@@ -80,13 +97,10 @@ fn measure_one(baked: &Baked, bits: SampleType, reference: &TextureArray) -> Pre
     for level in 0..stored.level_count() {
         let (width, height) =
             (stored.layers[0].levels[level].width(), stored.layers[0].levels[level].height());
-        let worst = (0..height)
-            .into_par_iter()
-            .map(|y| {
-                (0..width).map(|x| errors_at(stored, reference, level, x, y)).fold((0.0, 0.0), larger_of_both)
-            })
-            .reduce(|| (0.0, 0.0), larger_of_both);
-        (variance, eigenvalue) = larger_of_both((variance, eigenvalue), worst);
+        let worst = parallel::map((0..height).collect(), |y| {
+            (0..width).map(|x| errors_at(stored, reference, level, x, y)).fold((0.0, 0.0), larger_of_both)
+        });
+        (variance, eigenvalue) = worst.into_iter().fold((variance, eigenvalue), larger_of_both);
     }
     Precision {
         bits,

@@ -16,6 +16,7 @@ named_enum! {
 
 named_enum! {
     /// The lobe for which a stored roughness is meant.
+    #[non_exhaustive]
     pub enum Brdf: "BRDF" {
         /// GGX, by the convention `alpha^2 = alpha0^2 + 2 sigma^2`: it has no finite slope variance of its own.
         Ggx = "ggx",
@@ -28,6 +29,7 @@ named_enum! {
 
 named_enum! {
     /// The quantity by which a roughness is stored. `alpha` is the width of the lobe.
+    #[non_exhaustive]
     pub enum RoughnessStored: "way to store roughness" {
         /// glTF's perceptual roughness, `sqrt(alpha)`.
         Perceptual = "perceptual",
@@ -54,6 +56,7 @@ named_enum! {
 
 named_enum! {
     /// In which channels `pbr` stores roughness. The names are those of the channels.
+    #[non_exhaustive]
     pub enum RoughnessTexture: "roughness layout" {
         /// One channel: BC4, and renderers that read one number.
         Alone = "r",

@@ -1,6 +1,7 @@
 //! Slopes and normals in the tangent frame: x right, y up, z out of the surface.
 
-use std::ops::{Add, Mul, Neg, Sub};
+use std::iter::Sum;
+use std::ops::{Add, AddAssign, Mul, Neg, Sub};
 
 use crate::moments::SlopeMatrix;
 
@@ -8,6 +9,7 @@ use crate::moments::SlopeMatrix;
 ///
 /// Source: LEAN mapping, Eq. 3.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Slope {
     /// Towards the right (growing column).
     pub x: f32,
@@ -57,6 +59,7 @@ impl Mul<f32> for Slope {
 
 /// A direction out of the surface; unit length where a function says so.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Normal {
     /// Towards the right.
     pub x: f32,
@@ -103,7 +106,8 @@ pub fn normal_from_slope(slope: Slope) -> Normal {
 /// A broken normal is made *neutral*: it gets the mean slope of those of its eight neighbours that are not broken, or a flat
 /// one where all of them are. Beyond an edge lie the texels that the wrap mode specifies; where the map does not repeat, those of
 /// the edge once more.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SourceCounts {
     /// Texels steeper than the largest slope, scaled back to it, direction kept.
     pub clamped: u64,
@@ -117,16 +121,6 @@ pub struct SourceCounts {
 }
 
 impl SourceCounts {
-    /// Sum of two counts.
-    pub fn plus(self, other: Self) -> Self {
-        Self {
-            clamped: self.clamped + other.clamped,
-            behind: self.behind + other.behind,
-            invalid: self.invalid + other.invalid,
-            non_finite: self.non_finite + other.non_finite,
-        }
-    }
-
     /// Texels that say nothing of the surface.
     pub fn broken(self) -> u64 {
         self.behind + self.invalid + self.non_finite
@@ -135,6 +129,31 @@ impl SourceCounts {
     /// All texels that were changed.
     pub fn total(self) -> u64 {
         self.clamped + self.broken()
+    }
+}
+
+impl Add for SourceCounts {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            clamped: self.clamped + other.clamped,
+            behind: self.behind + other.behind,
+            invalid: self.invalid + other.invalid,
+            non_finite: self.non_finite + other.non_finite,
+        }
+    }
+}
+
+impl AddAssign for SourceCounts {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl Sum for SourceCounts {
+    fn sum<I: Iterator<Item = Self>>(counts: I) -> Self {
+        counts.fold(Self::default(), Add::add)
     }
 }
 

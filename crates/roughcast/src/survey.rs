@@ -1,7 +1,7 @@
 //! A pass over every slope of level 0, before anything is stored: it finds the smallest safe scale.
 
-use rayon::prelude::*;
-
+use crate::parallel;
+use crate::progress::{Progress, Stopped};
 use crate::pyramid::{largest, largest_component_and_square};
 use crate::row::{Row, RowSource, SourceScratch};
 use crate::texture::Peaks;
@@ -62,18 +62,22 @@ pub fn survey_stride(width: usize, height: usize) -> usize {
 }
 
 /// Looks at every slope of level 0.
-pub(crate) fn survey(source: &dyn RowSource) -> Survey {
+pub(crate) fn survey(source: &dyn RowSource, progress: &Progress<'_>) -> Result<Survey, Stopped> {
     let stride = survey_stride(source.width(), source.height());
-    let bands: Vec<Survey> = (0..source.height().div_ceil(BAND_ROWS))
-        .into_par_iter()
-        .map(|band| {
-            let rows = band * BAND_ROWS..((band + 1) * BAND_ROWS).min(source.height());
-            survey_band(source, stride, rows)
-        })
-        .collect();
+    let bands = parallel::map((0..source.height().div_ceil(BAND_ROWS)).collect(), |band| {
+        progress.check()?;
+        let rows = band * BAND_ROWS..((band + 1) * BAND_ROWS).min(source.height());
+        let texels = rows.len() * source.width();
+        let survey = survey_band(source, stride, rows);
+        progress.advance(texels);
+        Ok(survey)
+    });
     let mut whole = Survey::empty();
-    bands.iter().for_each(|band| whole.add(band));
-    whole
+    for band in bands {
+        whole.add(&band?);
+    }
+    progress.check()?;
+    Ok(whole)
 }
 
 /// Rows of a sample of level 0.
@@ -83,7 +87,7 @@ const SAMPLED_ROWS: usize = 64;
 pub(crate) fn survey_of_some_rows(source: &dyn RowSource) -> Survey {
     let step = source.height().div_ceil(SAMPLED_ROWS);
     let rows: Vec<usize> = (0..source.height()).skip(step / 2).step_by(step).collect();
-    let sampled: Vec<Survey> = rows.into_par_iter().map(|row| survey_band(source, 1, row..row + 1)).collect();
+    let sampled = parallel::map(rows, |row| survey_band(source, 1, row..row + 1));
     let mut whole = Survey::empty();
     sampled.iter().for_each(|band| whole.add(band));
     whole

@@ -145,6 +145,7 @@ fn promised(case: &Case, texel: Texel, normal: [f64; 3]) -> Promise {
             let slope = [normal[0] / normal[2], normal[1] / normal[2]];
             Promise { slope, variances: vec![(1.0 - length) / length], covariance: None }
         }
+        layout => panic!("say what {layout} promises"),
     }
 }
 

@@ -5,8 +5,8 @@ mod common;
 use common::{baked_with, maps, options};
 use roughcast::texture::{Base, Layout, RoughnessStored};
 use roughcast::{
-    BakeOptions, Baked, BaseRoughness, Image, ImageView, PyramidFilter, RoughnessMap, SampleType, Samples,
-    SamplesView, SourceOptions, bake,
+    Bake, BakeOptions, Baked, BaseRoughness, Image, ImageView, PyramidFilter, RoughnessMap, SampleType,
+    Samples, SamplesView, SourceOptions,
 };
 
 fn with_threads(threads: usize, work: impl FnOnce() -> Baked + Send) -> Baked {
@@ -75,7 +75,8 @@ fn borrowed_memory_gives_the_same_as_images() {
     let (channel, stored) = (0, RoughnessStored::Alpha);
     let bake_with = |map: ImageView<'_>, image: ImageView<'_>| {
         let base = BaseRoughness::Map(RoughnessMap { image, channel, stored });
-        let Baked { arrays, report } = bake(map, &source, Some(base), &options).expect("a map");
+        let Baked { arrays, report } =
+            Bake::of(map).source(source).roughness(base).options(options).run().expect("a map");
         // Not the metadata, where a base that varies is not a number.
         (arrays.into_iter().map(|array| array.layers).collect::<Vec<_>>(), report)
     };

@@ -9,7 +9,7 @@ use common::pyramid_oracle::composed_weights;
 use common::{baked, float_moments, options, slope_oracle};
 use roughcast::texture::{Layout, decode};
 use roughcast::{
-    Gradient, Green, Image, NormalRange, PyramidFilter, SampleType, Samples, SourceOptions, Wrap,
+    Gradient, Green, Image, NormalRange, PyramidFilter, SampleType, Samples, SamplesMut, SourceOptions, Wrap,
 };
 
 /// Averaging alone: some four roundings a level, eleven levels.
@@ -259,13 +259,13 @@ fn with_green_turned(image: &Image, range: NormalRange) -> Image {
     let mut turned = image.clone();
     let green = |i: usize| i % channels == 1;
     match turned.samples_mut() {
-        Samples::U8(v) => {
+        SamplesMut::U8(v) => {
             v.iter_mut().enumerate().filter(|(i, _)| green(*i)).for_each(|(_, v)| *v = 255 - *v)
         }
-        Samples::U16(v) => {
+        SamplesMut::U16(v) => {
             v.iter_mut().enumerate().filter(|(i, _)| green(*i)).for_each(|(_, v)| *v = 65535 - *v)
         }
-        Samples::F32(v) if range == NormalRange::Signed => {
+        SamplesMut::F32(v) if range == NormalRange::Signed => {
             v.iter_mut().enumerate().filter(|(i, _)| green(*i)).for_each(|(_, v)| *v = -*v);
         }
         other => panic!("not used here: {:?}", other.sample_type()),

@@ -73,6 +73,7 @@ fn the_roughness_of_a_material_includes_base_and_bumps() {
                     RoughnessStored::AlphaSquared => r,
                     RoughnessStored::Gloss => (1.0 - r).powi(4),
                     RoughnessStored::SpecularPower => 2.0 / r,
+                    other => panic!("say what {other} means"),
                 });
                 // Gloss holds one minus the root of the width: its rounding is absolute, and the smallest widths have
                 // their fourth power's worth of it.

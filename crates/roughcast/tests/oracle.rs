@@ -109,7 +109,7 @@ fn random_pixels_are_repaired_and_counted_by_the_rules() {
             let values: Vec<f64> = (0..61 * 43 * channels).map(|_| random.unit()).collect();
             let image = maps::image(61, 43, channels, maps::samples(&values, sample_type));
             let (_, report) = check(&image, &options, NEAR_THE_RIM);
-            total = total.plus(report.counts);
+            total += report.counts;
             assert!(report.steepest <= 8.0 * (1.0 + f32::EPSILON * 2.0), "{}", report.steepest);
         }
     }

@@ -8,7 +8,7 @@ use common::real_files::{self, Entry};
 use common::{baked, float_moments, maps, options, slope_oracle};
 use roughcast::texture::Layout;
 use roughcast::{
-    Green, Image, Kind, MaxSlope, NormalRange, PyramidFilter, SampleType, Samples, SourceCounts,
+    Green, Image, Kind, MaxSlope, NormalRange, PyramidFilter, SampleType, Samples, SamplesMut, SourceCounts,
     SourceOptions,
 };
 
@@ -119,8 +119,8 @@ fn both_conventions_of_green_give_the_same_textures() {
         let up = real_files::read(path);
         let mut down = up.clone();
         match down.samples_mut() {
-            Samples::U8(v) => v.iter_mut().skip(1).step_by(3).for_each(|green| *green = 255 - *green),
-            Samples::U16(v) => v.iter_mut().skip(1).step_by(3).for_each(|green| *green = 65535 - *green),
+            SamplesMut::U8(v) => v.iter_mut().skip(1).step_by(3).for_each(|green| *green = 255 - *green),
+            SamplesMut::U16(v) => v.iter_mut().skip(1).step_by(3).for_each(|green| *green = 65535 - *green),
             other => panic!("{path} has {:?}", other.sample_type()),
         }
         assert_eq!(up.channels(), 3);

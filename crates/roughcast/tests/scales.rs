@@ -8,8 +8,8 @@ use common::maps;
 use common::{baked, baked_with, options, pyramid_oracle, slope_oracle};
 use roughcast::texture::{Base, Layout, RoughnessStored};
 use roughcast::{
-    BakeError, BakeOptions, Baked, BaseRoughness, Blocks, Image, MaxSlope, NormalChannels, PbrOptions,
-    PyramidFilter, RoughnessMap, SampleType, Samples, ScaleChoice, SourceError, SourceOptions, bake,
+    Bake, BakeError, BakeOptions, Baked, BaseRoughness, Blocks, Image, MaxSlope, NormalChannels, PbrOptions,
+    PyramidFilter, RoughnessMap, SampleType, Samples, ScaleChoice, SourceError, SourceOptions,
 };
 
 const UNSIGNED: [SampleType; 2] = [SampleType::U8, SampleType::U16];
@@ -411,11 +411,17 @@ fn contradictory_options_are_refused() {
         ("height scale", &image, SourceOptions { height_scale: f32::NAN, ..source }, None, plain),
     ];
     for (word, image, source, base, options) in cases {
-        let error = bake(image, &source, base, &options).expect_err(word).to_string();
+        let error = Bake::of(image)
+            .source(source)
+            .roughness(base)
+            .options(options)
+            .run()
+            .expect_err(word)
+            .to_string();
         assert!(error.contains(word) && !error.contains('\n'), "'{error}' does not say '{word}'");
         assert!(!error.contains("--"), "'{error}' names an option of the program");
     }
-    let error = bake(&two_channels, &source, None, &plain).expect_err("two channels");
+    let error = Bake::of(&two_channels).source(source).options(plain).run().expect_err("two channels");
     let channels = SourceError::Channels { wanted: "normal map", needed: 3, got: 2 };
     assert_eq!(error, BakeError::Source(channels));
 }

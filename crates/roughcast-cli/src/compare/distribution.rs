@@ -4,7 +4,7 @@
 //! LEAN has one Gaussian of their mean and covariance (LEAN mapping, Eq. 1, 5).
 
 use roughcast::texture::{Layout, decode};
-use roughcast::{BakeError, BakeOptions, Covariance, Image, SampleType, Slope, SourceOptions, bake};
+use roughcast::{Bake, BakeError, BakeOptions, Covariance, Image, SampleType, Slope, SourceOptions};
 use roughcast_io::picture::Srgb8Picture;
 
 use crate::display::srgb8;
@@ -34,7 +34,7 @@ impl Distribution {
     pub fn of(map: &Image, source: &SourceOptions, specular_power: f32) -> Result<Self, BakeError> {
         let options =
             BakeOptions { layout: Layout::Moments, bits: SampleType::F32, ..BakeOptions::default() };
-        let baked = bake(map, source, None, &options)?;
+        let baked = Bake::of(map).source(*source).options(options).run()?;
         let levels = decode(&baked.arrays).expect("a bake of this layout is complete");
         let whole = levels.last().expect("there is a level").moments[0];
         let slopes = levels[0].moments.iter().map(|moments| moments.mean);

@@ -84,7 +84,7 @@ fn wool() -> Result<Subject> {
 #[cfg(test)]
 mod tests {
     use roughcast::texture::{Layout, decode};
-    use roughcast::{BakeOptions, SampleType, bake};
+    use roughcast::{Bake, BakeOptions, SampleType};
 
     use super::*;
 
@@ -93,7 +93,7 @@ mod tests {
         let subject = v_groove();
         let options =
             BakeOptions { layout: Layout::Moments, bits: SampleType::F32, ..BakeOptions::default() };
-        let baked = bake(&subject.image, &subject.options, None, &options).expect("a map");
+        let baked = Bake::of(&subject.image).source(subject.options).options(options).run().expect("a map");
         let finest = &decode(&baked.arrays).expect("moments")[0];
         let slopes = finest.moments.iter().map(|moments| f64::from(moments.mean.x));
         let steep = slopes.filter(|x| (x.abs() - GROOVE_SLOPE).abs() < 1e-3).count();

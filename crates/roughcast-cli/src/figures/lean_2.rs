@@ -4,7 +4,7 @@ use anyhow::Result;
 use glam::{DVec2, DVec3};
 use roughcast::shading::{LobeOptions, Shading};
 use roughcast::texture::{Layout, decode};
-use roughcast::{BakeOptions, Covariance, SampleType, bake};
+use roughcast::{Bake, BakeOptions, Covariance, SampleType};
 use roughcast_scene::pattern::{Pattern, random_bumps, random_ridges};
 use roughcast_scene::{Camera, Filter, Picture, Sampler, Scene, Shape, Sphere, luminance};
 use serde_json::{Map, Value, json};
@@ -116,7 +116,7 @@ impl Parts {
 /// The aspect ratio that the whole map's covariance and the base roughness predict.
 fn expected(map: &Pattern) -> Result<f64> {
     let options = BakeOptions { layout: Layout::Moments, bits: SampleType::F32, ..BakeOptions::default() };
-    let levels = decode(&bake(&map.heights, &map.source_options(), None, &options)?.arrays)?;
+    let levels = decode(&Bake::of(&map.heights).source(map.source_options()).options(options).run()?.arrays)?;
     let covariance = levels.last().expect("there is a level").moments[0].covariance();
     let base = 1.0 / SPECULAR_POWER;
     let with_base = Covariance { xx: covariance.xx + base, yy: covariance.yy + base, ..covariance };

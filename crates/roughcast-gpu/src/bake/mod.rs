@@ -1,6 +1,6 @@
 //! LEAN and CLEAN maps baked on the GPU, fast enough for bumps that move every frame.
 //!
-//! The result matches that of [`roughcast::bake`] within one step of the format on every texel of every level: the same
+//! The result matches that of [`roughcast::Bake`] within one step of the format on every texel of every level: the same
 //! options, the same order of additions, quotients and roots rounded as on the CPU.
 
 mod bandwidth;
@@ -19,7 +19,6 @@ use roughcast::texture::{TextureArray, TextureInfo};
 use roughcast::wgsl::Role;
 use roughcast::{
     BakeOptions, BakePlan, BaseRoughness, Image, MaxSlope, ScaleChoice, SourceCounts, SourceOptions,
-    plan_bake,
 };
 use wgpu::util::DeviceExt;
 
@@ -281,7 +280,7 @@ impl Job {
         options: &BakeOptions,
         path: BakePath,
     ) -> Result<Self, GpuError> {
-        let plan = plan_bake(source, roughness, options)?;
+        let plan = BakePlan::new(source, roughness, options)?;
         let target = Target::new(options)?;
         let base_variance = base_variance_of(&plan.info, roughness)?;
         let map_format = MapFormat::of_texture(map.format())?;

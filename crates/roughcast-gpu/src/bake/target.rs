@@ -190,7 +190,7 @@ pub(super) fn base_variance_of(
         (_, Some(roughcast::BaseRoughness::Variance(variance))) => {
             Err(BakeError::Source(SourceError::BaseVariance { variance }).into())
         }
-        (_, Some(roughcast::BaseRoughness::Map(_))) => Err(GpuError::OnlyOnCpu(
+        (_, Some(_)) => Err(GpuError::OnlyOnCpu(
             "the GPU folds in one roughness for the whole map, not a map of it: bake on the CPU".to_owned(),
         )),
     }

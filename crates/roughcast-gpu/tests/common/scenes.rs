@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use roughcast::shading::{Material, Shading};
 use roughcast::texture::{Base, TextureArray};
-use roughcast::{BakeOptions, BaseRoughness, SampleType, ScaleChoice, bake};
+use roughcast::{Bake, BakeOptions, BaseRoughness, SampleType, ScaleChoice};
 use roughcast_io::mesh::load_mesh;
 use roughcast_scene::{Bounds, Light, Mesh, Plane, Scene, Shape, Sphere, Torus, View, pattern};
 
@@ -67,5 +67,11 @@ pub fn maps_with(options: BakeOptions) -> Vec<TextureArray> {
     let bumps = pattern::random_bumps(SIDE, 0.3, 5);
     let base = BaseRoughness::Variance(1.0 / SPECULAR_POWER);
     let options = BakeOptions { base: Base::None, scale: ScaleChoice::Auto, ..options };
-    bake(&bumps.heights, &bumps.source_options(), Some(base), &options).expect("bumps can be baked").arrays
+    Bake::of(&bumps.heights)
+        .source(bumps.source_options())
+        .roughness(base)
+        .options(options)
+        .run()
+        .expect("bumps can be baked")
+        .arrays
 }

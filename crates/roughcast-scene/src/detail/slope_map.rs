@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 use roughcast::texture::{Layout, MomentLevel, decode};
-use roughcast::{BakeError, BakeOptions, Image, SampleType, Slope, SourceOptions, Wrap, bake};
+use roughcast::{Bake, BakeError, BakeOptions, Image, SampleType, Slope, SourceOptions, Wrap};
 
 use crate::mipmap::wrapped;
 
@@ -32,7 +32,7 @@ impl SlopeMap {
     /// [`BakeError`] where the map cannot be read.
     pub fn of(map: &Image, options: &SourceOptions) -> Result<Self, BakeError> {
         let floats = BakeOptions { layout: Layout::Moments, bits: SampleType::F32, ..BakeOptions::default() };
-        let baked = bake(map, options, None, &floats)?;
+        let baked = Bake::of(map).source(*options).options(floats).run()?;
         let levels = decode(&baked.arrays).expect("a bake of this layout is complete");
         Ok(Self::of_level(&levels[0]))
     }

@@ -3,7 +3,7 @@
 use crate::Image;
 use crate::levels::level_sizes;
 use crate::options::BakeOptions;
-use crate::pyramid::{LevelOut, PartOut, SamplesMut};
+use crate::pyramid::{LevelOut, PartOut};
 use crate::texture::{self, Blocks, LayerSpec, Part, Texture, TextureArray, TextureInfo};
 
 /// Textures of all of a layout's files, taken from `earlier` where these have the right shape.
@@ -54,7 +54,7 @@ pub(super) fn level_outs<'a>(
     for layer in arrays.iter_mut().flat_map(|array| &mut array.layers) {
         for (level, image) in layer.levels.iter_mut().enumerate() {
             let channels = image.channels();
-            parts[level].push(PartOut { channels, samples: SamplesMut::new(image.samples_mut()) });
+            parts[level].push(PartOut { channels, samples: image.samples_mut() });
         }
     }
     sizes.into_iter().zip(parts).map(|(size, parts)| LevelOut::encoded(size, encoder, parts)).collect()

@@ -1,10 +1,11 @@
 //! Why a bake is refused.
 
 use crate::SampleType;
+use crate::progress::Stopped;
 use crate::source::SourceError;
 use crate::texture::{BlockCompression, Layout};
 
-/// Why a map could not be baked.
+/// Why a map was not baked.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BakeError {
@@ -76,6 +77,9 @@ pub enum BakeError {
         /// The largest slope whose square fits.
         largest: f32,
     },
+    /// What watched the bake has stopped it: see [`Bake::watched`](crate::Bake::watched).
+    #[error("the bake was stopped")]
+    Stopped,
     /// The base roughness, which is folded in, leaves no room for slopes.
     #[error(
         "the base roughness alone has a variance of {base_variance}, which a scale of {scale} cannot hold: choose a larger scale"
@@ -86,6 +90,12 @@ pub enum BakeError {
         /// The scale that was chosen.
         scale: f32,
     },
+}
+
+impl From<Stopped> for BakeError {
+    fn from(_: Stopped) -> Self {
+        Self::Stopped
+    }
 }
 
 fn in_words(reason: BlockCompression) -> &'static str {

@@ -5,7 +5,8 @@
 use super::SlopeLimit;
 use super::scales::{NeededRange, STEEP_COST, STEEP_ONE_IN, largest_variance};
 use crate::options::{BakeOptions, MaxSlope, ScaleChoice};
-use crate::pyramid::PyramidOptions;
+use crate::progress::{Progress, Stopped};
+use crate::pyramid::{self, PyramidOptions};
 use crate::source::MapSource;
 use crate::survey::{Survey, survey};
 use crate::texture::Peaks;
@@ -28,19 +29,43 @@ pub(super) fn find_ranges(
     max_slope: MaxSlope,
     pyramid_options: PyramidOptions,
     options: &BakeOptions,
-) -> Ranges {
-    let is_open = !options.bits.is_float() && options.scale == ScaleChoice::Auto;
-    let looked_at = is_open.then(|| survey(&source.slopes_only()));
-    let stores_variance = options.layout.stores_variance();
-    let variance = stores_variance.then(|| largest_variance(&source.slopes_only(), pyramid_options));
+    progress: &Progress<'_>,
+) -> Result<Ranges, Stopped> {
+    let looked_at = scale_is_open(options).then(|| survey(&source.slopes_only(), progress)).transpose()?;
+    let variance = (options.layout.stores_variance())
+        .then(|| largest_variance(&source.slopes_only(), pyramid_options, progress))
+        .transpose()?;
     let mut needed = NeededRange { peaks: looked_at.as_ref().map(|looked_at| looked_at.peaks), variance };
     let limit = match (&looked_at, max_slope) {
-        (Some(looked_at), MaxSlope::Auto) => {
-            limit_steepest(source, &mut needed, looked_at, options.layout.rules().stores(), pyramid_options)
-        }
+        (Some(looked_at), MaxSlope::Auto) => limit_steepest(
+            source,
+            &mut needed,
+            looked_at,
+            options.layout.rules().stores(),
+            pyramid_options,
+            progress,
+        )?,
         _ => None,
     };
-    Ranges { looked_at, needed, limit }
+    Ok(Ranges { looked_at, needed, limit })
+}
+
+fn scale_is_open(options: &BakeOptions) -> bool {
+    !options.bits.is_float() && options.scale == ScaleChoice::Auto
+}
+
+/// The texels that [`find_ranges`] counts as progress, at most.
+pub(super) fn work(
+    size: (usize, usize),
+    max_slope: MaxSlope,
+    pyramid_options: PyramidOptions,
+    options: &BakeOptions,
+) -> u64 {
+    let (is_open, stores_variance) = (scale_is_open(options), options.layout.stores_variance());
+    let surveys = u64::from(is_open);
+    let pyramids =
+        u64::from(stores_variance) + u64::from(stores_variance && is_open && max_slope == MaxSlope::Auto);
+    surveys * size.0 as u64 * size.1 as u64 + pyramids * pyramid::work(size.0, size.1, pyramid_options)
 }
 
 /// Lowers the largest slope of a source and what the ranges have to hold, where that wins more than [`STEEP_COST`]; says so.
@@ -50,7 +75,8 @@ fn limit_steepest(
     looked_at: &Survey,
     stores: Stores,
     pyramid_options: PyramidOptions,
-) -> Option<SlopeLimit> {
+    progress: &Progress<'_>,
+) -> Result<Option<SlopeLimit>, Stopped> {
     let peaks = &looked_at.peaks;
     let max_slope = looked_at.slope_exceeded_by_one_in(STEEP_ONE_IN).max(MaxSlope::LEAST_AUTOMATIC);
     let limited = Peaks {
@@ -59,24 +85,24 @@ fn limit_steepest(
         variance: peaks.variance,
     };
     if max_slope >= peaks.slope {
-        return None;
+        return Ok(None);
     }
     let before = source.max_slope();
     source.limit(max_slope);
     let limited = match needed.variance {
         None => NeededRange { peaks: Some(limited), variance: None },
         Some(_) => {
-            let variance = largest_variance(&source.slopes_only(), pyramid_options);
+            let variance = largest_variance(&source.slopes_only(), pyramid_options, progress)?;
             NeededRange { peaks: Some(limited), variance: Some(variance) }
         }
     };
     let factor = power_won(stores, peaks, needed.variance, &limited);
     if factor > STEEP_COST {
         *needed = limited;
-        return Some(SlopeLimit { max_slope, texels: 0, factor });
+        return Ok(Some(SlopeLimit { max_slope, texels: 0, factor }));
     }
     source.limit(before);
-    None
+    Ok(None)
 }
 
 /// The factor by which the usable specular power grows.

@@ -6,13 +6,16 @@ mod error;
 mod limit;
 mod plan;
 mod scales;
+#[cfg(test)]
+mod tests;
 
 pub use error::BakeError;
-pub use plan::{BakePlan, plan_bake};
+pub use plan::BakePlan;
 
 use crate::levels::level_sizes;
 use crate::moments::Moments;
 use crate::options::{BakeOptions, SourceOptions};
+use crate::progress::{BakeWatch, Progress};
 use crate::pyramid::{self, LevelStats, PyramidOptions};
 use crate::roughness::{Base, RoughnessStored};
 use crate::source::{BaseRoughness, BaseSource, MapSource, RoughnessMap, UseOfBase};
@@ -26,6 +29,8 @@ use scales::{advice, peaks_of_most, set_scales};
 
 /// Advice on a scale that a few steep texels have made much larger than the rest needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct ScaleAdvice {
     /// The largest slope that all but the steepest 0.1 % of the texels stay below.
     pub max_slope: f32,
@@ -35,6 +40,8 @@ pub struct ScaleAdvice {
 
 /// A largest slope that was lowered because a few steep texels cost much: see [`MaxSlope::Auto`](crate::MaxSlope::Auto).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct SlopeLimit {
     /// The largest slope.
     pub max_slope: f32,
@@ -46,6 +53,8 @@ pub struct SlopeLimit {
 
 /// What was done, in numbers.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct BakeReport {
     /// Texels that had to be repaired.
     pub counts: SourceCounts,
@@ -91,47 +100,120 @@ pub struct Baked {
     pub report: BakeReport,
 }
 
-/// Bakes a map.
+/// A bake, by its named parts: the map, how it is read, the material's base roughness, what is made of it.
 ///
-/// `roughness` is the base roughness of the material, where there is one; a map of another size is resampled. It is folded into the moments if
-/// [`BakeOptions::base`] says so, and always part of `pbr`'s roughness and of Toksvig's gloss factor.
+/// Only the map has to be named; the rest has defaults: an OpenGL normal map that repeats, no base roughness, LEAN in 16 bits.
 ///
-/// The same input gives the same textures for any number of threads.
+/// The same parts give the same textures for any number of threads.
 ///
-/// # Errors
-/// [`BakeError`] where the map has too few channels, or options do not go together.
-pub fn bake<'a>(
-    image: impl Into<ImageView<'a>>,
-    source_options: &SourceOptions,
-    roughness: Option<BaseRoughness<'_>>,
-    options: &BakeOptions,
-) -> Result<Baked, BakeError> {
-    bake_reusing(Vec::new(), image, source_options, roughness, options)
+/// ```
+/// use roughcast::texture::Layout;
+/// use roughcast::{Bake, BakeOptions, BaseRoughness, Image, Kind, SampleType, SourceOptions};
+///
+/// let heights = Image::zeros(64, 32, 1, SampleType::U16);
+/// let source = SourceOptions { kind: Kind::Height, ..SourceOptions::default() };
+/// let baked = Bake::of(&heights)
+///     .source(source)
+///     .roughness(BaseRoughness::Variance(0.01))
+///     .options(BakeOptions { layout: Layout::Variance, ..BakeOptions::default() })
+///     .run()?;
+/// assert_eq!(baked.arrays[0].size(), (64, 32));
+/// assert_eq!(baked.report.steepest, 0.0);
+///
+/// // The next frame of the same size takes over the memory.
+/// let next = Bake::of(&heights).source(source).reusing(baked.arrays).run()?;
+/// assert_eq!(next.arrays[0].level_count(), 7);
+/// # Ok::<(), roughcast::BakeError>(())
+/// ```
+#[derive(Clone)]
+#[must_use = "nothing is baked until it is run"]
+pub struct Bake<'a> {
+    image: ImageView<'a>,
+    source: SourceOptions,
+    roughness: Option<BaseRoughness<'a>>,
+    options: BakeOptions,
+    textures: Vec<TextureArray>,
+    watch: Option<&'a BakeWatch<'a>>,
 }
 
-/// As [`bake`], writing into the textures of an earlier bake where they have the same shape: a map that changes every
-/// frame needs no new memory. Textures of another shape are dropped.
-///
-/// # Errors
-/// As [`bake`].
-pub fn bake_reusing<'a>(
-    textures: Vec<TextureArray>,
-    image: impl Into<ImageView<'a>>,
-    source_options: &SourceOptions,
-    roughness: Option<BaseRoughness<'_>>,
-    options: &BakeOptions,
-) -> Result<Baked, BakeError> {
-    bake_view(textures, image.into(), source_options, roughness, options)
+impl<'a> Bake<'a> {
+    /// A bake of this map, with all else at its default.
+    pub fn of(image: impl Into<ImageView<'a>>) -> Self {
+        Self {
+            image: image.into(),
+            source: SourceOptions::default(),
+            roughness: None,
+            options: BakeOptions::default(),
+            textures: Vec::new(),
+            watch: None,
+        }
+    }
+
+    /// How the map is read.
+    pub fn source(self, source: SourceOptions) -> Self {
+        Self { source, ..self }
+    }
+
+    /// The base roughness of the material, where there is one; a map of another size is resampled. It is folded into the
+    /// moments if [`BakeOptions::base`] says so, and always part of `pbr`'s roughness and of Toksvig's gloss factor.
+    pub fn roughness(self, roughness: impl Into<Option<BaseRoughness<'a>>>) -> Self {
+        Self { roughness: roughness.into(), ..self }
+    }
+
+    /// What is made of the map.
+    pub fn options(self, options: BakeOptions) -> Self {
+        Self { options, ..self }
+    }
+
+    /// Writes into the textures of an earlier bake where they have the same shape: a map that changes every frame needs no
+    /// new memory. Textures of another shape are dropped.
+    pub fn reusing(self, textures: Vec<TextureArray>) -> Self {
+        Self { textures, ..self }
+    }
+
+    /// Tells `watch` after each band of rows which fraction is done, 0 ..= 1, and stops with [`BakeError::Stopped`] soon after it
+    /// breaks. It is called from the threads that work, also from several at once, so that fractions may come out of order.
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    ///
+    /// use roughcast::{Bake, BakeError, Image, SampleType};
+    ///
+    /// let map = Image::zeros(64, 64, 3, SampleType::F32);
+    /// let stopped = Bake::of(&map).watched(&|_| ControlFlow::Break(())).run();
+    /// assert_eq!(stopped, Err(BakeError::Stopped));
+    /// ```
+    pub fn watched(self, watch: &'a BakeWatch<'a>) -> Self {
+        Self { watch: Some(watch), ..self }
+    }
+
+    /// Bakes.
+    ///
+    /// # Errors
+    /// [`BakeError`] where the map has too few channels, or options do not go together.
+    pub fn run(self) -> Result<Baked, BakeError> {
+        bake(self)
+    }
 }
 
-// Not generic, so that it is compiled once.
-fn bake_view(
-    textures: Vec<TextureArray>,
-    image: ImageView<'_>,
-    source_options: &SourceOptions,
-    roughness: Option<BaseRoughness<'_>>,
-    options: &BakeOptions,
-) -> Result<Baked, BakeError> {
+impl std::fmt::Debug for Bake<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { image, source, roughness, options, textures, watch } = self;
+        let size = (image.width(), image.height(), image.channels());
+        f.debug_struct("Bake")
+            .field("image", &size)
+            .field("source", source)
+            .field("has_roughness", &roughness.is_some())
+            .field("options", options)
+            .field("reused_textures", &textures.len())
+            .field("is_watched", &watch.is_some())
+            .finish()
+    }
+}
+
+fn bake(parts: Bake<'_>) -> Result<Baked, BakeError> {
+    let Bake { image, source: source_options, roughness, options, textures, watch } = parts;
+    let options = &options;
     let size = (image.width(), image.height());
     let fitted = roughness.and_then(|roughness| roughness.fitted(size, source_options.wrap));
     let roughness_resampled_from = fitted.as_ref().and(roughness).and_then(|roughness| roughness.map_size());
@@ -143,21 +225,25 @@ fn bake_view(
         })),
         None => roughness,
     };
-    let BakePlan { source: source_options, mut info } = plan_bake(source_options, roughness, options)?;
+    let BakePlan { source: source_options, mut info } = BakePlan::new(&source_options, roughness, options)?;
     let base = roughness.map(|roughness| BaseSource::new(roughness, use_of_base(options))).transpose()?;
     let extras = options.layout.rules().extras(&info).to_vec();
     let mut source = MapSource::new(image, source_options, base, extras)?;
     let pyramid_options = PyramidOptions { filter: options.filter, wrap: source_options.wrap };
     let sample_type = options.bits;
+    let last = pyramid::work(size.0, size.1, pyramid_options);
+    let before = limit::work(size, source_options.max_slope, pyramid_options, options);
+    let progress = Progress::of(before + last, watch);
     let Ranges { looked_at, needed, limit } =
-        find_ranges(&mut source, source_options.max_slope, pyramid_options, options);
+        find_ranges(&mut source, source_options.max_slope, pyramid_options, options, &progress)?;
+    progress.skip_to_last(last);
     set_scales(&mut info, &needed, options);
-    let mut arrays = allocate(textures, &info, options, (image.width(), image.height()));
+    let mut arrays = allocate(textures, &info, options, size);
     let rules = options.layout.rules();
     let storage = Storage { info: &info, sample_type, blocks: options.blocks, pbr: &options.pbr };
     let encoder = rules.encoder(&storage);
     let outs = level_outs(&mut arrays, encoder.as_ref());
-    let built = pyramid::build(&source, pyramid_options, outs);
+    let built = pyramid::build(&source, pyramid_options, outs, &progress)?;
     let finest = &built.levels[0];
     let peaks = Peaks {
         component: finest.largest_component,

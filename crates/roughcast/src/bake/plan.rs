@@ -8,8 +8,11 @@ use crate::roughness::RoughnessTexture;
 use crate::source::{BaseRoughness, check_numbers};
 use crate::texture::TextureInfo;
 
-/// Checked options and what follows from them, for those who bake by other means than [`crate::bake()`], such as a GPU.
+/// Checked options and what follows from them, for those who bake by other means than [`Bake`](crate::Bake), such as a GPU, whose map
+/// is no image in memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct BakePlan {
     /// How the map is read. The largest slope is lowered to what the texels can hold; it is only [`MaxSlope::Auto`](crate::MaxSlope::Auto) where it
     /// depends on the map.
@@ -18,34 +21,36 @@ pub struct BakePlan {
     pub info: TextureInfo,
 }
 
-/// Checks options against each other.
-///
-/// # Errors
-/// [`BakeError`] where they do not go together.
-pub fn plan_bake(
-    source_options: &SourceOptions,
-    roughness: Option<BaseRoughness<'_>>,
-    options: &BakeOptions,
-) -> Result<BakePlan, BakeError> {
-    check_options(options, roughness.is_some())?;
-    let mut source = *source_options;
-    check_numbers(&source)?;
-    limit_slopes(&mut source, roughness, options)?;
-    let info = TextureInfo {
-        base: base_of(options, roughness.is_some()),
-        base_variance: base_variance(roughness),
-        brdf: options.brdf,
-        roughness_stored: options.pbr.roughness_stored,
-        wrap: source.wrap,
-        normal_range: normal_range(options),
-        roughness_texture: if options.layout.reads_pbr_options() {
-            options.pbr.roughness_texture
-        } else {
-            RoughnessTexture::Alone
-        },
-        ..TextureInfo::new(options.layout, options.layout.parts_written(options.blocks, &options.pbr)[0])
-    };
-    Ok(BakePlan { source, info })
+impl BakePlan {
+    /// Checks options against each other.
+    ///
+    /// # Errors
+    /// [`BakeError`] where they do not go together.
+    pub fn new(
+        source_options: &SourceOptions,
+        roughness: Option<BaseRoughness<'_>>,
+        options: &BakeOptions,
+    ) -> Result<Self, BakeError> {
+        check_options(options, roughness.is_some())?;
+        let mut source = *source_options;
+        check_numbers(&source)?;
+        limit_slopes(&mut source, roughness, options)?;
+        let info = TextureInfo {
+            base: base_of(options, roughness.is_some()),
+            base_variance: base_variance(roughness),
+            brdf: options.brdf,
+            roughness_stored: options.pbr.roughness_stored,
+            wrap: source.wrap,
+            normal_range: normal_range(options),
+            roughness_texture: if options.layout.reads_pbr_options() {
+                options.pbr.roughness_texture
+            } else {
+                RoughnessTexture::Alone
+            },
+            ..TextureInfo::new(options.layout, options.layout.parts_written(options.blocks, &options.pbr)[0])
+        };
+        Ok(Self { source, info })
+    }
 }
 
 /// How unit vectors are stored. Only `pbr` has a choice, and only in floats.

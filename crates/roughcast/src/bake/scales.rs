@@ -4,6 +4,7 @@ use super::ScaleAdvice;
 use crate::SampleType;
 use crate::levels::level_sizes;
 use crate::options::{BakeOptions, ScaleChoice};
+use crate::progress::{Progress, Stopped};
 use crate::pyramid::{self, LevelOut, PyramidOptions};
 use crate::row::RowSource;
 use crate::source::MapSource;
@@ -17,10 +18,15 @@ pub(super) const STEEP_ONE_IN: u64 = 1000;
 pub(super) const STEEP_COST: f32 = 4.0;
 
 /// The largest variance of any level, which is only known when all have been made.
-pub(super) fn largest_variance(source: &MapSource<'_>, options: PyramidOptions) -> f32 {
+pub(super) fn largest_variance(
+    source: &MapSource<'_>,
+    options: PyramidOptions,
+    progress: &Progress<'_>,
+) -> Result<f32, Stopped> {
     let sizes = level_sizes(source.width(), source.height());
-    let built = pyramid::build(source, options, sizes.into_iter().map(LevelOut::measured).collect());
-    built.levels.iter().map(|level| level.max_variance).fold(0.0, f32::max)
+    let outs = sizes.into_iter().map(LevelOut::measured).collect();
+    let built = pyramid::build(source, options, outs, progress)?;
+    Ok(built.levels.iter().map(|level| level.max_variance).fold(0.0, f32::max))
 }
 
 /// What the ranges of unsigned texels have to represent.

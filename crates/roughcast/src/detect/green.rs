@@ -78,6 +78,8 @@ const ASPECT_TOLERANCE: f64 = 0.01;
 
 /// Outcome of [`test_green`] or [`test_green_against_height`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct GreenTest {
     /// -1 ..= 1: positive where green points up as it was read, negative where it points down, 0 where nothing tells. Of
     /// the curl test, how d(bx)/dy agrees with d(by)/dx; of a height map, how its gradient along y agrees with the slopes. Of
@@ -89,7 +91,8 @@ pub struct GreenTest {
 }
 
 /// What a [`GreenTest`] says.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum GreenVerdict {
     /// Green points up, as it was read.
     Up,

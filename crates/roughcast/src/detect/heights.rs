@@ -10,6 +10,7 @@ const FEW: f64 = 0.001;
 
 /// The values of a height map.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HeightRange {
     /// Smallest finite value.
     pub min: f32,

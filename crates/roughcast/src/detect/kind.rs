@@ -34,7 +34,7 @@ const SHARE_OF_TWO: f64 = 0.5;
 const NOTHING_FINITE: &str = "none of its values is finite";
 
 /// What [`guess_kind`] makes of a map.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum KindGuess {
     /// It is this.
     Certain(Kind),

@@ -1,12 +1,11 @@
 //! The fused pass: while sizes are even, slopes are computed, averaged and stored in one go over tiles that stay in
 //! the cache. Level 0 is never held as floats.
 
-use rayon::prelude::*;
-
-use super::LevelStats;
 use super::combine::{average_two_columns, average_two_rows, average_two_rows_of_slopes};
 use super::level_out::{LevelOut, OutScratch};
-use super::resample::LevelImage;
+use super::resample::{FirstLevels, LevelImage};
+use crate::parallel;
+use crate::progress::{Progress, Stopped};
 use crate::row::{Row, RowSource, SourceScratch};
 use crate::slope::SourceCounts;
 
@@ -29,7 +28,8 @@ pub(super) fn run(
     source: &dyn RowSource,
     depth: usize,
     outs: Vec<LevelOut<'_>>,
-) -> (SourceCounts, Vec<LevelStats>, Option<LevelImage>) {
+    progress: &Progress<'_>,
+) -> Result<FirstLevels, Stopped> {
     let (width, height) = (source.width() >> depth, source.height() >> depth);
     let extras = source.extras().len();
     let mut last = LevelImage::new(width, height, extras);
@@ -43,17 +43,27 @@ pub(super) fn run(
             band.outs.push(part);
         }
     }
-    let results: Vec<_> = bands
-        .into_par_iter()
-        .map_init(|| Cascade::new(source, depth), |cascade, band| cascade.make(band))
-        .collect();
+    let results = parallel::map_with(
+        bands,
+        || Cascade::new(source, depth),
+        |cascade, band| {
+            progress.check()?;
+            let texels = (band.last.rows() << depth) * source.width();
+            let made = cascade.make(band);
+            progress.advance(texels);
+            Ok(made)
+        },
+    );
     let mut counts = SourceCounts::default();
     let mut sums = vec![super::level_out::StatsSum::default(); depth + 1];
-    for (band_counts, band_sums) in results {
-        counts = counts.plus(band_counts);
+    for result in results {
+        let (band_counts, band_sums) = result?;
+        counts += band_counts;
         sums.iter_mut().zip(band_sums).for_each(|(sum, band)| sum.add(band));
     }
-    (counts, sums.into_iter().map(|sum| sum.finish()).collect(), Some(last))
+    progress.check()?;
+    let stats = sums.into_iter().map(|sum| sum.finish()).collect();
+    Ok(FirstLevels { counts, stats, last: Some(last) })
 }
 
 /// The rows that one task makes: of the last level, and with it of all levels above.
@@ -120,7 +130,7 @@ impl<'a> Cascade<'a> {
         if level == 0 {
             let row = &mut self.pairs[0][slot];
             let counts = self.source.fill(x, y, row, &mut self.source_scratch);
-            self.counts = self.counts.plus(counts);
+            self.counts += counts;
         } else {
             self.row(level - 1, x, 2 * y, 0, band);
             self.row(level - 1, x, 2 * y + 1, 1, band);

@@ -1,32 +1,14 @@
 //! Where rows of a level go: encoded by a layout into the samples of its textures, and measured.
 
-use half::f16;
-
 use super::LevelStats;
-use crate::Samples;
+use crate::SamplesMut;
 use crate::row::RowView;
 use crate::texture::codec::RowEncoder;
 use crate::texture::pack;
 use crate::vectorised::vectorised;
 
-/// Samples of one texture's level, or some rows of them.
-pub(crate) enum SamplesMut<'a> {
-    U8(&'a mut [u8]),
-    U16(&'a mut [u16]),
-    F16(&'a mut [f16]),
-    F32(&'a mut [f32]),
-}
-
-impl<'a> SamplesMut<'a> {
-    pub fn new(samples: &'a mut Samples) -> Self {
-        match samples {
-            Samples::U8(v) => Self::U8(v),
-            Samples::U16(v) => Self::U16(v),
-            Samples::F16(v) => Self::F16(v),
-            Samples::F32(v) => Self::F32(v),
-        }
-    }
-
+impl SamplesMut<'_> {
+    /// Pieces of `len` samples each.
     fn chunks(self, len: usize) -> Vec<Self> {
         match self {
             Self::U8(v) => v.chunks_mut(len).map(Self::U8).collect(),

@@ -12,15 +12,17 @@ mod level_out;
 mod resample;
 pub(crate) mod weights;
 
-pub(crate) use level_out::{LevelOut, PartOut, SamplesMut, largest, largest_component_and_square};
+pub(crate) use level_out::{LevelOut, PartOut, largest, largest_component_and_square};
 
 use crate::convention::Wrap;
 use crate::levels::level_sizes;
 use crate::moments::Moments;
 use crate::options::PyramidFilter;
+use crate::progress::{Progress, Stopped};
 use crate::row::RowSource;
 use crate::slope::SourceCounts;
 use level_out::OutScratch;
+use resample::FirstLevels;
 
 /// How many levels of the box filter are made by equal averages of four, rows first: as long as both sides are even, but at
 /// most six. The levels after them are made with the weights of any size. Both are exact; they differ in the order of
@@ -31,6 +33,8 @@ pub fn levels_of_four(width: usize, height: usize) -> usize {
 
 /// Statistics of a level, measured while it was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct LevelStats {
     /// Mean over the level of the variance along x.
     pub mean_variance_x: f64,
@@ -60,13 +64,15 @@ pub(crate) struct Built {
 }
 
 /// Makes every level of `source` and hands it, row by row, to `outs`, one for each of [`level_sizes`].
-pub(crate) fn build(source: &dyn RowSource, options: PyramidOptions, outs: Vec<LevelOut<'_>>) -> Built {
+pub(crate) fn build(
+    source: &dyn RowSource,
+    options: PyramidOptions,
+    outs: Vec<LevelOut<'_>>,
+    progress: &Progress<'_>,
+) -> Result<Built, Stopped> {
     let sizes = level_sizes(source.width(), source.height());
     assert_eq!(outs.len(), sizes.len(), "one output a level");
-    let depth = match options.filter {
-        PyramidFilter::Box => cascade::depth(source.width(), source.height()),
-        PyramidFilter::Triangle | PyramidFilter::Gaussian => 0,
-    };
+    let depth = depth(source.width(), source.height(), options);
     let mut outs = outs.into_iter();
     let mut stats = Vec::with_capacity(sizes.len());
     let mut fused: Vec<_> = outs.by_ref().take(depth + 1).collect();
@@ -74,10 +80,10 @@ pub(crate) fn build(source: &dyn RowSource, options: PyramidOptions, outs: Vec<L
         let finest = fused.remove(0).without_variances();
         fused.insert(0, finest);
     }
-    let (counts, fused_stats, mut level) = if depth > 0 {
-        cascade::run(source, depth, fused)
+    let FirstLevels { counts, stats: fused_stats, last: mut level } = if depth > 0 {
+        cascade::run(source, depth, fused, progress)?
     } else {
-        resample::first_level(source, options, fused)
+        resample::first_level(source, options, fused, progress)?
     };
     stats.extend(fused_stats);
     // Without a cascade the first reduction has not been stored yet; `level` is level `depth` or, then, level 1.
@@ -90,7 +96,8 @@ pub(crate) fn build(source: &dyn RowSource, options: PyramidOptions, outs: Vec<L
         stats.push(out.finish());
     }
     for mut out in outs {
-        let next = resample::next_level(level.as_ref().expect("a further level has one before it"), options);
+        let level_before = level.as_ref().expect("a further level has one before it");
+        let next = resample::next_level(level_before, options, progress)?;
         next.write_to(&mut out, &mut scratch);
         stats.push(out.finish());
         level = Some(next);
@@ -99,5 +106,20 @@ pub(crate) fn build(source: &dyn RowSource, options: PyramidOptions, outs: Vec<L
         Some(last) => last.first_texel(),
         None => resample::first_texel_of(source),
     };
-    Built { counts, levels: stats, whole }
+    Ok(Built { counts, levels: stats, whole })
+}
+
+/// How many levels the cascade makes.
+fn depth(width: usize, height: usize, options: PyramidOptions) -> usize {
+    match options.filter {
+        PyramidFilter::Box => cascade::depth(width, height),
+        PyramidFilter::Triangle | PyramidFilter::Gaussian => 0,
+    }
+}
+
+/// The texels that [`build`] counts as progress: those of level 0, and of the levels that are made one by one.
+pub(crate) fn work(width: usize, height: usize, options: PyramidOptions) -> u64 {
+    let texels = level_sizes(width, height).into_iter().map(|(width, height)| width as u64 * height as u64);
+    let finest = width as u64 * height as u64;
+    finest + texels.skip(depth(width, height, options) + 1).sum::<u64>()
 }

@@ -1,12 +1,12 @@
 //! Levels of any size by any filter, from the weights of [`super::weights`].
 
-use rayon::prelude::*;
-
 use super::combine::{average_columns, average_rows};
 use super::level_out::{LevelOut, OutScratch, StatsSum};
 use super::weights::{Taps, halving};
 use super::{LevelStats, PyramidOptions};
 use crate::moments::{Covariance, Moments};
+use crate::parallel;
+use crate::progress::{Progress, Stopped};
 use crate::row::{CORE_PLANES, Row, RowSource, RowView, SourceScratch};
 use crate::slope::{Slope, SourceCounts};
 
@@ -78,48 +78,64 @@ impl PlanesMut<'_> {
     }
 }
 
+/// The levels that are made together with level 0.
+pub(super) struct FirstLevels {
+    pub counts: SourceCounts,
+    /// Of the levels that have been stored.
+    pub stats: Vec<LevelStats>,
+    /// The coarsest level that was made, where it is not level 0.
+    pub last: Option<LevelImage>,
+}
+
 /// Stores level 0 and makes level 1 of it, where there is one. Slopes are computed twice, once for each: cheaper than
 /// holding level 0 as floats.
 pub(super) fn first_level(
     source: &dyn RowSource,
     options: PyramidOptions,
     outs: Vec<LevelOut<'_>>,
-) -> (SourceCounts, Vec<LevelStats>, Option<LevelImage>) {
+    progress: &Progress<'_>,
+) -> Result<FirstLevels, Stopped> {
     let (width, extras) = (source.width(), source.extras().len());
     let out = outs.into_iter().next().expect("level 0 is always asked for");
     let bands: Vec<_> = out.split(BAND_ROWS).into_iter().enumerate().collect();
-    let results: Vec<(SourceCounts, StatsSum)> = bands
-        .into_par_iter()
-        .map_init(
-            || (Row::new(width, extras), SourceScratch::default(), OutScratch::default()),
-            |(row, source_scratch, out_scratch), (band, mut out)| {
-                let mut counts = SourceCounts::default();
-                for y in 0..out.rows() {
-                    counts = counts.plus(source.fill(0, band * BAND_ROWS + y, row, source_scratch));
-                    out.write(0, y, row.view(), out_scratch);
-                }
-                (counts, out.into_sum())
-            },
-        )
-        .collect();
+    let results = parallel::map_with(
+        bands,
+        || (Row::new(width, extras), SourceScratch::default(), OutScratch::default()),
+        |(row, source_scratch, out_scratch), (band, mut out)| {
+            progress.check()?;
+            let mut counts = SourceCounts::default();
+            for y in 0..out.rows() {
+                counts += source.fill(0, band * BAND_ROWS + y, row, source_scratch);
+                out.write(0, y, row.view(), out_scratch);
+            }
+            progress.advance(out.rows() * width);
+            Ok((counts, out.into_sum()))
+        },
+    );
     let mut counts = SourceCounts::default();
     let mut sum = StatsSum::default();
-    for (band_counts, band_sum) in results {
-        counts = counts.plus(band_counts);
+    for result in results {
+        let (band_counts, band_sum) = result?;
+        counts += band_counts;
         sum.add(band_sum);
     }
-    let next = (width > 1 || source.height() > 1).then(|| {
-        reduce(width, source.height(), extras, options, &|y, row, scratch| {
-            source.fill(0, y, row, scratch);
-        })
-    });
-    (counts, vec![sum.finish()], next)
+    let has_next = width > 1 || source.height() > 1;
+    let read_row: ReadRow<'_> = &|y, row, scratch| {
+        source.fill(0, y, row, scratch);
+    };
+    let size = (width, source.height());
+    let last = has_next.then(|| reduce(size, extras, options, read_row, progress)).transpose()?;
+    Ok(FirstLevels { counts, stats: vec![sum.finish()], last })
 }
 
 /// The level after `level`.
-pub(super) fn next_level(level: &LevelImage, options: PyramidOptions) -> LevelImage {
+pub(super) fn next_level(
+    level: &LevelImage,
+    options: PyramidOptions,
+    progress: &Progress<'_>,
+) -> Result<LevelImage, Stopped> {
     let extras = level.planes.len() - CORE_PLANES;
-    reduce(level.width, level.height, extras, options, &|y, row, _| level.row(y, row))
+    reduce((level.width, level.height), extras, options, &|y, row, _| level.row(y, row), progress)
 }
 
 /// The moments of the first texel of level 0, for a map of a single one.
@@ -137,20 +153,24 @@ fn moments_at(planes: &[Vec<f32>], index: usize) -> Moments {
 type ReadRow<'a> = &'a (dyn Fn(usize, &mut Row, &mut SourceScratch) + Sync);
 
 fn reduce(
-    width: usize,
-    height: usize,
+    (width, height): (usize, usize),
     extras: usize,
     options: PyramidOptions,
     read_row: ReadRow<'_>,
-) -> LevelImage {
+    progress: &Progress<'_>,
+) -> Result<LevelImage, Stopped> {
     let columns = halving(width, options.filter, options.wrap);
     let lines = halving(height, options.filter, options.wrap);
     let mut next = LevelImage::new(columns.len(), lines.len(), extras);
     let bands: Vec<_> = next.split(BAND_ROWS).into_iter().zip(lines.chunks(BAND_ROWS)).collect();
-    bands.into_par_iter().for_each(|(mut band, lines)| {
-        reduce_band(&mut band, lines, &columns, Row::new(width, extras), read_row);
+    parallel::for_each(bands, |(mut band, lines)| {
+        if !progress.is_stopped() {
+            reduce_band(&mut band, lines, &columns, Row::new(width, extras), read_row);
+            progress.advance(band.rows() * columns.len());
+        }
     });
-    next
+    progress.check()?;
+    Ok(next)
 }
 
 fn reduce_band(

@@ -3,7 +3,7 @@
 use super::Shading;
 
 /// The functions of a model in WGSL.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Calls {
     /// `NAME(distribution, options)`, once a pixel: the surface.
     pub surface: &'static str,

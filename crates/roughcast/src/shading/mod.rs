@@ -86,6 +86,7 @@ use crate::named::named_enum;
 
 named_enum! {
     /// A shading model.
+    #[non_exhaustive]
     pub enum Shading: "shading model" {
         /// Phong: the reflected ray, about the filtered bump normal.
         Phong = "phong",
@@ -110,6 +111,7 @@ named_enum! {
 
 named_enum! {
     /// The form of a lobe, given its density `p` over slopes.
+    #[non_exhaustive]
     pub enum Form: "form" {
         /// `D G2 / n.v`: the normalised distribution D with Smith's height-correlated shadowing and masking, so that a quarter of it
         /// with Fresnel's term is what a microfacet BRDF reflects of a light's irradiance. Models in the surface frame take
@@ -125,6 +127,7 @@ named_enum! {
 
 named_enum! {
     /// Whose slopes mask in [`Form::Physical`], for models that can tell base from bumps. Phong's and GGX's cannot.
+    #[non_exhaustive]
     pub enum Masking: "masking" {
         /// Those of the base roughness: what bump mapping shows from near, where each bump is lit on its own.
         Base = "base",
@@ -136,6 +139,7 @@ named_enum! {
 
 named_enum! {
     /// Which variance counts as roughness.
+    #[non_exhaustive]
     pub enum FootprintModel: "footprint" {
         /// That under the pixel: what the texture filter covers beyond it is taken off. See [`footprint_ratio`].
         Corrected = "corrected",
@@ -146,6 +150,7 @@ named_enum! {
 
 named_enum! {
     /// What the base roughness of a facet looks like in the plane of the surface, for lobes in the surface frame.
+    #[non_exhaustive]
     pub enum BaseLobe: "base lobe" {
         /// Round, with variance `1 / s` whatever the facet's slope: LEAN's approximation.
         Plane = "plane",
@@ -156,6 +161,7 @@ named_enum! {
 
 named_enum! {
     /// What becomes of a covariance that rounding has made impossible.
+    #[non_exhaustive]
     pub enum Repair: "repair" {
         /// Made positive semidefinite: negative variances become zero, the mixed term is cut.
         Clamp = "clamp",
@@ -175,6 +181,11 @@ pub enum Wanted {
 
 /// How lobes are evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct LobeOptions {
     /// Blinn-Phong exponent `s` of the base roughness; its slope variance is `1 / s`.
     pub specular_power: f32,

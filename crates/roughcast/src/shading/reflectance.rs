@@ -26,6 +26,7 @@ use super::{Form, LobeOptions, Surface};
 
 /// Colours of a material, in linear RGB.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Material {
     /// Part of the light that is scattered diffusely.
     pub albedo: [f32; 3],

@@ -7,8 +7,8 @@ use crate::roughness::{RoughnessStored, variance_from_stored};
 use crate::row::Extra;
 use crate::{Image, ImageView};
 
-/// A roughness stored in an image. [`crate::bake()`] resamples one whose size differs from that of the map.
-#[derive(Clone, Copy, Debug)]
+/// A roughness stored in an image. [`Bake`](crate::Bake) resamples one whose size differs from that of the map.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoughnessMap<'a> {
     /// The pixels.
     pub image: ImageView<'a>,
@@ -19,7 +19,8 @@ pub struct RoughnessMap<'a> {
 }
 
 /// The base roughness of a material.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum BaseRoughness<'a> {
     /// The same slope variance everywhere, `alpha^2 / 2 = 1 / s`.
     Variance(f32),

@@ -1,9 +1,8 @@
 //! A plane of values at another size: an exact area average along an axis that shrinks, linear interpolation between texel
 //! centres along one that grows.
 
-use rayon::prelude::*;
-
 use crate::convention::Wrap;
+use crate::parallel;
 
 /// `plane`, `from.0` values in each of `from.1` rows, at the size `to`. The weights of each value sum to one.
 pub(crate) fn resized(plane: &[f32], from: (usize, usize), to: (usize, usize), wrap: Wrap) -> Vec<f32> {
@@ -13,7 +12,7 @@ pub(crate) fn resized(plane: &[f32], from: (usize, usize), to: (usize, usize), w
     }
     let columns: Vec<Taps> = (0..to.0).map(|x| Taps::of(x, to.0, from.0, wrap)).collect();
     let mut out = vec![0.0; to.0 * to.1];
-    out.par_chunks_mut(to.0).enumerate().for_each(|(y, row)| {
+    parallel::for_each(out.chunks_mut(to.0).enumerate().collect(), |(y, row)| {
         let rows = Taps::of(y, to.1, from.1, wrap);
         for (value, column) in row.iter_mut().zip(&columns) {
             let along = |y: usize| column.average(|x| f64::from(plane[y * from.0 + x]));

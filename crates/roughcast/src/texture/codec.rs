@@ -13,7 +13,7 @@ pub(crate) trait RowEncoder: Sync {
 }
 
 /// One texture of a layout.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct LayerSpec {
     /// Its name.
     pub name: &'static str,
@@ -23,6 +23,7 @@ pub struct LayerSpec {
 
 named_enum! {
     /// Whether textures are shaped for block compression: two channels for what will be BC5, one for BC4.
+    #[non_exhaustive]
     pub enum Blocks: "compression" {
         /// Plain texels.
         None = "none",
@@ -145,6 +146,7 @@ impl Units {
 /// What a layout's textures can be relied upon to give back. Largest absolute errors of a decoded texel against what
 /// was encoded.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Bounds {
     /// Of each component of the mean slope.
     pub slope: f32,
@@ -168,6 +170,7 @@ impl Bounds {
 
 /// The largest magnitudes of what is stored, over all levels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Peaks {
     /// Of a component of the slope.
     pub component: f32,

@@ -1,13 +1,13 @@
 //! From stored textures back to moments.
 
-use rayon::prelude::*;
-
 use super::codec::Units;
 use super::{Layout, Part, ShapeFault, TextureArray, TextureInfo, join_layers};
 use crate::moments::Moments;
+use crate::parallel;
 
 /// A level of moments, row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MomentLevel {
     /// Texels in a row.
     pub width: usize,
@@ -18,7 +18,7 @@ pub struct MomentLevel {
 }
 
 /// Why textures do not decode.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 #[non_exhaustive]
 pub enum DecodeError {
     /// There is nothing to decode.
@@ -67,6 +67,22 @@ pub enum DecodeError {
 ///
 /// # Errors
 /// [`DecodeError`] where a part is missing or the textures do not belong together.
+///
+/// ```
+/// use roughcast::texture::{Layout, decode};
+/// use roughcast::{Bake, BakeOptions, Image, Samples};
+///
+/// // Normals that all lean to the left at 45 degrees.
+/// let normals = Samples::F32([-0.5, 0.0, 0.5].repeat(16));
+/// let map = Image::new(4, 4, 3, normals)?;
+/// let source = roughcast::SourceOptions { range: roughcast::NormalRange::Signed, ..Default::default() };
+/// let options = BakeOptions { layout: Layout::Clean, ..BakeOptions::default() };
+/// let levels = decode(&Bake::of(&map).source(source).options(options).run()?.arrays)?;
+/// assert_eq!((levels.len(), levels[0].width, levels[0].moments.len()), (3, 4, 16));
+/// let whole = levels[2].moments[0];
+/// assert!((whole.mean.x + 1.0).abs() < 1e-4 && whole.covariance().trace() < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn decode(arrays: &[TextureArray]) -> Result<Vec<MomentLevel>, DecodeError> {
     if arrays.iter().any(|array| array.info.layer.is_some()) {
         return decode(&join_layers(arrays.to_vec())?);
@@ -77,7 +93,7 @@ pub fn decode(arrays: &[TextureArray]) -> Result<Vec<MomentLevel>, DecodeError> 
     let levels = files.main().layers[0].levels.iter().enumerate().map(|(level, image)| {
         let (width, height) = (image.width(), image.height());
         let mut moments = vec![Moments::default(); width * height];
-        moments.par_chunks_mut(width).enumerate().for_each_init(Vec::new, |texel, (y, row)| {
+        parallel::map_with(moments.chunks_mut(width).enumerate().collect(), Vec::new, |texel, (y, row)| {
             for (x, moments) in row.iter_mut().enumerate() {
                 files.load(level, x, y, texel);
                 let decoded = decode_texel(texel);

@@ -13,6 +13,7 @@ use crate::roughness::{Base, Brdf, RoughnessStored, RoughnessTexture};
 
 named_enum! {
     /// Which of a layout's files this is; layouts whose textures share one format have a single part.
+    #[non_exhaustive]
     pub enum Part: "part" {
         /// The only file of the layout.
         Whole = "whole",
@@ -37,6 +38,7 @@ named_enum! {
 
 /// What the texels of a file mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TextureInfo {
     /// The layout.
     pub layout: Layout,
@@ -49,6 +51,7 @@ pub struct TextureInfo {
     /// Whether base roughness is in the second moments.
     pub base: Base,
     /// Slope variance of the base roughness per axis, `alpha^2 / 2`; 0 without one, NaN where it varies over the map.
+    #[cfg_attr(feature = "serde", serde(with = "nan_as_none"))]
     pub base_variance: f32,
     /// The lobe for which the roughness is meant.
     pub brdf: Brdf,
@@ -68,8 +71,22 @@ pub struct TextureInfo {
     pub roughness_texture: RoughnessTexture,
 }
 
+/// JSON has no NaN.
+#[cfg(feature = "serde")]
+mod nan_as_none {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(value: &f32, serializer: S) -> Result<S::Ok, S::Error> {
+        (!value.is_nan()).then_some(*value).serialize(serializer)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f32, D::Error> {
+        Ok(Option::deserialize(deserializer)?.unwrap_or(f32::NAN))
+    }
+}
+
 /// Why the metadata of a file could not be read.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 #[non_exhaustive]
 pub enum InfoError {
     /// It is not a file of ours, or its metadata was stripped.

@@ -12,6 +12,18 @@ use crate::shading::Wanted;
 
 named_enum! {
     /// The layouts in which moments are stored, one file each in [`crate::texture`].
+    ///
+    /// ```
+    /// use roughcast::SampleType;
+    /// use roughcast::texture::{Layout, Part, TextureInfo, layers_of};
+    ///
+    /// let layout: Layout = "variance".parse()?;
+    /// assert_eq!(layout.default_sample_type(), SampleType::U16);
+    /// let layers = layers_of(&TextureInfo::new(Layout::Lean, Part::Whole));
+    /// assert_eq!(layers[1].channels, ["B.x", "B.y", "M.xx", "M.yy"]);
+    /// # Ok::<(), roughcast::UnknownName>(())
+    /// ```
+    #[non_exhaustive]
     pub enum Layout: "layout" {
         /// LEAN mapping: mean normal, mean slope and second moments in two RGBA layers.
         Lean = "lean",

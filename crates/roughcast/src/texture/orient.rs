@@ -8,12 +8,11 @@
 //! unorganized points", 1992: pairs of strongly anisotropic texels whose axes are nearly parallel are joined first. Where no
 //! signs agree everywhere (half a turn around a point, as in a fingerprint), the seam thus lies where it is seen least.
 
-use rayon::prelude::*;
-
 use super::Texture;
 use super::codec::Affine;
 use crate::convention::Wrap;
-use crate::{Image, Samples};
+use crate::parallel;
+use crate::{Image, Samples, SamplesMut};
 
 /// Gives the directions in the first two channels of all levels signs that agree. The third channel is their strength.
 ///
@@ -63,10 +62,10 @@ fn fill_from_coarser(finer: &mut Image, coarser: &Image) {
     let (size, channels) = ((finer.width(), finer.height()), finer.channels());
     let above = (coarser.width(), coarser.height());
     match (finer.samples_mut(), coarser.samples()) {
-        (Samples::U8(f), Samples::U8(c)) => fill(f, size, (c, above), channels, |s| s > 0),
-        (Samples::U16(f), Samples::U16(c)) => fill(f, size, (c, above), channels, |s| s > 0),
-        (Samples::F16(f), Samples::F16(c)) => fill(f, size, (c, above), channels, |s| s.to_f32() > 0.0),
-        (Samples::F32(f), Samples::F32(c)) => fill(f, size, (c, above), channels, |s| s > 0.0),
+        (SamplesMut::U8(f), Samples::U8(c)) => fill(f, size, (c, above), channels, |s| s > 0),
+        (SamplesMut::U16(f), Samples::U16(c)) => fill(f, size, (c, above), channels, |s| s > 0),
+        (SamplesMut::F16(f), Samples::F16(c)) => fill(f, size, (c, above), channels, |s| s.to_f32() > 0.0),
+        (SamplesMut::F32(f), Samples::F32(c)) => fill(f, size, (c, above), channels, |s| s > 0.0),
         _ => unreachable!("all levels have one sample type"),
     }
 }
@@ -90,12 +89,12 @@ fn turn(image: &mut Image, unit: Affine, first_node: usize, signs: &mut Signs) -
     // The stored value of zero lies between those of v and -v.
     let twice_zero = 2.0 * unit.add;
     match image.samples_mut() {
-        Samples::U8(v) => each(v, channels, first_node, signs, |code| u8::MAX - code),
-        Samples::U16(v) => each(v, channels, first_node, signs, |code| u16::MAX - code),
-        Samples::F16(v) => {
+        SamplesMut::U8(v) => each(v, channels, first_node, signs, |code| u8::MAX - code),
+        SamplesMut::U16(v) => each(v, channels, first_node, signs, |code| u16::MAX - code),
+        SamplesMut::F16(v) => {
             each(v, channels, first_node, signs, |value| half::f16::from_f32(twice_zero - value.to_f32()));
         }
-        Samples::F32(v) => each(v, channels, first_node, signs, |value| twice_zero - value),
+        SamplesMut::F32(v) => each(v, channels, first_node, signs, |value| twice_zero - value),
     }
     first_node + texels
 }
@@ -135,9 +134,10 @@ impl Graph {
         let mut graph = Self {
             sizes: levels.iter().map(|image| (image.width(), image.height())).collect(),
             wrap,
-            angles: Vec::with_capacity(nodes),
-            strengths: Vec::with_capacity(nodes),
+            angles: vec![0; nodes],
+            strengths: vec![0; nodes],
         };
+        let (mut angles, mut strengths) = (graph.angles.as_mut_slice(), graph.strengths.as_mut_slice());
         for image in levels {
             let (samples, channels) = (image.samples(), image.channels());
             let read = |texel: usize| {
@@ -148,10 +148,16 @@ impl Graph {
                 let angle = (turns * 65536.0).round() as i32 as u16;
                 (angle, (samples.get(first + 2) * 255.0).round() as u8)
             };
-            let texels = image.width() * image.height();
-            let (angles, strengths): (Vec<_>, Vec<_>) = (0..texels).into_par_iter().map(read).unzip();
-            graph.angles.extend(angles);
-            graph.strengths.extend(strengths);
+            let (width, texels) = (image.width(), image.width() * image.height());
+            let (these_angles, these_strengths);
+            (these_angles, angles) = angles.split_at_mut(texels);
+            (these_strengths, strengths) = strengths.split_at_mut(texels);
+            let rows = these_angles.chunks_mut(width).zip(these_strengths.chunks_mut(width)).enumerate();
+            parallel::for_each(rows.collect(), |(y, (angles, strengths))| {
+                for (x, (angle, strength)) in angles.iter_mut().zip(strengths).enumerate() {
+                    (*angle, *strength) = read(y * width + x);
+                }
+            });
         }
         graph
     }

@@ -11,6 +11,7 @@ use crate::roughness::{Base, RoughnessStored};
 ///
 /// Filtering and these maps may change places, since both are affine.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Packing {
     /// A component of a slope.
     pub slope: [f32; 2],

@@ -38,6 +38,7 @@ use crate::slope::{LEAST_NORMAL_Z, Normal, Slope, normal_from_slope, slope_from_
 
 named_enum! {
     /// How `pbr` says in which direction a roughness is larger.
+    #[non_exhaustive]
     pub enum AnisotropyOutput: "form of anisotropy" {
         /// Direction and strength, as KHR_materials_anisotropy has them; the roughness is the one across.
         Khr = "khr",
@@ -48,6 +49,11 @@ named_enum! {
 
 /// The choices of [`Layout::Pbr`](super::Layout::Pbr). No other layout reads them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct PbrOptions {
     /// How roughness is stored.
     pub roughness_stored: RoughnessStored,

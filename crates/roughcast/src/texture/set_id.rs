@@ -66,14 +66,14 @@ impl Hash {
 #[cfg(test)]
 mod tests {
     use crate::texture::Layout;
-    use crate::{BakeOptions, BaseRoughness, Image, SampleType, SourceOptions, bake};
+    use crate::{Bake, BakeOptions, BaseRoughness, Image, SampleType, SourceOptions};
 
     fn set_of(variance: f32) -> Vec<u64> {
         let options = BakeOptions { layout: Layout::Pbr, bits: crate::SampleType::U8, ..Default::default() };
         let map = Image::zeros(8, 8, 3, SampleType::F32);
         let base = Some(BaseRoughness::Variance(variance));
         let source = SourceOptions { range: crate::NormalRange::Signed, ..Default::default() };
-        let baked = bake(&map, &source, base, &options).expect("a map");
+        let baked = Bake::of(&map).source(source).roughness(base).options(options).run().expect("a map");
         baked.arrays.iter().map(|array| array.info.set).collect()
     }
 
@@ -88,7 +88,7 @@ mod tests {
     #[test]
     fn a_layout_of_one_file_has_no_set() {
         let map = Image::zeros(8, 8, 3, SampleType::F32);
-        let baked = bake(&map, &SourceOptions::default(), None, &BakeOptions::default()).expect("a map");
+        let baked = Bake::of(&map).run().expect("a map");
         assert_eq!(baked.arrays[0].info.set, 0);
     }
 }

@@ -4,7 +4,7 @@ use super::{DecodeError, Layout, Part, Texture, TextureArray};
 use crate::levels::level_sizes;
 
 /// Why textures are not those of their layout.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShapeFault {
     /// A file has no layers.
@@ -143,13 +143,13 @@ fn level_fault(layer: &Texture, sizes: &[(usize, usize)]) -> Option<ShapeFault> 
 mod tests {
     use super::*;
     use crate::texture::{Layout, decode, join_layers, split_layers};
-    use crate::{BakeOptions, Image, Samples, SourceOptions, bake};
+    use crate::{Bake, BakeOptions, Image, Samples};
 
     fn baked(layout: Layout) -> Vec<TextureArray> {
         let codes = (0..8 * 4 * 3).map(|i| if i % 3 == 2 { 250 } else { (i * 37 % 256) as u8 }).collect();
         let map = Image::new(8, 4, 3, Samples::U8(codes)).expect("whole pixels");
         let options = BakeOptions { layout, ..BakeOptions::default() };
-        bake(&map, &SourceOptions::default(), None, &options).expect("a map").arrays
+        Bake::of(&map).options(options).run().expect("a map").arrays
     }
 
     fn fault_of(arrays: &[TextureArray]) -> String {

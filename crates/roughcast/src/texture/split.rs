@@ -90,14 +90,13 @@ pub fn split_layers(arrays: Vec<TextureArray>) -> Vec<TextureArray> {
 mod tests {
     use super::*;
     use crate::texture::{Layout, decode};
-    use crate::{BakeOptions, Image, SampleType, Samples, SourceOptions, bake};
+    use crate::{Bake, Image, SampleType, Samples};
 
     fn baked() -> Vec<TextureArray> {
         let codes = (0..8 * 8 * 3).map(|i| if i % 3 == 2 { 250 } else { (i * 37 % 256) as u8 }).collect();
         let map = Image::new(8, 8, 3, Samples::U8(codes)).expect("whole pixels");
         assert_eq!(map.samples().sample_type(), SampleType::U8);
-        let mut arrays =
-            bake(&map, &SourceOptions::default(), None, &BakeOptions::default()).expect("a map").arrays;
+        let mut arrays = Bake::of(&map).run().expect("a map").arrays;
         mark_set(&mut arrays);
         arrays
     }

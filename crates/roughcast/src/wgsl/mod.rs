@@ -13,7 +13,7 @@ use crate::UnknownName;
 pub use modules::MODULES;
 
 /// A piece of the library.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Module {
     /// Its name: of a model, the one that the command line uses.
     pub name: &'static str,
@@ -30,7 +30,7 @@ pub struct Module {
 }
 
 /// What a module is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Role {
     /// A shading model.

@@ -131,6 +131,7 @@ pub fn normal_map(
             NormalChannels::Yx => (1, 0, None),
             NormalChannels::Ag => (3, 1, None),
             NormalChannels::Ra => (0, 3, None),
+            other => panic!("say where {other} has its components"),
         };
         texel[x_at] = stored(x);
         texel[y_at] = stored(y);
@@ -169,6 +170,7 @@ pub fn variances(image: &Image, channel: usize, stored: RoughnessStored) -> Vec<
         RoughnessStored::AlphaSquared => r / 2.0,
         RoughnessStored::Gloss => (1.0 - r).powi(4) / 2.0,
         RoughnessStored::SpecularPower => 1.0 / r,
+        other => panic!("say what {other} means"),
     };
     super::level::channel_of(image, channel).values.into_iter().map(variance).collect()
 }

@@ -12,7 +12,7 @@ pub mod pyramid_oracle;
 pub mod real_files;
 pub mod slope_oracle;
 
-use roughcast::{BakeOptions, Baked, BaseRoughness, Image, PyramidFilter, SampleType, SourceOptions, bake};
+use roughcast::{Bake, BakeOptions, Baked, BaseRoughness, Image, PyramidFilter, SampleType, SourceOptions};
 
 /// Bakes, where it must not fail.
 pub fn baked(image: &Image, source: &SourceOptions, options: &BakeOptions) -> Baked {
@@ -26,7 +26,12 @@ pub fn baked_with(
     roughness: Option<BaseRoughness<'_>>,
     options: &BakeOptions,
 ) -> Baked {
-    bake(image, source, roughness, options).unwrap_or_else(|error| panic!("{options:?}: {error}"))
+    Bake::of(image)
+        .source(*source)
+        .roughness(roughness)
+        .options(*options)
+        .run()
+        .unwrap_or_else(|error| panic!("{options:?}: {error}"))
 }
 
 /// Options for a layout and a sample type, everything else as by default.

@@ -18,6 +18,7 @@ pub fn line_weights(from: usize, filter: PyramidFilter, wrap: Wrap) -> Vec<Weigh
             PyramidFilter::Gaussian => {
                 kernel_weights(j, from, to, wrap, &smoothed_tent, &[-1.5, -0.5, 0.5, 1.5])
             }
+            other => panic!("say what {other} weighs"),
         })
         .collect()
 }

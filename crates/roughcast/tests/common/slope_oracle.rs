@@ -82,6 +82,7 @@ fn slope_of_normal(
         NormalChannels::Yx => (1, 0),
         NormalChannels::Ag => (3, 1),
         NormalChannels::Ra => (0, 3),
+        other => panic!("say where {other} has its components"),
     };
     let (nx, ny) = (component(x_channel), component(y_channel));
     let nz = if options.normal_channels == NormalChannels::Xyz {

@@ -219,6 +219,7 @@ fn materials_in_every_way_of_storing() {
                 RoughnessStored::AlphaSquared => alpha * alpha,
                 RoughnessStored::Gloss => 1.0 - alpha.sqrt(),
                 RoughnessStored::SpecularPower => 2.0 / (alpha * alpha),
+                other => panic!("say what {other} means"),
             } as f32;
             for anisotropy in [ISOTROPIC, [0.8, -0.6, 0.5, 1.0]] {
                 let along = alpha + (1.0 - alpha) * f64::from(anisotropy[2]).powi(2);

@@ -16,6 +16,7 @@ fn in_form(density: f64, cosine: f64, form: Form) -> f64 {
     match form {
         Form::Paper => TAU * density,
         Form::Normalised | Form::Physical => density / cosine.powi(4),
+        other => panic!("say what the form {other} is"),
     }
 }
 
@@ -46,6 +47,7 @@ pub fn cosine_lobe(axis: Vector, direction: Vector, s: f64, form: Form) -> f64 {
     match form {
         Form::Paper => s * power,
         Form::Normalised | Form::Physical => (s + 2.0) / TAU * power,
+        other => panic!("say what the form {other} is"),
     }
 }
 

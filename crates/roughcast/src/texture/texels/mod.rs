@@ -25,7 +25,7 @@ use crate::distribution::Distribution;
 use crate::shading::{FootprintRatio, Gaussians, LobeOptions, PixelPart, pixel_distribution};
 
 /// A texture of a layout: which of its files, and which layer of that.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Input {
     /// The file.
     pub part: Part,
@@ -34,7 +34,8 @@ pub struct Input {
 }
 
 /// What a texture filter averages, which tells how much of the variance under it is the pixel's.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Filtered {
     /// Raw moments: interpolation between texels adds the variance between them.
     Moments,
