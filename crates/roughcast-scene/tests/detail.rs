@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use roughcast::shading::{LobeOptions, Shading, Wanted};
 use roughcast::texture::{Layout, TextureArray};
-use roughcast::{BakeOptions, Covariance, Distribution, Slope, Wrap, bake};
+use roughcast::{Bake, BakeOptions, Covariance, Distribution, Slope, Wrap};
 use roughcast_scene::render::{Method, Truth, unwatched};
 use roughcast_scene::{
     BakedTextures, Camera, Detail, DetailPoint, Filter, Hit, Light, Mesh, Picture, Placement, Plane, Ray,
@@ -30,7 +30,8 @@ fn baked(layout: Layout) -> Vec<TextureArray> {
     let bits = *layout.sample_types().last().expect("a layout has sample types");
     let options = BakeOptions { layout, bits, ..BakeOptions::default() };
     let base = roughcast::BaseRoughness::Variance(1.0 / 64.0);
-    bake(&bumps.heights, &bumps.source_options(), Some(base), &options).expect("a map").arrays
+    let bake = Bake::of(&bumps.heights).source(bumps.source_options()).options(options).roughness(base);
+    bake.run().expect("a map").arrays
 }
 
 /// Points of a plane seen from above, with so many texels a pixel.
