@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use roughcast::texture::{Bounds, DecodeError, TextureArray, TextureInfo, decode, split_layers};
-use roughcast::{Blocks, Covariance, Moments, SampleType};
+use roughcast::{Blocks, Moments, SampleType};
 
 use crate::blocks::{BlockArray, BlockFormat, FractionDone, compress_watched, decompress};
 use crate::{Payload, WriteError};
@@ -177,7 +177,7 @@ impl CompressionError {
                 largest = largest.max(error);
                 texels += 1;
                 let (a, b) = (before.covariance(), after.covariance());
-                let off = Covariance { xx: a.xx - b.xx, yy: a.yy - b.yy, xy: a.xy - b.xy };
+                let off = a - b;
                 variance = variance.max(off.xx.abs()).max(off.yy.abs());
                 let (large, small) = off.eigenvalues();
                 any_direction = any_direction.max(large.abs()).max(small.abs());

@@ -119,7 +119,7 @@ fn expected(map: &Pattern) -> Result<f64> {
     let levels = decode(&Bake::of(&map.heights).source(map.source_options()).options(options).run()?.arrays)?;
     let covariance = levels.last().expect("there is a level").moments[0].covariance();
     let base = 1.0 / SPECULAR_POWER;
-    let with_base = Covariance { xx: covariance.xx + base, yy: covariance.yy + base, ..covariance };
+    let with_base = covariance + Covariance::isotropic(base);
     let (large, small) = with_base.eigenvalues();
     Ok(f64::from(large / small).sqrt())
 }
