@@ -10,7 +10,7 @@ use roughcast::shading::{
 use roughcast::texture::{
     Base, Layout, Packing, RoughnessStored, TextureInfo, layers_of, normal_moments, pbr_moments,
 };
-use roughcast::{Covariance, Distribution, Lobe};
+use roughcast::{Covariance, Distribution, Lobe, MAX_GAUSSIANS, WeightedGaussian};
 
 use super::oracle::reflected;
 use super::support::{Frame, Vector, narrow, surface_of_texels};
@@ -268,5 +268,64 @@ fn every_reader_samples_textures_of_its_layout() {
     // Every model can shade the layout that it is made for.
     for shading in Shading::ALL {
         assert!(shading.layout().texel_reader(shading.wanted(), Lobe::Isotropic).is_some(), "{shading}");
+    }
+}
+
+/// Gaussians of which the first few, weighted anew, make a mixture.
+fn parts(count: usize) -> Vec<WeightedGaussian> {
+    let all = [
+        (0.5, [0.1, -0.2], [0.02, 0.01, 0.005]),
+        (0.2, [-0.5, 0.3], [0.01, 0.03, -0.01]),
+        (0.2, [0.6, 0.4], [0.0, 0.0, 0.0]),
+        (0.1, [-0.1, -0.7], [0.05, 0.002, 0.0]),
+    ];
+    let total: f32 = all[..count].iter().map(|(weight, ..)| weight).sum();
+    let part = |(weight, [x, y], [xx, yy, xy]): (f32, [f32; 2], [f32; 3])| WeightedGaussian {
+        weight: weight / total,
+        mean: Slope { x, y },
+        covariance: Covariance { xx, yy, xy },
+    };
+    all[..count].iter().copied().map(part).collect()
+}
+
+#[test]
+fn mixtures_of_one_to_four_gaussians() {
+    let options = options(64.0, Form::Normalised);
+    for count in 1..=MAX_GAUSSIANS {
+        let mixture = Distribution::mixture(&parts(count)).expect("one to four");
+        let whole = mixture.whole();
+        let centre = [f64::from(whole.mean.x), f64::from(whole.mean.y)];
+        let axes = axes_of(whole.covariance + Covariance::isotropic(1.0 / options.specular_power));
+        let lobe = along(Shading::Lean.surface_of(&mixture, &options).model, options);
+        let integral = integral(&Frame::SURFACE, centre, axes, lobe);
+        assert!(is_one(integral), "{count} Gaussians: {integral}");
+    }
+}
+
+#[test]
+fn the_lobe_of_a_mixture_is_the_weighted_sum_of_its_gaussians() {
+    /// Of the sum: four products and their sum in single floats.
+    const ROUNDING: f64 = 1e-6;
+    for form in Form::ALL {
+        let options = options(64.0, *form);
+        let lobe = |distribution: &Distribution, view: Vector, light: Vector| {
+            f64::from(Shading::Lean.surface_of(distribution, &options).lobe(
+                narrow(view),
+                narrow(light),
+                &options,
+            ))
+        };
+        for slope in [[0.0, 0.0], [0.3, -0.3], [-0.4, 0.2]] {
+            let (view, light) = (Frame::SURFACE.direction(slope), Frame::SURFACE.direction([0.1, 0.4]));
+            let parts = parts(MAX_GAUSSIANS);
+            let mixture = Distribution::mixture(&parts).expect("four");
+            let of_part = |part: &WeightedGaussian| {
+                f64::from(part.weight)
+                    * lobe(&Distribution::gaussian(part.mean, part.covariance), view, light)
+            };
+            let sum: f64 = parts.iter().map(of_part).sum();
+            let got = lobe(&mixture, view, light);
+            assert!(sum > 0.0 && (got - sum).abs() <= ROUNDING * sum, "{form}, {slope:?}: {got} and {sum}");
+        }
     }
 }
