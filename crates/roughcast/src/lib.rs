@@ -5,7 +5,7 @@
 //! filter may average, and from which a shader gets the lost bumps back as roughness with a direction (Olano & Baker,
 //! "LEAN Mapping", 2010, and its relatives).
 //!
-//! # Contents
+//! # What is in
 //!
 //! - [`bake()`]: a map in memory to a layout's textures, every level of them ([`texture::Layout`] lists the layouts);
 //! - [`texture::decode`]: from any layout back to moments, and [`texture::bounds`]: how far off these can be;

@@ -131,7 +131,7 @@ pub enum ScaleChoice {
     Fixed(f32),
 }
 
-/// What to bake from a map.
+/// What to make of a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BakeOptions {
     /// The layout.

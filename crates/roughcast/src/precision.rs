@@ -10,7 +10,7 @@ use crate::options::{BakeOptions, MaxSlope, SourceOptions};
 use crate::texture::{self, Bounds, Layout, Part, Peaks, TextureArray, TextureInfo};
 use crate::{ImageView, Moments, SampleType};
 
-/// The errors of one storage type for a map stored as LEAN.
+/// What one storage type does to a map stored as LEAN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Precision {
     /// The storage type.

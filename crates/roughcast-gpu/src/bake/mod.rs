@@ -1,7 +1,7 @@
 //! LEAN and CLEAN maps baked on the GPU, fast enough for bumps that move every frame.
 //!
-//! The result matches that of [`roughcast::bake`] within one step of the format on every texel of every level: the same
-//! options, the same order of additions, quotients and roots rounded as on the CPU.
+//! The result is that of [`roughcast::bake`] to within one step of the format on every texel of every level: the same
+//! options, the same order of additions, quotients and roots rounded as the CPU rounds them.
 
 mod bandwidth;
 mod bindings;
