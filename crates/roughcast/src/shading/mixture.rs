@@ -23,12 +23,6 @@ impl MixtureSurface {
     }
 }
 
-impl From<SlopeGaussian> for MixtureSurface {
-    fn from(gaussian: SlopeGaussian) -> Self {
-        Self { count: 1, weights: [1.0, 0.0, 0.0, 0.0], gaussians: [gaussian; MAX_GAUSSIANS] }
-    }
-}
-
 /// A Gaussian of a distribution, repaired, with its base roughness.
 #[inline]
 pub fn shaded_gaussian(gaussian: &WeightedGaussian, base: Base, options: &LobeOptions) -> SlopeGaussian {

@@ -3,8 +3,9 @@
 use super::beckmann::{beckmann_lobe, beckmann_surface};
 use super::blinn_phong::{blinn_phong_lobe, blinn_phong_surface};
 use super::facet::BumpFacet;
+use super::gaussian::{SlopeGaussian, gaussian_lobe};
 use super::ggx::{GgxSurface, ggx_lobe, ggx_surface};
-use super::mixture::{MixtureSurface, mixture_lobe, mixture_surface};
+use super::mixture::{MixtureSurface, gaussian_surface, mixture_lobe, mixture_surface};
 use super::off_centre::off_centre_surface;
 use super::phong::{phong_lobe, phong_surface};
 use super::toksvig::toksvig_surface;
@@ -32,7 +33,9 @@ pub enum ModelSurface {
     BlinnPhong(BumpFacet),
     /// Of [`Shading::Beckmann`].
     Beckmann(BumpFacet),
-    /// Of the models in the surface frame: [`Shading::OffCentre`], [`Shading::Lean`], [`Shading::Clean`], [`Shading::Variance`].
+    /// Of [`Shading::OffCentre`], and of [`Shading::Lean`], [`Shading::Clean`] and [`Shading::Variance`] for distributions of one Gaussian.
+    Gaussian(SlopeGaussian),
+    /// Of these three for distributions of several Gaussians. A variant of its own, so that one Gaussian costs no copies of four.
     Mixture(MixtureSurface),
     /// Of [`Shading::Ggx`].
     Ggx(GgxSurface),
@@ -46,6 +49,7 @@ impl Surface {
             ModelSurface::Phong(facet) => phong_lobe(facet, view, light, options),
             ModelSurface::BlinnPhong(facet) => blinn_phong_lobe(facet, view, light, options),
             ModelSurface::Beckmann(facet) => beckmann_lobe(facet, view, light, options),
+            ModelSurface::Gaussian(gaussian) => gaussian_lobe(gaussian, view, light, options),
             ModelSurface::Mixture(mixture) => mixture_lobe(mixture, view, light, options),
             ModelSurface::Ggx(facet) => ggx_lobe(facet, view, light, options),
         }
@@ -54,15 +58,17 @@ impl Surface {
 
 impl Shading {
     /// The surface that the model makes of a distribution of slopes: repaired, with its base roughness.
+    #[inline]
     pub fn surface_of(self, distribution: &Distribution, options: &LobeOptions) -> Surface {
         let model = match self {
             Self::Phong => ModelSurface::Phong(phong_surface(distribution, options)),
             Self::BlinnPhong => ModelSurface::BlinnPhong(blinn_phong_surface(distribution, options)),
             Self::Beckmann => ModelSurface::Beckmann(beckmann_surface(distribution, options)),
-            Self::OffCentre => ModelSurface::Mixture(off_centre_surface(distribution, options).into()),
-            Self::Lean | Self::Clean | Self::Variance => {
-                ModelSurface::Mixture(mixture_surface(distribution, options))
-            }
+            Self::OffCentre => ModelSurface::Gaussian(off_centre_surface(distribution, options)),
+            Self::Lean | Self::Clean | Self::Variance => match distribution.gaussians() {
+                [_] => ModelSurface::Gaussian(gaussian_surface(distribution, options)),
+                _ => ModelSurface::Mixture(mixture_surface(distribution, options)),
+            },
             Self::Toksvig => ModelSurface::BlinnPhong(toksvig_surface(distribution, options)),
             Self::Ggx => ModelSurface::Ggx(ggx_surface(distribution, options)),
         };
@@ -71,6 +77,7 @@ impl Shading {
 
     /// The surface of a single bump of this slope, as the supersampled ground truth sees it: that of the model's
     /// [base lobe](Shading::base_lobe).
+    #[inline]
     pub fn surface_of_slope(self, slope: Slope, options: &LobeOptions) -> Surface {
         let resolved = match self.base_lobe() {
             // The slope itself, and not that of a rounded normal.

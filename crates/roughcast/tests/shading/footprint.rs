@@ -252,12 +252,7 @@ fn shaded(
         _ => vec![[mean.x, mean.y, sigma.xx, sigma.yy]],
     };
     match surface_of_texels(shading, &texels, ratio, &Packing { base, ..Packing::IDENTITY }, options).model {
-        ModelSurface::Mixture(surface) => {
-            let mut gaussians = surface.gaussians();
-            let (weight, first) = gaussians.next().expect("at least one");
-            assert!(weight == 1.0 && gaussians.next().is_none());
-            first.covariance
-        }
+        ModelSurface::Gaussian(gaussian) => gaussian.covariance,
         other => panic!("{other:?} has no covariance"),
     }
 }
