@@ -115,13 +115,13 @@ impl Distribution {
         Some(mixture.with_normal(normal_from_slope(mixture.moments().mean)))
     }
 
-    /// The same with another filtered normal.
+    /// The distribution with another filtered normal.
     #[must_use]
     pub fn with_normal(self, normal: Normal) -> Self {
         Self { normal, ..self }
     }
 
-    /// The same, with another statement of where the base roughness is: [`Base::Baked`] where the covariances contain it already.
+    /// The distribution with another statement of where the base roughness is: [`Base::Baked`] if the covariances already contain it.
     #[must_use]
     pub fn with_base(self, base: Base) -> Self {
         Self { base, ..self }
@@ -143,7 +143,7 @@ impl Distribution {
         &self.gaussians[..self.count]
     }
 
-    /// The same with each covariance replaced by what `change` makes of it.
+    /// The distribution with `change` applied to each Gaussian's covariance.
     #[must_use]
     #[inline]
     pub fn map_covariances(mut self, change: impl Fn(&WeightedGaussian) -> Covariance) -> Self {

@@ -1,8 +1,7 @@
-//! From filtered texels, as a sampler returns them, to a distribution of slopes: one layout a file, with its WGSL twin beside it.
+//! Decoders: filtered texels, as a sampler returns them, to a distribution of slopes. One layout per file, with its WGSL twin beside it.
 //!
-//! These functions decode and nothing else. What the pixel sees of a filtered distribution is
-//! [`pixel_distribution`](crate::shading::pixel_distribution)'s to say, what a model makes of it
-//! [`Shading::surface_of`](crate::shading::Shading::surface_of)'s.
+//! These functions only decode. [`pixel_distribution`](crate::shading::pixel_distribution) then takes off what the texture filter covers
+//! beyond the pixel, and [`Shading::surface_of`](crate::shading::Shading::surface_of) turns the result into a surface.
 
 pub(super) mod clean;
 pub(super) mod lean;
