@@ -8,7 +8,7 @@ use std::pin::Pin;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::task::{Context, Poll, Waker};
 #[cfg(not(target_arch = "wasm32"))]
-use std::time::Duration;
+use std::{thread::JoinHandle, time::Duration};
 
 #[cfg(not(target_arch = "wasm32"))]
 use crate::error::one_line;
@@ -40,7 +40,13 @@ pub(crate) async fn called_back<T: Send + 'static>(
 ) -> Result<T, String> {
     let signal = Signal::default();
     ask(Answer(signal.clone()));
-    Wait { device: Some(device.clone()), signal }.await
+    let wait = Wait {
+        device: Some(device.clone()),
+        signal,
+        #[cfg(not(target_arch = "wasm32"))]
+        thread: None,
+    };
+    wait.await
 }
 
 /// A callback's end of the wait. If dropped without an answer, it ends the wait with an error.
@@ -66,15 +72,18 @@ struct Shared<T> {
     answered: Condvar,
 }
 
-enum State<T> {
-    Waiting(Option<Waker>),
-    Answered(Result<T, String>),
-    Taken,
+struct State<T> {
+    answer: Option<Result<T, String>>,
+    waker: Option<Waker>,
+    /// Whether a thread still holds the device. The wait lasts until it does not: a program may end with the wait, and a
+    /// thread that destroys the device while the program ends can crash the driver.
+    polled: bool,
 }
 
 impl<T> Default for Signal<T> {
     fn default() -> Self {
-        Self(Arc::new(Shared { state: Mutex::new(State::Waiting(None)), answered: Condvar::new() }))
+        let state = State { answer: None, waker: None, polled: false };
+        Self(Arc::new(Shared { state: Mutex::new(state), answered: Condvar::new() }))
     }
 }
 
@@ -85,23 +94,20 @@ impl<T> Clone for Signal<T> {
 }
 
 impl<T> Signal<T> {
-    /// Ends the wait. Only the first answer counts.
+    /// Only the first answer counts.
     fn send(&self, answer: Result<T, String>) {
         let mut state = self.state();
-        let State::Waiting(waker) = &mut *state else { return };
-        let waker = waker.take();
-        *state = State::Answered(answer);
-        drop(state);
-        self.0.answered.notify_all();
-        if let Some(waker) = waker {
-            waker.wake();
+        if state.answer.is_none() {
+            state.answer = Some(answer);
+            self.0.answered.notify_all();
+            wake(state);
         }
     }
 
     /// Whether the answer comes within this time.
     #[cfg(not(target_arch = "wasm32"))]
     fn is_answered_within(&self, time: Duration) -> bool {
-        let waiting = |state: &mut State<T>| matches!(state, State::Waiting(_));
+        let waiting = |state: &mut State<T>| state.answer.is_none();
         let result = self.0.answered.wait_timeout_while(self.state(), time, waiting);
         !result.unwrap_or_else(PoisonError::into_inner).1.timed_out()
     }
@@ -112,10 +118,24 @@ impl<T> Signal<T> {
     }
 }
 
+/// Wakes the future if its wait is over.
+fn wake<T>(mut state: MutexGuard<'_, State<T>>) {
+    if state.polled || state.answer.is_none() {
+        return;
+    }
+    let waker = state.waker.take();
+    drop(state);
+    if let Some(waker) = waker {
+        waker.wake();
+    }
+}
+
 struct Wait<T, D> {
     /// Taken when a thread begins to poll it.
     device: Option<D>,
     signal: Signal<T>,
+    #[cfg(not(target_arch = "wasm32"))]
+    thread: Option<JoinHandle<()>>,
 }
 
 impl<T: Send + 'static, D: Device> Future for Wait<T, D> {
@@ -123,15 +143,17 @@ impl<T: Send + 'static, D: Device> Future for Wait<T, D> {
 
     fn poll(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Self::Output> {
         let mut state = self.signal.state();
-        match std::mem::replace(&mut *state, State::Taken) {
-            State::Answered(answer) => return Poll::Ready(answer),
-            State::Waiting(_) => *state = State::Waiting(Some(context.waker().clone())),
-            State::Taken => return Poll::Ready(Err("the answer was taken already".to_owned())),
+        if !state.polled
+            && let Some(answer) = state.answer.take()
+        {
+            drop(state);
+            self.end();
+            return Poll::Ready(answer);
         }
+        state.waker = Some(context.waker().clone());
         drop(state);
-        let signal = self.signal.clone();
         if let Some(device) = self.device.take()
-            && let Err(reason) = watch(device, signal)
+            && let Err(reason) = self.watch(device)
         {
             return Poll::Ready(Err(reason));
         }
@@ -141,22 +163,71 @@ impl<T: Send + 'static, D: Device> Future for Wait<T, D> {
 
 /// In a browser callbacks need no help.
 #[cfg(target_arch = "wasm32")]
-fn watch<T>(_: impl Device, _: Signal<T>) -> Result<(), String> {
-    Ok(())
+impl<T, D> Wait<T, D> {
+    fn watch(&mut self, _: D) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn end(&mut self) {}
 }
 
-/// Starts a thread that polls the device until the answer arrives.
 #[cfg(not(target_arch = "wasm32"))]
-fn watch<T: Send + 'static>(device: impl Device, signal: Signal<T>) -> Result<(), String> {
-    let thread = std::thread::Builder::new().name("roughcast-gpu wait".to_owned());
-    let spawned = thread.spawn(move || {
-        // wgpu panics if the device was lost; then this is dropped too, and ends the wait.
-        let end = Answer(signal.clone());
-        if let Err(reason) = finish(&device, &signal, Patience::default()) {
-            end.0.send(Err(reason));
+impl<T: Send + 'static, D: Device> Wait<T, D> {
+    /// Starts a thread that polls the device until the answer arrives.
+    fn watch(&mut self, device: D) -> Result<(), String> {
+        let poller = Poller::new(device, self.signal.clone());
+        let thread = std::thread::Builder::new().name("roughcast-gpu wait".to_owned());
+        let spawned = thread.spawn(move || poller.run());
+        let thread =
+            spawned.map_err(|error| format!("no thread can wait for the device: {}", one_line(&error)))?;
+        self.thread = Some(thread);
+        Ok(())
+    }
+
+    /// Lets the thread end, which has nothing left to do but to return.
+    fn end(&mut self) {
+        let this_thread = std::thread::current().id();
+        // An executor may poll the future from within its waker, which the thread itself calls.
+        if let Some(thread) = self.thread.take_if(|thread| thread.thread().id() != this_thread) {
+            // A panic has ended the wait with an error already.
+            let _ = thread.join();
         }
-    });
-    spawned.map(|_| ()).map_err(|error| format!("no thread can wait for the device: {}", one_line(&error)))
+    }
+}
+
+/// Polls the device on a thread of its own. When dropped, it lets go of the device first, then ends the wait.
+#[cfg(not(target_arch = "wasm32"))]
+struct Poller<T, D> {
+    device: Option<D>,
+    signal: Signal<T>,
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+impl<T, D: Device> Poller<T, D> {
+    fn new(device: D, signal: Signal<T>) -> Self {
+        signal.state().polled = true;
+        Self { device: Some(device), signal }
+    }
+
+    /// wgpu panics if the device was lost; that drops `self` as well.
+    fn run(self) {
+        if let Some(device) = &self.device
+            && let Err(reason) = finish(device, &self.signal, Patience::default())
+        {
+            self.signal.send(Err(reason));
+        }
+    }
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+impl<T, D> Drop for Poller<T, D> {
+    fn drop(&mut self) {
+        self.device = None;
+        let mut state = self.signal.state();
+        state.polled = false;
+        state.answer.get_or_insert_with(|| Err("the device does not answer".to_owned()));
+        wake(state);
+    }
 }
 
 /// How long an answer may take once the device's work is done. Another thread that polls the same device may have taken

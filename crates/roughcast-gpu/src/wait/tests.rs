@@ -20,6 +20,8 @@ struct Work {
 
 enum End {
     Calls(Answer<u32>),
+    /// Returns from the poll a while after the call.
+    CallsAndLingers(Answer<u32>),
     FailsWith(&'static str),
     Panics,
     StaysSilent,
@@ -41,6 +43,10 @@ impl Device for Work {
         self.polls.fetch_add(1, Ordering::SeqCst);
         match self.ends.lock().expect("one thread polls at a time").recv() {
             Ok(End::Calls(answer)) => answer.send(7),
+            Ok(End::CallsAndLingers(answer)) => {
+                answer.send(7);
+                std::thread::sleep(A_WHILE);
+            }
             Ok(End::FailsWith(reason)) => return Err(reason.to_owned()),
             Ok(End::Panics) => panic!("as wgpu does where a device is lost"),
             // Nothing is left to do for a device whose test has ended.
@@ -96,6 +102,38 @@ fn a_wait_costs_one_wake_and_one_poll_of_the_device() {
 }
 
 #[test]
+fn no_thread_holds_the_device_after_the_wait() {
+    let (work, ends) = Work::new();
+    let ask = |answer| ends.send(End::CallsAndLingers(answer)).expect("the device is there");
+    assert_eq!(counted(called_back(&work, ask)), (Ok(7), 2, 1));
+    assert_eq!(Arc::strong_count(&work.polls), 1);
+}
+
+#[test]
+fn an_executor_that_polls_within_its_waker_does_not_wait_for_itself() {
+    type Wait = Pin<Box<dyn Future<Output = Result<u32, String>> + Send>>;
+    struct Inline(Mutex<Wait>, Sender<Result<u32, String>>);
+    impl Wake for Inline {
+        fn wake(self: Arc<Self>) {
+            let waker = Arc::clone(&self).into();
+            let mut future = self.0.lock().expect("no poll panics");
+            if let Poll::Ready(result) = future.as_mut().poll(&mut Context::from_waker(&waker)) {
+                self.1.send(result).expect("the test receives it");
+            }
+        }
+    }
+    let (work, ends) = Work::new();
+    let (results, result) = channel();
+    let device = work.clone();
+    let (asked, answer) = channel();
+    let future =
+        async move { called_back(&device, |answer| asked.send(answer).expect("it is received below")).await };
+    Arc::new(Inline(Mutex::new(Box::pin(future)), results)).wake();
+    ends.send(End::Calls(answer.recv().expect("it was asked"))).expect("the device polls");
+    assert_eq!(result.recv(), Ok(Ok(7)));
+}
+
+#[test]
 fn an_executor_that_polls_without_reason_starts_no_more_threads() {
     let (work, ends) = Work::new();
     let (keep, kept) = channel();
@@ -135,7 +173,7 @@ fn a_panic_of_the_poll_ends_the_wait() {
         kept = Some(answer);
         End::Panics
     });
-    assert_eq!(result, Err("the device dropped the request".to_owned()));
+    assert_eq!(result, Err("the device does not answer".to_owned()));
     drop(kept);
 }
 
