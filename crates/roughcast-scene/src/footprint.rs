@@ -16,7 +16,7 @@ const MAX_CHANGE: f64 = 1024.0;
 /// Squared sine of the angle between dpds and dpdt below which they count as parallel.
 const MIN_SINE_SQUARED: f64 = 1e-20;
 
-impl Hit {
+impl Hit<'_> {
     /// How the coordinates of a set change from this pixel to its right neighbour, whose ray is `dx`, and to the one below
     /// it, whose ray is `dy`: [`Hit::surface_footprint`] and [`Hit::footprint_in_set`] together.
     ///

@@ -2,6 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::{UvPoint, UvSets};
+
 /// A ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
@@ -117,72 +119,13 @@ pub enum Side {
     Back,
 }
 
-/// The most sets of texture coordinates of a hit. glTF requires renderers to support at least two; hits are copied often.
-pub const MAX_UV_SETS: usize = 4;
-
-/// One set of texture coordinates at a point of a surface.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct UvPoint {
-    /// The coordinates.
-    pub uv: DVec2,
-    /// Their change with the surface's parameter s.
-    pub ds: DVec2,
-    /// Their change with the surface's parameter t.
-    pub dt: DVec2,
-}
-
-/// The sets of texture coordinates at a point of a surface, at most [`MAX_UV_SETS`].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct UvSets {
-    points: [UvPoint; MAX_UV_SETS],
-    count: usize,
-}
-
-impl UvSets {
-    /// A single set.
-    #[inline]
-    pub fn one(point: UvPoint) -> Self {
-        let mut sets = Self::default();
-        (sets.points[0], sets.count) = (point, 1);
-        sets
-    }
-
-    /// The number of sets.
-    pub fn len(&self) -> usize {
-        self.count
-    }
-
-    /// Whether there are no texture coordinates.
-    pub fn is_empty(&self) -> bool {
-        self.count == 0
-    }
-
-    /// A set; a missing one is zero everywhere.
-    #[inline]
-    pub fn get(&self, set: usize) -> UvPoint {
-        self.points.get(set).copied().unwrap_or_default()
-    }
-}
-
-impl FromIterator<UvPoint> for UvSets {
-    /// Sets beyond the first [`MAX_UV_SETS`] are left out.
-    fn from_iter<I: IntoIterator<Item = UvPoint>>(points: I) -> Self {
-        let mut sets = Self::default();
-        for (to, point) in sets.points.iter_mut().zip(points) {
-            *to = point;
-            sets.count += 1;
-        }
-        sets
-    }
-}
-
 /// A point of a surface.
 ///
 /// The surface has two parameters of its own, s and t, independent of its textures: a shape's are its texture coordinates,
 /// a triangle's run along two of its edges. Position and every set of texture coordinates are known with their change by
 /// s and t; by the chain rule that gives the change of either with the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hit {
+pub struct Hit<'a> {
     /// Distance along the ray.
     pub distance: f64,
     /// The point, in world space.
@@ -198,10 +141,10 @@ pub struct Hit {
     /// Change of the position with t.
     pub dpdt: DVec3,
     /// The texture coordinates.
-    pub uv_sets: UvSets,
+    pub uv_sets: UvSets<'a>,
 }
 
-impl Hit {
+impl Hit<'_> {
     /// The texture coordinates of a set; zero for a missing set.
     #[inline]
     pub fn uv(&self, set: usize) -> DVec2 {
@@ -291,15 +234,5 @@ mod tests {
             assert_eq!(Frame::new(x, y, normal), None);
         }
         assert_eq!(Frame::new(x, x + y * 1e-9, DVec3::Z), None);
-    }
-
-    #[test]
-    fn extra_sets_are_left_out_and_missing_ones_are_zero() {
-        let point = |u: f64| UvPoint { uv: DVec2::splat(u), ds: DVec2::X, dt: DVec2::Y };
-        let sets: UvSets = (1..=MAX_UV_SETS + 2).map(|k| point(k as f64)).collect();
-        assert_eq!((sets.len(), sets.get(MAX_UV_SETS - 1)), (MAX_UV_SETS, point(MAX_UV_SETS as f64)));
-        assert_eq!(sets.get(MAX_UV_SETS), UvPoint::default());
-        assert_eq!(UvSets::one(point(1.0)).get(1), UvPoint::default());
-        assert!(UvSets::default().is_empty());
     }
 }

@@ -36,6 +36,7 @@ mod sequence;
 mod shape;
 mod slope_frame;
 mod split_mix;
+mod uv_sets;
 mod views;
 
 pub use camera::{Camera, CameraError, PixelRays};
@@ -47,7 +48,7 @@ pub use detail::{
 pub use detail::{DetailError, TextureInputs, model_inputs, texture_inputs};
 #[cfg(feature = "render")]
 pub use filter::SummedAreaTable;
-pub use hit::{Footprint, Frame, Hit, MAX_UV_SETS, Ray, Side, UvPoint, UvSets};
+pub use hit::{Footprint, Frame, Hit, Ray, Side};
 pub use light::Light;
 pub use mesh::{MAX_TRIANGLES, MAX_VERTICES, Mesh, MeshFault};
 #[cfg(feature = "render")]
@@ -59,4 +60,5 @@ pub use scene::Scene;
 pub use sequence::slow_move;
 pub use shape::{Bounds, MAX_DETAIL, Plane, Shape, ShapeError, Sphere, Torus, TriangleMesh};
 pub use slope_frame::SlopeFrame;
+pub use uv_sets::{UvPoint, UvSets};
 pub use views::{View, default_light, repeats};

@@ -73,6 +73,12 @@ impl Level {
     pub fn texel(&self, x: usize, y: usize) -> [f32; 4] {
         self.texels[y * self.width + x]
     }
+
+    /// Four neighbours, row by row, by the column and row of the first, which may lie beyond the edges.
+    #[inline]
+    pub(crate) fn square(&self, at: (i64, i64), wrap: Wrap) -> [[f32; 4]; 4] {
+        square_at(at, (self.width, self.height), wrap).map(|texel| self.texels[texel])
+    }
 }
 
 impl Mipmap {
@@ -125,6 +131,7 @@ impl Mipmap {
 }
 
 /// The texel at an index, which may lie beyond the edges.
+#[inline]
 pub(crate) fn wrapped(index: i64, length: usize, wrap: Wrap) -> usize {
     let length = length as i64;
     let inside = match wrap {
@@ -138,6 +145,30 @@ pub(crate) fn wrapped(index: i64, length: usize, wrap: Wrap) -> usize {
         }
     };
     inside as usize
+}
+
+/// Places, in a list of rows, of the texel in this column and row and of its neighbours to the right, below, and below to the
+/// right. All may lie beyond the edges.
+#[inline]
+pub(crate) fn square_at((x, y): (i64, i64), (width, height): (usize, usize), wrap: Wrap) -> [usize; 4] {
+    // Within the map all ways to wrap agree, and most squares lie there.
+    if (0..width as i64 - 1).contains(&x) && (0..height as i64 - 1).contains(&y) {
+        let first = y as usize * width + x as usize;
+        return [first, first + 1, first + width, first + width + 1];
+    }
+    let [left, right] = [x, x.saturating_add(1)].map(|x| wrapped(x, width, wrap));
+    let [top, bottom] = [y, y.saturating_add(1)].map(|y| wrapped(y, height, wrap) * width);
+    [top + left, top + right, bottom + left, bottom + right]
+}
+
+/// The largest whole number that is not larger, and what is left, in 0 ..= 1. Infinite coordinates and those that are no number
+/// get a place, too. Faster than `floor`, which is a call where the compiler may not assume SSE 4.1.
+#[inline]
+#[expect(clippy::manual_clamp, reason = "of what is no number the maximum makes zero; clamp keeps it")]
+pub(crate) fn whole_and_rest(x: f64) -> (i64, f64) {
+    let towards_zero = x as i64;
+    let whole = towards_zero.saturating_sub(i64::from(towards_zero as f64 > x));
+    (whole, (x - whole as f64).max(0.0).min(1.0))
 }
 
 #[cfg(test)]
@@ -168,6 +199,31 @@ mod tests {
         assert!(matches!(Mipmap::new(vec![]), Err(MipmapError::Size { .. })));
         assert!(Level::new(2, 2, vec![[0.0; 4]; 3]).is_err());
         assert!(Level::new(0, 0, vec![]).is_err());
+    }
+
+    #[test]
+    fn squares_are_those_of_wrapped_indices() {
+        for size in [(3, 2), (1, 1), (1, 4), (5, 1)] {
+            for (wrap, x, y) in
+                Wrap::ALL.iter().flat_map(|w| (-7..8).flat_map(move |x| (-7..8).map(move |y| (*w, x, y))))
+            {
+                let place = |x, y| wrapped(y, size.1, wrap) * size.0 + wrapped(x, size.0, wrap);
+                let wanted = [place(x, y), place(x + 1, y), place(x, y + 1), place(x + 1, y + 1)];
+                assert_eq!(square_at((x, y), size, wrap), wanted, "{size:?} {wrap} {x} {y}");
+            }
+        }
+    }
+
+    #[test]
+    fn whole_numbers_and_rests_are_those_of_floor() {
+        for x in
+            [0.0, -0.0, 0.25, 1.0, 7.75, -0.25, -1.0, -2.5, 1e9 + 0.5, -1e9 - 0.5, -1e-300, f64::MIN_POSITIVE]
+        {
+            assert_eq!(whole_and_rest(x), (x.floor() as i64, x - x.floor()), "{x}");
+        }
+        for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300] {
+            assert!((0.0..=1.0).contains(&whole_and_rest(odd).1), "{odd}");
+        }
     }
 
     #[test]

@@ -84,7 +84,7 @@ impl SlopeFrame {
     /// Always finite. All slopes become zero if the surface's own parametrization has no area (a pole), if the
     /// shading normal lies in the surface, if the texture coordinates are missing or constant, and
     /// if single floats cannot represent the result.
-    pub fn matrix(&self, hit: &Hit) -> SlopeMatrix {
+    pub fn matrix(&self, hit: &Hit<'_>) -> SlopeMatrix {
         let Some(height) = self.world_height_per_texel else { return [[1.0, 0.0], [0.0, 1.0]] };
         let normal = hit.frame.normal();
         let (r1, r2) = (hit.dpdt.cross(normal), normal.cross(hit.dpds));
@@ -103,7 +103,7 @@ impl SlopeFrame {
     }
 
     /// The slope, in the frame of the hit, of a surface displaced along the front's normal by heights of this surface gradient.
-    fn slope_of_gradient(&self, hit: &Hit, gradient: DVec3) -> DVec2 {
+    fn slope_of_gradient(&self, hit: &Hit<'_>, gradient: DVec3) -> DVec2 {
         let towards_slope = match hit.side {
             Side::Front => -gradient,
             Side::Back => gradient,

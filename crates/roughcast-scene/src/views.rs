@@ -129,7 +129,7 @@ pub fn default_light(shape: &Shape, camera: &Camera, size: (u32, u32), view: Vie
         (_, View::Grazing) => Some(GRAZING_COSINE),
         _ => Some(FRONTAL_COSINE),
     };
-    let cost = |x: f64, y: f64, ray: &Ray, hit: &Hit| {
+    let cost = |x: f64, y: f64, ray: &Ray, hit: &Hit<'_>| {
         let aside = (x - wanted.0).hypot(y - wanted.1) / f64::from(size.1);
         // Light from below would look odd.
         let below = if ray.direction.reflect(hit.frame.normal()).y < 0.0 { 10.0 } else { 0.0 };
@@ -168,7 +168,7 @@ mod tests {
         [Shape::Plane(Plane::default()), Shape::Sphere(Sphere), Shape::Torus(Torus::default())].map(Arc::new)
     }
 
-    fn hits(scene: &Scene) -> Vec<(Ray, Hit)> {
+    fn hits(scene: &Scene) -> Vec<(Ray, Hit<'_>)> {
         let rays = grid(SIZE).map(|(x, y)| scene.camera.ray(x, y, SIZE.0, SIZE.1));
         rays.filter_map(|ray| Some((ray, scene.shape.hit(&ray)?))).collect()
     }
@@ -182,8 +182,9 @@ mod tests {
                 let part = hits.len() as f64 / f64::from(GRID * GRID);
                 assert!(part > 0.25, "{shape:?}, {view}: {part} of the picture is covered");
                 let (towards, _) = scene.lights[0].at(DVec3::ZERO);
-                let aligned =
-                    |(ray, hit): &(Ray, Hit)| (towards - ray.direction).normalize().dot(hit.frame.normal());
+                let aligned = |(ray, hit): &(Ray, Hit<'_>)| {
+                    (towards - ray.direction).normalize().dot(hit.frame.normal())
+                };
                 let best = hits.iter().map(aligned).fold(0.0, f64::max);
                 // Within three degrees, where lobes of exponents up to 400 are bright.
                 assert!(best > 0.9986, "{shape:?}, {view}: the highlight is off by {best}");

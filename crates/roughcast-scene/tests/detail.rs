@@ -203,7 +203,7 @@ fn quad() -> Shape {
     Shape::Mesh(Arc::new(Mesh::new(vec![mesh]).expect("a quad")))
 }
 
-fn hit_of(shape: &Shape, x: f64, y: f64) -> (Hit, Ray, Ray) {
+fn hit_of(shape: &Shape, x: f64, y: f64) -> (Hit<'_>, Ray, Ray) {
     let ray = |x: f64, y: f64| Ray { origin: DVec3::new(x, y, 1.0), direction: DVec3::NEG_Z };
     (shape.hit(&ray(x, y)).expect("the quad"), ray(x + 0.05, y), ray(x, y + 0.05))
 }

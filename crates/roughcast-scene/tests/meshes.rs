@@ -91,7 +91,7 @@ fn check_vertices(name: &str, mesh: &TriangleMesh) {
 }
 
 /// The part of the hits whose frame has its axes on the sides of growing u and falling v; from behind, on the opposite.
-fn agreement_with_uv(hits: &[(Ray, Hit)]) -> f64 {
+fn agreement_with_uv(hits: &[(Ray, Hit<'_>)]) -> f64 {
     let mapped: Vec<_> = hits.iter().filter(|(_, h)| h.dpdu(0) != DVec3::ZERO).collect();
     let agreeing = mapped.iter().filter(|(_, h)| {
         h.dpdu(0).dot(h.frame.tangent()).signum() == -h.dpdv(0).dot(h.frame.bitangent()).signum()

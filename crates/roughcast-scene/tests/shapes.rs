@@ -185,7 +185,8 @@ fn from_inside_and_from_behind() {
         assert!((hit.frame.bitangent() + DVec3::Y).length() < ORTHONORMAL);
     }
     let below = Ray { origin: DVec3::new(0.1, -2.0, 0.2), direction: DVec3::Y };
-    let hit = Shape::Plane(Plane::default()).hit(&below).unwrap();
+    let plane = Shape::Plane(Plane::default());
+    let hit = plane.hit(&below).unwrap();
     assert_eq!(hit.frame.normal(), DVec3::NEG_Y);
     assert_eq!(hit.dpdu(0), DVec3::X * 2.0);
     let away = Ray { origin: DVec3::new(0.0, 3.0, 0.0), direction: DVec3::Y };
@@ -260,7 +261,7 @@ fn impossible_shapes_are_refused() {
 // Footprints
 
 /// Differences of the texture coordinates of neighbouring hits, for rays a small angle apart.
-fn differences(shape: &Shape, ray: &Ray, hit: &Hit, aside: DVec3) -> Option<(DVec2, DVec2)> {
+fn differences(shape: &Shape, ray: &Ray, hit: &Hit<'_>, aside: DVec3) -> Option<(DVec2, DVec2)> {
     let moved = |step: f64| {
         let neighbour = Ray { direction: (ray.direction + aside * step).normalize(), ..*ray };
         shape.hit(&neighbour).map(|h| (neighbour, h))
@@ -283,7 +284,7 @@ fn footprints_agree_with_neighbouring_hits() {
                 continue;
             }
             let aside = numbers.direction();
-            let error = |hit: &Hit| {
+            let error = |hit: &Hit<'_>| {
                 differences(&shape, &ray, hit, aside)
                     .map(|(measured, footprint)| (measured - footprint).length() / measured.length().max(0.1))
             };

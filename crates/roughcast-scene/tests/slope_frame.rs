@@ -113,10 +113,10 @@ impl Quad {
     }
 
     /// The mesh where it is met from its front, or from behind.
-    fn hit(&self, at: DVec2, from: f64) -> Hit {
+    fn hit<'a>(&self, mesh: &'a Shape, at: DVec2, from: f64) -> Hit<'a> {
         let origin = self.point(at) + self.normal() * from;
         let ray = Ray { origin, direction: -self.normal() * from.signum() };
-        self.mesh().hit(&ray).expect("the quad")
+        mesh.hit(&ray).expect("the quad")
     }
 
     /// The normal of the surface displaced by the heights of a texture on a set, by central differences.
@@ -140,7 +140,7 @@ fn frame(set: usize) -> SlopeFrame {
 }
 
 /// The normal that a slope gives in the frame of a hit, in world space.
-fn world_normal(hit: &Hit, slope: Slope) -> DVec3 {
+fn world_normal(hit: &Hit<'_>, slope: Slope) -> DVec3 {
     hit.frame.world_from_tangent(DVec3::new(f64::from(slope.x), f64::from(slope.y), 1.0)).normalize()
 }
 
@@ -168,7 +168,8 @@ fn slopes_of_a_texture_give_the_normal_of_the_displaced_surface() {
         for (at, set) in points().into_iter().flat_map(|at| [(at, 0), (at, 1)]) {
             let wanted = quad.displaced_normal(set, at);
             for from in [1.0, -1.0] {
-                let hit = quad.hit(at, from);
+                let mesh = quad.mesh();
+                let hit = quad.hit(&mesh, at, from);
                 let stored = stored_slope(texel_of(hit.uv(set)));
                 let normal = world_normal(&hit, stored.transformed(frame(set).matrix(&hit)));
                 // What is a bump from the front is a dent from behind.
@@ -228,7 +229,7 @@ fn moments_transform_like_their_slopes() {
     };
     for quad in quads() {
         for set in [0, 1] {
-            let matrix = frame(set).matrix(&quad.hit(points()[0], 1.0));
+            let matrix = frame(set).matrix(&quad.hit(&quad.mesh(), points()[0], 1.0));
             let one_by_one: Vec<Slope> = slopes.iter().map(|slope| slope.transformed(matrix)).collect();
             let (a, b) = (mean(&one_by_one), mean(&slopes).transformed(matrix));
             for (a, b) in
@@ -248,12 +249,13 @@ fn distance(a: [[f32; 2]; 2], b: [[f32; 2]; 2]) -> f64 {
 #[test]
 fn square_texels_with_matching_height_keep_their_slopes() {
     const IDENTITY: [[f32; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
-    let square = Quad::square().hit(points()[0], 1.0);
+    let [quad, mirrored_quad] = [Quad::square(), Quad::square().mirrored()];
+    let [mesh, mirrored_mesh] = [quad.mesh(), mirrored_quad.mesh()];
+    let square = quad.hit(&mesh, points()[0], 1.0);
+    let mirrored = mirrored_quad.hit(&mirrored_mesh, points()[0], 1.0);
     let plane = Shape::Plane(Plane::new(2.5).unwrap());
     let on_plane = plane.hit(&Ray { origin: DVec3::new(0.3, 2.0, 0.1), direction: DVec3::NEG_Y }).unwrap();
-    for (hit, width) in
-        [(square, 1.0), (Quad::square().mirrored().hit(points()[0], 1.0), 1.0), (on_plane, 5.0)]
-    {
+    for (hit, width) in [(square, 1.0), (mirrored, 1.0), (on_plane, 5.0)] {
         for repeats in [1.0, 3.0] {
             let lies =
                 SlopeFrame::new((64, 64), repeats).with_world_height_per_texel(width / (64.0 * repeats));
@@ -270,16 +272,24 @@ fn square_texels_with_matching_height_keep_their_slopes() {
 #[test]
 fn degenerate_parametrizations_are_flat() {
     const FLAT: [[f32; 2]; 2] = [[0.0; 2]; 2];
-    let hit = Quad::sheared().hit(points()[0], 1.0);
+    let mesh = Quad::sheared().mesh();
+    let hit = Quad::sheared().hit(&mesh, points()[0], 1.0);
     let point = hit.uv_sets.get(0);
-    let with = |point: UvPoint| Hit { uv_sets: UvSets::one(point), ..hit };
+    let [no_derivatives, unknown, huge, line] = [
+        UvPoint { ds: DVec2::ZERO, dt: DVec2::ZERO, ..point },
+        UvPoint { ds: DVec2::NAN, ..point },
+        UvPoint { ds: DVec2::splat(1e200), ..point },
+        UvPoint { ds: DVec2::new(0.5, 0.0), dt: DVec2::ZERO, ..point },
+    ]
+    .map(|point| [point]);
+    let with = |points| Hit { uv_sets: UvSets::of_points(points), ..hit };
     for flat in [
         Hit { uv_sets: UvSets::default(), ..hit },
-        with(UvPoint { ds: DVec2::ZERO, dt: DVec2::ZERO, ..point }),
+        with(&no_derivatives),
         Hit { dpds: DVec3::ZERO, ..hit },
         Hit { dpdt: hit.dpds * 2.0, ..hit },
-        with(UvPoint { ds: DVec2::NAN, ..point }),
-        with(UvPoint { ds: DVec2::splat(1e200), ..point }),
+        with(&unknown),
+        with(&huge),
     ] {
         assert_eq!(frame(0).matrix(&flat), FLAT, "{flat:?}");
     }
@@ -287,7 +297,7 @@ fn degenerate_parametrizations_are_flat() {
         assert_eq!(distance(frame(0).with_world_height_per_texel(height).matrix(&hit), FLAT), 0.0);
     }
     // Texture coordinates on a line are no fault: heights change along it, and the slope is the one of the surface.
-    let line = with(UvPoint { ds: DVec2::new(0.5, 0.0), dt: DVec2::ZERO, ..point });
+    let line = with(&line);
     let slope = Slope { x: 0.4, y: 9.0 }.transformed(frame(0).matrix(&line));
     let rise =
         -world_normal(&line, slope).dot(line.dpds) / world_normal(&line, slope).dot(line.frame.normal());
@@ -303,7 +313,8 @@ fn every_set_has_its_own_derivatives_and_footprint() {
     /// Rounding of positions that are single floats.
     const ROUNDING: f64 = 1e-6;
     let quad = Quad::sheared();
-    let hit = quad.hit(points()[1], 1.0);
+    let mesh = quad.mesh();
+    let hit = quad.hit(&mesh, points()[1], 1.0);
     assert_eq!(hit.uv_sets.len(), 2);
     let aside = |offset: DVec3| {
         let origin = hit.position + quad.normal();
@@ -331,11 +342,12 @@ fn every_set_has_its_own_derivatives_and_footprint() {
 fn a_mirrored_quad_matches_the_reflected_one() {
     for (quad, set) in [(Quad::square(), 0), (Quad::sheared(), 0), (Quad::sheared(), 1)] {
         for at in points() {
-            let (hit, mirrored) = (quad.hit(at, 1.0), quad.reflected().hit(at, 1.0));
+            let [mesh, reflected] = [quad.mesh(), quad.reflected().mesh()];
+            let (hit, mirrored) = (quad.hit(&mesh, at, 1.0), quad.reflected().hit(&reflected, at, 1.0));
             assert!(hit.frame.tangent().cross(hit.frame.bitangent()).dot(hit.frame.normal()) > 0.0);
             let frame_there = mirrored.frame;
             assert!(frame_there.tangent().cross(frame_there.bitangent()).dot(frame_there.normal()) < 0.0);
-            let normal = |hit: &Hit| {
+            let normal = |hit: &Hit<'_>| {
                 let stored = stored_slope(texel_of(hit.uv(set)));
                 world_normal(hit, stored.transformed(frame(set).matrix(hit)))
             };

@@ -143,14 +143,10 @@ impl Distribution {
         &self.gaussians[..self.count]
     }
 
-    /// The distribution with `change` applied to each Gaussian's covariance.
-    #[must_use]
+    /// The Gaussians, to change them.
     #[inline]
-    pub fn map_covariances(mut self, change: impl Fn(&WeightedGaussian) -> Covariance) -> Self {
-        for gaussian in &mut self.gaussians[..self.count] {
-            gaussian.covariance = change(gaussian);
-        }
-        self
+    pub fn gaussians_mut(&mut self) -> &mut [WeightedGaussian] {
+        &mut self.gaussians[..self.count]
     }
 
     /// The Gaussian with the mean and the covariance of the whole.

@@ -74,12 +74,18 @@ impl Covariance {
     }
 
     /// The nearest by rule: a variance below zero becomes zero, `|xy|` is cut to `sqrt(xx yy)`. NaN becomes zero.
+    #[inline]
     pub fn positive_semidefinite(self) -> Self {
         let (xx, yy) = (self.xx.max(0.0), self.yy.max(0.0));
+        // Exact in f64.
+        let product = f64::from(xx) * f64::from(yy);
+        if f64::from(self.xy) * f64::from(self.xy) <= product {
+            return Self { xx, yy, xy: self.xy };
+        }
         // NaN stands for infinity times zero: nothing may be mixed along an axis without variance.
-        let mut limit = (f64::from(xx) * f64::from(yy)).sqrt().max(0.0) as f32;
+        let mut limit = product.sqrt().max(0.0) as f32;
         // The root may have been rounded up, and then the determinant would be below zero after all.
-        if f64::from(limit) * f64::from(limit) > f64::from(xx) * f64::from(yy) {
+        if f64::from(limit) * f64::from(limit) > product {
             limit = limit.next_down().max(0.0);
         }
         let xy = if self.xy.is_nan() { 0.0 } else { self.xy.clamp(-limit, limit) };

@@ -1,6 +1,6 @@
 //! How a texture of slopes lies on a surface: by which texture coordinates, and how high its bumps are there.
 
-use roughcast::{Distribution, Slope};
+use roughcast::SlopeMatrix;
 
 use super::DetailPoint;
 use crate::SlopeFrame;
@@ -34,33 +34,11 @@ impl Placement {
         self.uv_set
     }
 
-    /// The frame of slopes of a texture of these texels, where slopes change from the texture's frame to the hit's.
-    fn frame(&self, texels: (usize, usize), at: &DetailPoint<'_>) -> Option<SlopeFrame> {
+    /// Takes slopes of a texture of these texels to the frame of the hit. `None` where they are the same.
+    #[inline]
+    pub(super) fn matrix(&self, texels: (usize, usize), at: &DetailPoint<'_>) -> Option<SlopeMatrix> {
         let height = self.world_height_per_texel?;
         let frame = SlopeFrame::new(texels, at.repeats()).with_uv_set(self.uv_set);
-        Some(frame.with_world_height_per_texel(height))
-    }
-
-    /// A slope of a texture of these texels in the frame of the hit.
-    #[inline]
-    pub(super) fn slope(&self, slope: Slope, texels: (usize, usize), at: &DetailPoint<'_>) -> Slope {
-        match self.frame(texels, at) {
-            None => slope,
-            Some(frame) => slope.transformed(frame.matrix(at.hit())),
-        }
-    }
-
-    /// The same of a distribution.
-    #[inline]
-    pub(super) fn distribution(
-        &self,
-        distribution: Distribution,
-        texels: (usize, usize),
-        at: &DetailPoint<'_>,
-    ) -> Distribution {
-        match self.frame(texels, at) {
-            None => distribution,
-            Some(frame) => distribution.transformed(frame.matrix(at.hit())),
-        }
+        Some(frame.with_world_height_per_texel(height).matrix(at.hit()))
     }
 }

@@ -43,7 +43,7 @@ impl Detail for Resolved<'_> {
 /// A point of a surface as a source of bumps sees it.
 #[derive(Clone, Copy, Debug)]
 pub struct DetailPoint<'a> {
-    hit: &'a Hit,
+    hit: &'a Hit<'a>,
     repeats: f64,
     /// In the surface's own parameters, from which it follows for every set of texture coordinates.
     surface_footprint: Footprint,
@@ -53,18 +53,18 @@ pub struct DetailPoint<'a> {
 impl<'a> DetailPoint<'a> {
     /// A point alone, under no pixel. Textures repeat `repeats` times over texture coordinates from 0 to 1.
     #[inline]
-    pub fn new(hit: &'a Hit, repeats: f64) -> Self {
+    pub fn new(hit: &'a Hit<'a>, repeats: f64) -> Self {
         Self { hit, repeats, surface_footprint: Footprint::default(), quad: Quad::of(0, 0) }
     }
 
     /// The point under the pixel in this column and row, whose neighbours to the right and below have these rays.
     #[inline]
-    pub fn under_pixel(hit: &'a Hit, repeats: f64, (x, y): (u32, u32), right: &Ray, below: &Ray) -> Self {
+    pub fn under_pixel(hit: &'a Hit<'a>, repeats: f64, (x, y): (u32, u32), right: &Ray, below: &Ray) -> Self {
         Self { hit, repeats, surface_footprint: hit.surface_footprint(right, below), quad: Quad::of(x, y) }
     }
 
     /// Where a ray met the surface: position, frame, and their derivatives.
-    pub fn hit(&self) -> &Hit {
+    pub fn hit(&self) -> &Hit<'a> {
         self.hit
     }
 

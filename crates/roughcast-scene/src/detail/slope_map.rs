@@ -4,7 +4,7 @@ use glam::DVec2;
 use roughcast::texture::{Layout, MomentLevel, decode};
 use roughcast::{Bake, BakeError, BakeOptions, Image, SampleType, Slope, SourceOptions, Wrap};
 
-use crate::mipmap::wrapped;
+use crate::mipmap::{square_at, whole_and_rest, wrapped};
 
 roughcast::named_enum! {
     /// What the surface is between the texels of its map.
@@ -65,16 +65,9 @@ impl SlopeMap {
 
     #[inline]
     fn interpolated(&self, at: DVec2, wrap: Wrap) -> Slope {
-        let corner = at.floor();
-        // The maximum turns what is left of infinity, no number, into zero.
-        let (s, t) = ((at.x - corner.x).max(0.0) as f32, (at.y - corner.y).max(0.0) as f32);
-        let (left, top) = (corner.x as i64, corner.y as i64);
-        let (left, right) =
-            (wrapped(left, self.width, wrap), wrapped(left.saturating_add(1), self.width, wrap));
-        let (top, bottom) =
-            (wrapped(top, self.height, wrap), wrapped(top.saturating_add(1), self.height, wrap));
-        let texel = |x: usize, y: usize| self.slopes[y * self.width + x];
-        let (a, b, c, d) = (texel(left, top), texel(right, top), texel(left, bottom), texel(right, bottom));
+        let ((left, s), (top, t)) = (whole_and_rest(at.x), whole_and_rest(at.y));
+        let (s, t) = (s as f32, t as f32);
+        let [a, b, c, d] = square_at((left, top), self.size(), wrap).map(|texel| self.slopes[texel]);
         let mix = |i: usize| (1.0 - t) * ((1.0 - s) * a[i] + s * b[i]) + t * ((1.0 - s) * c[i] + s * d[i]);
         Slope { x: mix(0), y: mix(1) }
     }

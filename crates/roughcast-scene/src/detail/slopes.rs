@@ -45,7 +45,7 @@ impl Detail for SlopeDetail {
     #[inline]
     fn slope(&self, at: &DetailPoint<'_>) -> Slope {
         let slope = self.slopes.at(at.uv(self.placement.uv_set()), self.wrap, self.reconstruction);
-        self.placement.slope(slope, self.slopes.size(), at)
+        self.placement.matrix(self.slopes.size(), at).map_or(slope, |matrix| slope.transformed(matrix))
     }
 
     /// Mean and covariance of 256 slopes, drawn from the pixel filter, a Gaussian: what the textures of a bake approximate. Footprints of
@@ -73,6 +73,10 @@ impl Detail for SlopeDetail {
         };
         let mean = Slope { x: x as f32, y: y as f32 };
         let normal = Normal::from(normal.map(|sum| (sum / count) as f32));
-        self.placement.distribution(Distribution::new(normal, mean, covariance), self.slopes.size(), at)
+        let distribution = Distribution::new(normal, mean, covariance);
+        match self.placement.matrix(self.slopes.size(), at) {
+            Some(matrix) => distribution.transformed(matrix),
+            None => distribution,
+        }
     }
 }

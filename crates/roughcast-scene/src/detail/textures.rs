@@ -101,7 +101,8 @@ impl Detail for TextureDetail<'_> {
         let BakedTextures { reader, textures, packing, .. } = self.textures;
         let texels = self.sample_all(&finest, &self.lookup(at, Footprint::default()));
         let read = reader.read(&texels[..textures.len()], packing, &self.options(LobeOptions::default()));
-        self.placement.slope(read.whole().mean, self.textures.size(), at)
+        let mean = read.whole().mean;
+        self.placement.matrix(self.textures.size(), at).map_or(mean, |matrix| mean.transformed(matrix))
     }
 
     fn distribution(&self, at: &DetailPoint<'_>, options: &LobeOptions) -> Distribution {
@@ -111,8 +112,12 @@ impl Detail for TextureDetail<'_> {
         let ratio = reader.mean_input.map_or(FootprintRatio::WHOLE, |input| {
             self.sampler.footprint_ratio(&textures[input], packing.slope, texels[input], &lookup, options)
         });
-        let seen = reader.read_pixel(&texels[..textures.len()], &ratio, packing, options);
-        self.placement.distribution(seen, self.textures.size(), at)
+        // Changed in place: a distribution that is copied as soon as it is written stalls the processor.
+        let mut seen = reader.read_pixel(&texels[..textures.len()], &ratio, packing, options);
+        if let Some(matrix) = self.placement.matrix(self.textures.size(), at) {
+            seen = seen.transformed(matrix);
+        }
+        seen
     }
 
     fn options(&self, options: LobeOptions) -> LobeOptions {

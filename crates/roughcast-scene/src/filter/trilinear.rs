@@ -5,7 +5,7 @@ use roughcast::Wrap;
 
 use super::footprint::Ellipse;
 use crate::Footprint;
-use crate::mipmap::{Level, Mipmap, wrapped};
+use crate::mipmap::{Level, Mipmap, whole_and_rest};
 
 /// The level of detail at which a footprint is about a texel wide: the logarithm of its larger extent, in texels.
 ///
@@ -33,16 +33,8 @@ pub(super) fn sample(mipmap: &Mipmap, uv: DVec2, level: f64, wrap: Wrap) -> [f64
 /// Bilinear interpolation within a level.
 pub(super) fn bilinear(level: &Level, uv: DVec2, wrap: Wrap) -> [f64; 4] {
     let at = uv * DVec2::new(level.width() as f64, level.height() as f64) - 0.5;
-    let corner = at.floor();
-    let (s, t) = (at.x - corner.x, at.y - corner.y);
-    let column = |step| wrapped(corner.x as i64 + step, level.width(), wrap);
-    let row = |step| wrapped(corner.y as i64 + step, level.height(), wrap);
-    let ([left, right], [top, bottom]) = ([column(0), column(1)], [row(0), row(1)]);
-    let weighted = [
-        (level.texel(left, top), (1.0 - s) * (1.0 - t)),
-        (level.texel(right, top), s * (1.0 - t)),
-        (level.texel(left, bottom), (1.0 - s) * t),
-        (level.texel(right, bottom), s * t),
-    ];
+    let ((left, s), (top, t)) = (whole_and_rest(at.x), whole_and_rest(at.y));
+    let [a, b, c, d] = level.square((left, top), wrap);
+    let weighted = [(a, (1.0 - s) * (1.0 - t)), (b, s * (1.0 - t)), (c, (1.0 - s) * t), (d, s * t)];
     std::array::from_fn(|i| weighted.iter().map(|(texel, weight)| weight * f64::from(texel[i])).sum())
 }

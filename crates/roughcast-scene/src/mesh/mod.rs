@@ -8,12 +8,13 @@ mod merge;
 mod normals;
 mod tangents;
 
-use glam::{DVec2, DVec3, DVec4, Vec2, Vec3, Vec4};
+use glam::{DVec3, DVec4, Vec3, Vec4};
 
 pub use error::MeshFault;
 
 use crate::shape::facing;
-use crate::{Bounds, Frame, Hit, Ray, Side, TriangleMesh, UvPoint};
+use crate::uv_sets::TrianglePoint;
+use crate::{Bounds, Frame, Hit, Ray, Side, TriangleMesh, UvSets};
 #[cfg(feature = "render")]
 use bvh::TriangleBvh as Triangles;
 #[cfg(not(feature = "render"))]
@@ -23,10 +24,6 @@ use intersect::AllTriangles as Triangles;
 pub const MAX_TRIANGLES: usize = 1 << 22;
 /// The most vertices of a mesh.
 pub const MAX_VERTICES: usize = 3 * MAX_TRIANGLES;
-
-/// Texture coordinates of a triangle whose area is smaller than this fraction of the product of its sides do not determine where
-/// u and v grow: single floats do not resolve it.
-const MIN_UV_SINE: f64 = 1e-7;
 
 /// A triangle mesh with a frame and, if it has them, texture coordinates at each vertex.
 #[derive(Clone)]
@@ -75,7 +72,7 @@ impl Mesh {
         self.uv_set_count > 0
     }
 
-    /// The number of sets of texture coordinates that every part has. Hits carry the first [`crate::MAX_UV_SETS`] of them.
+    /// The number of sets of texture coordinates that every part has.
     pub fn uv_set_count(&self) -> usize {
         self.uv_set_count
     }
@@ -98,13 +95,13 @@ impl Mesh {
     /// See [`crate::Shape::hit`]. Its time grows with the logarithm of the number of triangles; without the feature `render`,
     /// which has the hierarchy for it, with their number. The point, the texture coordinates and the geometric normal are those of the flat triangle;
     /// the frame is interpolated between its vertices.
-    pub fn hit(&self, ray: &Ray) -> Option<Hit> {
+    pub fn hit(&self, ray: &Ray) -> Option<Hit<'_>> {
         let found = self.finder.nearest(&self.triangles, ray)?;
         Some(facing(self.hit_on_triangle(found.triangle, found.weights, found.distance), ray))
     }
 
     /// The point of a triangle with the given barycentric coordinates, seen from its front.
-    fn hit_on_triangle(&self, triangle: usize, weights: DVec3, distance: f64) -> Hit {
+    fn hit_on_triangle(&self, triangle: usize, weights: DVec3, distance: f64) -> Hit<'_> {
         let mesh = &self.triangles;
         let k = corners(mesh, triangle);
         let [p0, p1, p2] = k.map(|i| position(mesh, i));
@@ -119,10 +116,10 @@ impl Mesh {
         let tangent =
             tangent.reject_from_normalized(normal).try_normalize().unwrap_or(normal.any_orthonormal_vector());
         let handedness = blend(tangents.map(|t| DVec3::splat(t.w))).x.signum();
-        let uv_sets = mesh.uv_sets[..self.uv_set_count].iter().map(|uvs| {
-            let [t0, t1, t2] = k.map(|i| Vec2::from(uvs[i]).as_dvec2());
-            let (ds, dt) = resolved([t1 - t0, t2 - t0]);
-            UvPoint { uv: t0 * weights.x + t1 * weights.y + t2 * weights.z, ds, dt }
+        let uv_sets = UvSets::of_triangle(TrianglePoint {
+            sets: &mesh.uv_sets[..self.uv_set_count],
+            corners: k.map(|i| i as u32),
+            weights,
         });
         Hit {
             distance,
@@ -132,7 +129,7 @@ impl Mesh {
             side: Side::Front,
             dpds: e1,
             dpdt: e2,
-            uv_sets: uv_sets.collect(),
+            uv_sets,
         }
     }
 }
@@ -144,10 +141,4 @@ fn corners(mesh: &TriangleMesh, triangle: usize) -> [usize; 3] {
 
 fn position(mesh: &TriangleMesh, vertex: usize) -> DVec3 {
     Vec3::from(mesh.positions[vertex]).as_dvec3()
-}
-
-/// The edges of a triangle in texture coordinates; zero if they have no area.
-fn resolved([t1, t2]: [DVec2; 2]) -> (DVec2, DVec2) {
-    let has_area = t1.perp_dot(t2).abs() > MIN_UV_SINE * t1.length() * t2.length();
-    if has_area { (t1, t2) } else { (DVec2::ZERO, DVec2::ZERO) }
 }

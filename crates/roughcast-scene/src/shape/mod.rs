@@ -14,7 +14,7 @@ pub use plane::Plane;
 pub use sphere::Sphere;
 pub use torus::Torus;
 
-use crate::{Frame, Hit, Mesh, Ray, Side, UvPoint, UvSets};
+use crate::{Frame, Hit, Mesh, Ray, Side, UvSets};
 
 /// A shape, in world space, with its texture coordinates in 0 .. 1 (meshes: as their file has them).
 #[derive(Clone, Debug)]
@@ -75,7 +75,7 @@ impl Shape {
     /// All shapes have two sides. A back side shows glTF's double-sided material: all three axes of the frame and the
     /// geometric normal are reversed, so that they face the viewer and what is a bump from the front is a dent from behind.
     /// Texture coordinates and their derivatives stay.
-    pub fn hit(&self, ray: &Ray) -> Option<Hit> {
+    pub fn hit(&self, ray: &Ray) -> Option<Hit<'_>> {
         match self {
             Self::Plane(plane) => plane.hit(ray),
             Self::Sphere(sphere) => sphere.hit(ray),
@@ -123,7 +123,7 @@ struct SurfacePoint {
 
 impl SurfacePoint {
     #[inline]
-    fn hit(self, ray: &Ray, distance: f64) -> Hit {
+    fn hit(self, ray: &Ray, distance: f64) -> Hit<'static> {
         let bitangent = self.normal.cross(self.tangent);
         let hit = Hit {
             distance,
@@ -133,7 +133,7 @@ impl SurfacePoint {
             side: Side::Front,
             dpds: self.dpdu,
             dpdt: self.dpdv,
-            uv_sets: UvSets::one(UvPoint { uv: self.uv, ds: DVec2::X, dt: DVec2::Y }),
+            uv_sets: UvSets::of_parameters(self.uv),
         };
         facing(hit, ray)
     }
@@ -148,7 +148,7 @@ fn sin_cos_turns(turns: f64) -> (f64, f64) {
 
 /// Reverses the frame of a hit that is seen from behind. Derivatives stay.
 #[inline]
-pub(crate) fn facing(mut hit: Hit, ray: &Ray) -> Hit {
+pub(crate) fn facing<'a>(mut hit: Hit<'a>, ray: &Ray) -> Hit<'a> {
     // In place: a hit is large, and copying it costs as much as finding a plane.
     if hit.geometric_normal.dot(ray.direction) > 0.0 {
         hit.geometric_normal = -hit.geometric_normal;

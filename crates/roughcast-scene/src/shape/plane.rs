@@ -33,7 +33,7 @@ impl Plane {
     }
 
     /// See [`super::Shape::hit`].
-    pub(super) fn hit(&self, ray: &Ray) -> Option<Hit> {
+    pub(super) fn hit(&self, ray: &Ray) -> Option<Hit<'static>> {
         let distance = -ray.origin.y / ray.direction.y;
         // Also false for NaN: a ray within the plane meets no side of it.
         if !(distance > 0.0 && distance.is_finite()) {

@@ -16,7 +16,7 @@ pub struct Sphere;
 
 impl Sphere {
     /// See [`super::Shape::hit`].
-    pub(super) fn hit(&self, ray: &Ray) -> Option<Hit> {
+    pub(super) fn hit(&self, ray: &Ray) -> Option<Hit<'static>> {
         // From the point of the ray that is nearest to the centre: the usual quadratic loses its digits where the
         // origin is far away. The direction is divided by its length, which rounding makes differ from one.
         let length_squared = ray.direction.length_squared();

@@ -39,7 +39,7 @@ impl Torus {
     }
 
     /// See [`super::Shape::hit`].
-    pub(super) fn hit(&self, ray: &Ray) -> Option<Hit> {
+    pub(super) fn hit(&self, ray: &Ray) -> Option<Hit<'static>> {
         let length = ray.direction.length();
         let direction = ray.direction / length;
         // Measured from the point nearest to the centre, the coefficients do not grow with the distance of the eye.

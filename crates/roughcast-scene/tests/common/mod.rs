@@ -39,7 +39,7 @@ impl Numbers {
 }
 
 /// Hits of many random rays.
-pub fn hits(shape: &Shape, rays: usize) -> Vec<(Ray, Hit)> {
+pub fn hits(shape: &Shape, rays: usize) -> Vec<(Ray, Hit<'_>)> {
     let mut numbers = Numbers(7);
     (0..rays)
         .filter_map(|_| {
@@ -55,7 +55,7 @@ pub fn wrapped(difference: DVec2) -> DVec2 {
 }
 
 /// Largest distance from orthonormality, as the largest entry of `F F^T - 1`.
-pub fn unorthonormality(hit: &Hit) -> f64 {
+pub fn unorthonormality(hit: &Hit<'_>) -> f64 {
     let f = hit.frame;
     let axes = [f.tangent(), f.bitangent(), f.normal()];
     let mut worst = 0.0_f64;

@@ -73,6 +73,7 @@ pub use mixture::{MixtureSurface, gaussian_surface, mixture_lobe, mixture_surfac
 pub use off_centre::off_centre_surface;
 pub use phong::{phong_lobe, phong_surface};
 pub use pixel::pixel_distribution;
+pub(crate) use pixel::reduce_to_pixel;
 pub use reflectance::{
     LightSample, Material, Radiance, ambient_radiance, diffuse_radiance, reflect, schlick, specular_radiance,
 };

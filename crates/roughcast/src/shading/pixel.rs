@@ -9,11 +9,25 @@ use crate::distribution::Distribution;
 /// in it. `part` is the ratio's for what the texture stores: `ratio.moments` for LEAN and CLEAN, `ratio.variances` for variances.
 #[inline]
 pub fn pixel_distribution(
-    filtered: &Distribution,
+    mut filtered: Distribution,
     ratio: &FootprintRatio,
     part: PixelPart,
     options: &LobeOptions,
 ) -> Distribution {
+    reduce_to_pixel(&mut filtered, ratio, part, options);
+    filtered
+}
+
+/// [`pixel_distribution`] in place.
+#[inline]
+pub(crate) fn reduce_to_pixel(
+    filtered: &mut Distribution,
+    ratio: &FootprintRatio,
+    part: PixelPart,
+    options: &LobeOptions,
+) {
     let base = base_in_map(filtered.base(), options);
-    filtered.map_covariances(|gaussian| ratio.pixel_covariance(part, gaussian.covariance, base))
+    for gaussian in filtered.gaussians_mut() {
+        gaussian.covariance = ratio.pixel_covariance(part, gaussian.covariance, base);
+    }
 }

@@ -3,7 +3,7 @@
 use super::codec::Units;
 use super::{Layout, Part, ShapeFault, TextureArray, TextureInfo, join_layers};
 use crate::moments::Moments;
-use crate::parallel;
+use crate::{Samples, parallel};
 
 /// A level of moments, row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,24 +89,36 @@ pub fn decode(arrays: &[TextureArray]) -> Result<Vec<MomentLevel>, DecodeError> 
     }
     arrays.iter().try_for_each(TextureArray::check)?;
     let files = Files::find(arrays)?;
-    let decode_texel = files.main().info.layout.rules().decoder(&files);
+    let decoder = files.main().info.layout.rules().decoder(&files);
     let levels = files.main().layers[0].levels.iter().enumerate().map(|(level, image)| {
         let (width, height) = (image.width(), image.height());
         let mut moments = vec![Moments::default(); width * height];
-        parallel::map_with(moments.chunks_mut(width).enumerate().collect(), Vec::new, |texel, (y, row)| {
-            for (x, moments) in row.iter_mut().enumerate() {
-                files.load(level, x, y, texel);
-                let decoded = decode_texel(texel);
-                *moments = Moments::from_mean_and_covariance(decoded.mean, decoded.covariance());
-            }
+        parallel::map_with(moments.chunks_mut(width).enumerate().collect(), Vec::new, |texels, (y, row)| {
+            files.load_row(level, y, texels);
+            decoder.decode_row(texels, files.channels(), row);
         });
         MomentLevel { width, height, moments }
     });
     Ok(levels.collect())
 }
 
-/// Turns the channels of a texel of all files of a layout, one after the other, into moments.
-pub(crate) type TexelDecoder = Box<dyn Fn(&[f32]) -> Moments + Sync>;
+/// Turns the channels of a texel of all files of a layout, one after the other, into moments: any function `&[f32] -> Moments`.
+pub(crate) type TexelDecoder = Box<dyn DecodesRows>;
+
+/// Decodes the texels of a row, each of this many channels, and makes their covariance positive semidefinite. By rows, since a
+/// call through a pointer for each texel takes as long as the rest.
+pub(crate) trait DecodesRows: Sync {
+    fn decode_row(&self, texels: &[f32], channels: usize, row: &mut [Moments]);
+}
+
+impl<F: Fn(&[f32]) -> Moments + Sync> DecodesRows for F {
+    fn decode_row(&self, texels: &[f32], channels: usize, row: &mut [Moments]) {
+        for (moments, texel) in row.iter_mut().zip(texels.chunks_exact(channels)) {
+            let decoded = self(texel);
+            *moments = Moments::from_mean_and_covariance(decoded.mean, decoded.covariance());
+        }
+    }
+}
 
 /// The files of one layout, one for each part that is there, in the order of [`Layout::parts`]. They fit each other.
 pub(crate) struct Files<'a>(Vec<&'a TextureArray>);
@@ -188,12 +200,49 @@ impl<'a> Files<'a> {
         Some(self.0[..place].iter().map(|array| channels_of(array)).sum())
     }
 
-    /// Reads the channels of all files at a texel.
-    fn load(&self, level: usize, x: usize, y: usize, texel: &mut Vec<f32>) {
-        texel.clear();
+    /// Channels of all files.
+    fn channels(&self) -> usize {
+        self.0.iter().map(|array| channels_of(array)).sum()
+    }
+
+    /// Reads the texels of a row: the channels of all files, interleaved.
+    fn load_row(&self, level: usize, y: usize, texels: &mut Vec<f32>) {
+        texels.resize(self.channels() * self.main().layers[0].levels[level].width(), 0.0);
+        let mut first_channel = 0;
         for layer in self.0.iter().flat_map(|array| &array.layers) {
             let image = &layer.levels[level];
-            texel.extend((0..image.channels()).map(|channel| image.get(x, y, channel)));
+            let row = y * image.width() * image.channels()..(y + 1) * image.width() * image.channels();
+            let mut load =
+                RowLoader { texels, stride: self.channels(), first_channel, channels: image.channels() };
+            match image.samples() {
+                Samples::U8(samples) => load.row(&samples[row], |sample| f32::from(sample) / 255.0),
+                Samples::U16(samples) => load.row(&samples[row], |sample| f32::from(sample) / 65535.0),
+                Samples::F16(samples) => load.row(&samples[row], half::f16::to_f32),
+                Samples::F32(samples) => load.row(&samples[row], |sample| sample),
+            }
+            first_channel += image.channels();
+        }
+    }
+}
+
+/// Writes the channels of one image to their places among those of all files.
+struct RowLoader<'a> {
+    texels: &'a mut [f32],
+    /// Channels of a texel.
+    stride: usize,
+    /// The place of the image's first channel in a texel.
+    first_channel: usize,
+    /// Channels of the image.
+    channels: usize,
+}
+
+impl RowLoader<'_> {
+    fn row<T: Copy>(&mut self, samples: &[T], to_float: impl Fn(T) -> f32) {
+        // Channel by channel: of a loop over the few channels of a texel the compiler makes a call of memcpy.
+        for channel in 0..self.channels {
+            let to = self.texels[self.first_channel + channel..].iter_mut().step_by(self.stride);
+            let from = samples[channel..].iter().step_by(self.channels);
+            to.zip(from).for_each(|(to, from)| *to = to_float(*from));
         }
     }
 }

@@ -315,7 +315,7 @@ fn decoder(files: &Files<'_>) -> TexelDecoder {
     // A third channel is z; a fourth is a filler.
     let normal = files.channels_of_main().min(3);
     if let (Some(x), Some(y)) = (files.channel_of(Part::AlphaX), files.channel_of(Part::AlphaY)) {
-        return Box::new(move |texel| decode_alphas(units, &texel[..normal], [texel[x], texel[y]]));
+        return Box::new(move |texel: &[f32]| decode_alphas(units, &texel[..normal], [texel[x], texel[y]]));
     }
     let (first, roughness) = [Part::Roughness, Part::OcclusionRoughnessMetallic]
         .into_iter()
@@ -323,7 +323,7 @@ fn decoder(files: &Files<'_>) -> TexelDecoder {
         .expect("checked to be there");
     let roughness = first + roughness.roughness_texture.roughness_channel();
     let anisotropy = files.channel_of(Part::Anisotropy);
-    Box::new(move |texel| {
+    Box::new(move |texel: &[f32]| {
         let anisotropy = anisotropy.map(|at| &texel[at..]);
         decode(units, &info, &texel[..normal], texel[roughness], anisotropy)
     })

@@ -59,7 +59,7 @@ impl LayoutRules for Schilling {
 
     fn decoder(&self, files: &Files<'_>) -> TexelDecoder {
         let units = files.units();
-        Box::new(move |texel| decode(units, texel))
+        Box::new(move |texel: &[f32]| decode(units, texel))
     }
 
     fn texel_reader(&self, wanted: Wanted, _: Lobe) -> Option<&'static TexelReader> {
@@ -104,7 +104,7 @@ impl LayoutRules for SchillingIsotropic {
 
     fn decoder(&self, files: &Files<'_>) -> TexelDecoder {
         let units = files.units();
-        Box::new(move |texel| decode_isotropic(units, texel))
+        Box::new(move |texel: &[f32]| decode_isotropic(units, texel))
     }
 
     fn texel_reader(&self, _: Wanted, _: Lobe) -> Option<&'static TexelReader> {

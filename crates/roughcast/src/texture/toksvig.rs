@@ -97,9 +97,9 @@ impl LayoutRules for Toksvig {
         let (units, info) = (files.units(), *files.main_info());
         match files.channel_of(Part::Gloss) {
             Some(gloss) if info.part == Part::Normal => {
-                Box::new(move |texel| decode_parts(units, &info, &texel[..2], &texel[gloss..]))
+                Box::new(move |texel: &[f32]| decode_parts(units, &info, &texel[..2], &texel[gloss..]))
             }
-            _ => Box::new(move |texel| decode(units, texel)),
+            _ => Box::new(move |texel: &[f32]| decode(units, texel)),
         }
     }
 

@@ -64,7 +64,7 @@ impl LayoutRules for Variance {
 
     fn decoder(&self, files: &Files<'_>) -> TexelDecoder {
         let units = files.units();
-        Box::new(move |texel| decode(units, texel))
+        Box::new(move |texel: &[f32]| decode(units, texel))
     }
 
     fn texel_reader(&self, _: Wanted, _: Lobe) -> Option<&'static TexelReader> {

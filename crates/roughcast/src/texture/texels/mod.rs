@@ -21,7 +21,7 @@ pub use variance::variance_moments;
 
 use super::{Packing, Part};
 use crate::distribution::Distribution;
-use crate::shading::{FootprintRatio, Gaussians, LobeOptions, PixelPart, pixel_distribution};
+use crate::shading::{FootprintRatio, Gaussians, LobeOptions, PixelPart, reduce_to_pixel};
 
 /// A texture of a layout: which of its files, and which layer of that.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -89,10 +89,10 @@ impl TexelReader {
         packing: &Packing,
         options: &LobeOptions,
     ) -> Distribution {
-        let filtered = self.read(texels, packing, options);
-        match self.pixel_part(ratio) {
-            Some(part) => pixel_distribution(&filtered, ratio, part, options),
-            None => filtered,
+        let mut distribution = self.read(texels, packing, options);
+        if let Some(part) = self.pixel_part(ratio) {
+            reduce_to_pixel(&mut distribution, ratio, part, options);
         }
+        distribution
     }
 }
