@@ -35,7 +35,7 @@ fn options(layout: Layout) -> BakeOptions {
         SampleType::F32 => SampleType::F16,
         suited => suited,
     };
-    BakeOptions { layout, bits, ..BakeOptions::default() }
+    BakeOptions { layout, sample_type: bits, ..BakeOptions::default() }
 }
 
 #[divan::bench(args = Layout::ALL)]

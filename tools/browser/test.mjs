@@ -72,7 +72,7 @@ function drawing(subject, view, changes = {}) {
   return job(view, albedo, { ...changes, material, ...shader, textures: urls });
 }
 
-// LobeOptions by number, as in the export.
+// ShadingOptions by number, as in the export.
 const DEFAULT_OPTIONS = { form: 0, base: 0, repair: 0, masking: 0, footprint: 0, unused: [0, 0] };
 
 function shaderInputs(model, others) {

@@ -109,7 +109,7 @@ void main() {
   vec3 l = normalize(vec3(rest(seed + 0.9) - 0.5, rest(seed + 1.1) - 0.5, 0.1 + rest(seed + 1.2)));
   vec3 h = normalize(v + l);
 
-  rc_LobeOptions options;
+  rc_ShadingOptions options;
   options.specular_power = s;
   options.form = RC_FORM_PHYSICAL;
   options.base = RC_BASE_PLANE;

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use anyhow::Result;
 use indicatif::ProgressBar;
 use pollster::block_on;
-use roughcast::shading::{LobeOptions, Shading};
+use roughcast::shading::{Shading, ShadingOptions};
 use roughcast::texture::TextureArray;
 use roughcast_gpu::render::{DrawOptions, Drawing, Geometry, GpuTextures, RenderTarget, Renderer};
 use roughcast_gpu::{Gpu, GpuOptions, render};
@@ -54,7 +54,7 @@ pub struct MethodBackend {
     pub shading: Shading,
     pub textures: BakedTextures,
     pub sampler: Sampler,
-    pub options: LobeOptions,
+    pub options: ShadingOptions,
     pub size: (u32, u32),
 }
 
@@ -62,7 +62,7 @@ pub struct MethodBackend {
 pub struct GroundTruthBackend {
     pub detail: SlopeDetail,
     pub shading: Shading,
-    pub options: LobeOptions,
+    pub options: ShadingOptions,
     pub samples: u32,
     pub size: (u32, u32),
 }

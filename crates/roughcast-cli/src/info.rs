@@ -156,7 +156,8 @@ impl Findings {
             self.put("green_correlation", json!(correlation), format!("{correlation:.3}"));
         }
         warn_of(&args.file, &map);
-        let options = BakeOptions { layout: Layout::Moments, bits: SampleType::F32, ..Default::default() };
+        let options =
+            BakeOptions { layout: Layout::Moments, sample_type: SampleType::F32, ..Default::default() };
         let baked = Bake::of(&map.image).source(map.options).options(options).run()?;
         let repaired = baked.report.counts.total();
         self.put("repaired", json!(repaired), format!("{repaired} texels"));
@@ -173,8 +174,8 @@ impl Findings {
         if info.layout.uses_scale(sample_type) {
             self.put("scale", json!(info.scale), info.scale.to_string());
         }
-        if info.layout.uses_variance_scale(sample_type) {
-            self.put("variance_scale", json!(info.variance_scale), info.variance_scale.to_string());
+        if info.layout.uses_spread_scale(sample_type) {
+            self.put("variance_scale", json!(info.spread_scale), info.spread_scale.to_string());
         }
         self.put("base", json!(info.base.name()), info.base.name().to_owned());
         let varies = info.base_variance.is_nan();

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result};
 use clap::ValueHint;
 use roughcast::SampleType;
-use roughcast::precision::{Precision, measure, recommend, steepest_slope};
+use roughcast::precision::{Precision, maximum_slope, measure, recommend};
 use serde_json::{Value, json};
 
 use crate::args::{REPORT, SourceArgs, specular_power};
@@ -62,13 +62,13 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     for row in &rows {
         say(&format!(
             "{:<6} {:>9.4} {:>12.3e} {:>12.3e} {:>12.0} {:>12.0} {:>14.3}",
-            row.bits,
+            row.sample_type,
             row.scale,
             row.bound.variance,
             row.measured_variance,
             row.usable_specular_power(),
             row.measured_specular_power(),
-            steepest_slope(row.bits, args.specular_power),
+            maximum_slope(row.sample_type, args.specular_power),
         ))?;
     }
     if let Some(limit) = lowered(&rows) {
@@ -80,7 +80,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 
 /// The maximum slope of unsigned types, if it is lower than that of floats.
 fn lowered(rows: &[Precision]) -> Option<f32> {
-    let limit = |bits| rows.iter().find(|row| row.bits == bits).map(|row| row.max_slope);
+    let limit = |bits| rows.iter().find(|row| row.sample_type == bits).map(|row| row.max_slope);
     limit(SampleType::U16)
         .filter(|of_sixteen| limit(SampleType::F32).is_some_and(|of_floats| *of_sixteen < of_floats))
 }
@@ -97,7 +97,7 @@ fn advice(best: Option<SampleType>, power: f32) -> String {
 
 fn as_json(row: &Precision, power: f32) -> Value {
     json!({
-        "bits": row.bits.name(),
+        "bits": row.sample_type.name(),
         "scale": row.scale,
         "max_slope": row.max_slope,
         "variance_error_bound": row.bound.variance,
@@ -107,6 +107,6 @@ fn as_json(row: &Precision, power: f32) -> Value {
         "usable_specular_power": row.usable_specular_power(),
         "usable_specular_power_any_direction": row.bound.usable_specular_power_any_direction(),
         "usable_specular_power_measured": row.measured_specular_power(),
-        "steepest_slope_for_specular_power": steepest_slope(row.bits, power),
+        "steepest_slope_for_specular_power": maximum_slope(row.sample_type, power),
     })
 }

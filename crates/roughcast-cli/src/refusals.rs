@@ -152,7 +152,7 @@ pub fn of_choices(error: ChoiceError) -> Error {
             };
             format!("{option} is for --as pbr, and the layout is '{layout}': leave it out")
         }
-        ChoiceError::NormalRangeOfIntegers { bits } => format!(
+        ChoiceError::NormalRangeOfIntegers { sample_type: bits } => format!(
             "--normal-range is for floats, and {bits} bits always store n/2 + 1/2: leave it out, or use --bits half"
         ),
         ChoiceError::Supercompression { container } => {
@@ -169,13 +169,13 @@ fn container_line(error: ContainerError) -> String {
                 "{container} cannot store compressed blocks: write .ktx2 or .dds, or leave --compress out"
             )
         }
-        ContainerError::IntegersInExr { bits } => {
+        ContainerError::IntegersInExr { sample_type: bits } => {
             format!("exr stores floats, not {bits} bits: use --bits half or --bits float")
         }
         ContainerError::FloatLayoutInPng { layout } => {
             format!("png cannot store floats, which the layout '{layout}' needs: write .exr")
         }
-        ContainerError::FloatsInPng { bits } => {
+        ContainerError::FloatsInPng { sample_type: bits } => {
             format!("png stores 8 or 16 bits, not {bits}: use --bits 8 or --bits 16, or write .exr")
         }
         ContainerError::TooManyChannels { container, layout } => format!(

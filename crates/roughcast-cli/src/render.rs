@@ -246,7 +246,7 @@ impl Args {
     fn backend(&self, subject: &Subject, scene: &Scene) -> Result<Backend> {
         let named = || self.map.display().to_string();
         let size = (self.size.width, self.size.height);
-        let mut options = self.shading_options.lobe_options();
+        let mut options = self.shading_options.shading_options();
         let shading = self.model(subject)?;
         let filter = match (self.filter, subject) {
             (FilterChoice::Truth(samples), Subject::Map(map)) => {
@@ -281,7 +281,7 @@ impl Args {
         }
         let sampler = Sampler { filter, level: self.level, mip_bias: self.mip_bias, wrap };
         if self.gpu {
-            let draw_options = DrawOptions { sampler, lobe: options, ..DrawOptions::default() };
+            let draw_options = DrawOptions { sampler, shading_options: options, ..DrawOptions::default() };
             let backend = GpuBackend::new(shading, &arrays, &draw_options, scene, size)?;
             return Ok(Backend::Gpu(Box::new(backend)));
         }

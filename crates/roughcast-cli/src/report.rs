@@ -79,13 +79,13 @@ impl FileReport {
                 self.job.info.format,
                 report.levels.len(),
                 self.job.options.layout,
-                texels_in_words(self.job.options.bits),
+                texels_in_words(self.job.options.sample_type),
             ),
             format!(
                 "  slopes: rms {:.4}{}, maximum {:.3}{}; specular power up to {:.0} ({:.0} in any direction){}",
                 report.rms_slope,
                 self.with_base_in_words(),
-                report.steepest,
+                report.maximum_slope,
                 self.scales_in_words(),
                 self.job.bounds().usable_specular_power(),
                 self.job.bounds().usable_specular_power_any_direction(),
@@ -155,8 +155,8 @@ impl FileReport {
 
     fn scales_in_words(&self) -> String {
         let scale = self.job.scale().map(|scale| format!("; scale {scale}"));
-        let variance_scale = self.job.variance_scale().map(|scale| format!("; variance scale {scale}"));
-        scale.into_iter().chain(variance_scale).collect()
+        let spread_scale = self.job.spread_scale().map(|scale| format!("; variance scale {scale}"));
+        scale.into_iter().chain(spread_scale).collect()
     }
 
     /// The report as JSON; docs/reports.md explains its keys.
@@ -193,19 +193,19 @@ impl FileReport {
             "width": self.job.info.width,
             "height": self.job.info.height,
             "layout": self.job.options.layout.name(),
-            "bits": self.job.options.bits.name(),
+            "bits": self.job.options.sample_type.name(),
             "base": self.job.options.base.name(),
             "filter": self.job.options.filter.name(),
             "wrap": self.job.source.wrap.name(),
             "max_slope": report.max_slope,
             "scale": self.job.scale(),
-            "variance_scale": self.job.variance_scale(),
+            "variance_scale": self.job.spread_scale(),
             "texels": report.texels,
             "clamped": report.counts.clamped,
             "behind": report.counts.behind,
             "invalid": report.counts.invalid,
             "non_finite": report.counts.non_finite,
-            "steepest_slope": report.steepest,
+            "steepest_slope": report.maximum_slope,
             "rms_slope": report.rms_slope,
             "rms_slope_with_base": report.rms_slope_with_base,
             "slope_error": self.job.bounds().slope,

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use anyhow::{Context, Result};
 use clap::Args;
 use glam::DVec3;
-use roughcast::shading::{BaseLobe, FootprintModel, Form, LobeOptions, Masking, Material, Repair};
-use roughcast::{Lobe, SampleType};
+use roughcast::shading::{BaseFrame, FootprintModel, Form, Masking, Material, Repair, ShadingOptions};
+use roughcast::{Anisotropy, SampleType};
 use roughcast_io::mesh::load_mesh;
 use roughcast_pipeline::TextureOptions;
 use roughcast_scene::render::{MAX_PIXELS, MAX_SAMPLES};
@@ -300,16 +300,16 @@ pub struct ShadingArgs {
     pub footprint: FootprintModel,
 
     /// The base roughness in the plane of the surface: round, as in LEAN, or the lobe of the tilted facet as seen in that plane
-    #[arg(long = "base-lobe", value_name = "BASE", default_value = "plane", value_parser = one_of::<BaseLobe>())]
-    pub base: BaseLobe,
+    #[arg(long = "base-lobe", value_name = "BASE", default_value = "plane", value_parser = one_of::<BaseFrame>())]
+    pub base_frame: BaseFrame,
 
     /// What to do with covariances that rounding made invalid: clamp them, or follow the papers' rules
     #[arg(long, default_value = "clamp", value_parser = one_of::<Repair>())]
     pub repair: Repair,
 
     /// One roughness for ggx, or two and a direction
-    #[arg(long, default_value = "isotropic", value_parser = one_of::<Lobe>())]
-    pub lobe: Lobe,
+    #[arg(long = "lobe", default_value = "isotropic", value_parser = one_of::<Anisotropy>())]
+    pub anisotropy: Anisotropy,
 
     /// Bits of the textures that the model samples
     #[arg(long, default_value = "16", value_parser = one_of::<SampleType>())]
@@ -330,11 +330,11 @@ pub struct ShadingArgs {
 
 impl ShadingArgs {
     /// The library's options.
-    pub fn lobe_options(&self) -> LobeOptions {
-        LobeOptions {
+    pub fn shading_options(&self) -> ShadingOptions {
+        ShadingOptions {
             specular_power: self.specular_power,
             form: self.form,
-            base: self.base,
+            base_frame: self.base_frame,
             repair: self.repair,
             masking: self.masking,
             footprint: self.footprint,
@@ -343,7 +343,11 @@ impl ShadingArgs {
 
     /// How the textures of a model are baked.
     pub fn texture_options(&self) -> TextureOptions {
-        TextureOptions { bits: self.bits, lobe: self.lobe, specular_power: self.specular_power }
+        TextureOptions {
+            sample_type: self.bits,
+            anisotropy: self.anisotropy,
+            specular_power: self.specular_power,
+        }
     }
 
     /// The material.

@@ -162,7 +162,7 @@ const DIALECTS: [Dialect; 2] = [
         language: "glsl",
         vec4: "vec4",
         vec3: "vec3",
-        entry: "layout(std140, binding = 0) uniform Material { rc_Packing packing; rc_LobeOptions options; vec4 given; };
+        entry: "layout(std140, binding = 0) uniform Material { rc_Packing packing; rc_ShadingOptions options; vec4 given; };
             layout(location = 0) out vec4 colour;
             void main() {",
         exit: "colour = vec4(lobe * distribution.normal, 1.0); }",
@@ -171,7 +171,7 @@ const DIALECTS: [Dialect; 2] = [
         language: "hlsl",
         vec4: "float4",
         vec3: "float3",
-        entry: "cbuffer Material : register(b0) { rc_Packing packing; rc_LobeOptions options; float4 given; };
+        entry: "cbuffer Material : register(b0) { rc_Packing packing; rc_ShadingOptions options; float4 given; };
             float4 shade() : SV_Target {",
         exit: "return float4(lobe * distribution.normal, 1.0); }",
     },

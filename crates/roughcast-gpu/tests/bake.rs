@@ -46,7 +46,7 @@ struct Case<'a> {
 
 impl<'a> Case<'a> {
     fn new(image: &'a Image, source: SourceOptions, layout: Layout, bits: SampleType) -> Self {
-        let options = BakeOptions { layout, bits, ..Default::default() };
+        let options = BakeOptions { layout, sample_type: bits, ..Default::default() };
         Self { image, source, roughness: None, options, path: BakePath::Compute }
     }
 
@@ -332,7 +332,7 @@ fn the_webs_limits_take_more_dispatches_to_the_same_result() {
 fn moving_bumps_reuse_textures_and_follow_their_inputs() {
     let gpu = gpu();
     let frames = [normals(64, 32, 3, SampleType::U8), normals(64, 32, 3, SampleType::U8).flipped()];
-    let options = BakeOptions { bits: SampleType::U16, ..Default::default() };
+    let options = BakeOptions { sample_type: SampleType::U16, ..Default::default() };
     for path in PATHS {
         let first = &frames[0];
         let baker =
@@ -362,7 +362,7 @@ fn moving_bumps_reuse_textures_and_follow_their_inputs() {
 #[test]
 fn textures_already_on_the_gpu_match_the_cpu() {
     let gpu = gpu();
-    let options = BakeOptions { bits: SampleType::F16, ..Default::default() };
+    let options = BakeOptions { sample_type: SampleType::F16, ..Default::default() };
     let cases = [
         (normals(44, 36, 4, SampleType::U8), normal_source(), wgpu::TextureFormat::Rgba8Unorm),
         (normals(44, 36, 4, SampleType::U16), normal_source(), wgpu::TextureFormat::Rgba16Unorm),
@@ -404,7 +404,7 @@ fn a_device_without_16_bit_unorm_is_refused_by_name() {
     let gpu = gpu_without_features();
     let image = normals(8, 8, 3, SampleType::U16);
     let make = |bits| {
-        let options = BakeOptions { bits, ..Default::default() };
+        let options = BakeOptions { sample_type: bits, ..Default::default() };
         block_on(GpuBaker::for_image(&gpu, &image, &normal_source(), None, &options, BakePath::Fastest))
     };
     let line = make(SampleType::U16).err().expect("a feature").to_string();
@@ -437,10 +437,10 @@ fn unsupported_requests_are_refused_with_a_reason() {
         assert!(line.contains(word) && !line.contains('\n'), "{line}");
     };
     refused(
-        BakeOptions { filter: PyramidFilter::Gaussian, bits: SampleType::F16, ..Default::default() },
+        BakeOptions { filter: PyramidFilter::Gaussian, sample_type: SampleType::F16, ..Default::default() },
         "gaussian",
     );
-    refused(BakeOptions { bits: SampleType::F32, ..Default::default() }, "half");
+    refused(BakeOptions { sample_type: SampleType::F32, ..Default::default() }, "half");
     refused(BakeOptions { layout: Layout::Schilling, ..Default::default() }, "schilling");
     refused(BakeOptions { base: Base::Baked, ..Default::default() }, "needs a roughness");
     let narrow = normals(8, 8, 2, SampleType::U8);

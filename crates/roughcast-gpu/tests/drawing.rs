@@ -6,7 +6,7 @@ use common::gpu;
 use common::scenes::{SIZE, maps, scene};
 use pollster::block_on;
 use roughcast::SampleType;
-use roughcast::shading::{Form, LobeOptions, Shading};
+use roughcast::shading::{Form, Shading, ShadingOptions};
 use roughcast_gpu::render::{
     DEPTH_FORMAT, DrawOptions, Drawing, Geometry, GpuTextures, Order, PARTS_FORMAT, Part, RenderTarget,
     Renderer, Views, render,
@@ -31,7 +31,11 @@ fn options_change_without_another_drawing() {
     let plain = DrawOptions::default();
     let other = DrawOptions {
         sampler: Sampler { filter: Filter::Nearest, ..Sampler::default() },
-        lobe: LobeOptions { specular_power: 20.0, form: Form::Normalised, ..LobeOptions::default() },
+        shading_options: ShadingOptions {
+            specular_power: 20.0,
+            form: Form::Normalised,
+            ..ShadingOptions::default()
+        },
         ..plain
     };
     let [first, changed, back, fresh]: [Picture; 4] = block_on(async {

@@ -5,7 +5,7 @@ mod common;
 use common::gpu;
 use common::pictures::{Apart, GpuPictures, apart, by_cpu, inside, options, well_placed};
 use common::scenes::{SIDE, SIZE, SPECULAR_POWER, maps, maps_with, scene, scenes};
-use roughcast::shading::{BaseLobe, Form, LobeOptions, Shading};
+use roughcast::shading::{BaseFrame, Form, Shading, ShadingOptions};
 use roughcast::texture::TextureArray;
 use roughcast::{AnisotropyOutput, BakeOptions, PbrOptions, RoughnessTexture, SampleType, Wrap};
 use roughcast_gpu::render::{Bumps, DrawOptions};
@@ -40,11 +40,14 @@ fn own_taps(view: View) -> f64 {
 /// Of the highlight's energy with anisotropic filters, for models that keep it whatever the filter. Largest measured: 0.014.
 const ENERGY: f64 = 0.03;
 
-const FORMS: [(Form, BaseLobe); 3] =
-    [(Form::Paper, BaseLobe::Facet), (Form::Normalised, BaseLobe::Plane), (Form::Physical, BaseLobe::Plane)];
+const FORMS: [(Form, BaseFrame); 3] = [
+    (Form::Paper, BaseFrame::Facet),
+    (Form::Normalised, BaseFrame::Plane),
+    (Form::Physical, BaseFrame::Plane),
+];
 
-fn lobe(form: Form, base: BaseLobe) -> LobeOptions {
-    LobeOptions { specular_power: SPECULAR_POWER, form, base, ..LobeOptions::default() }
+fn shading_options(form: Form, base_frame: BaseFrame) -> ShadingOptions {
+    ShadingOptions { specular_power: SPECULAR_POWER, form, base_frame, ..ShadingOptions::default() }
 }
 
 fn unfiltered() -> Sampler {
@@ -53,13 +56,14 @@ fn unfiltered() -> Sampler {
 
 fn with_filter(filter: Filter) -> DrawOptions {
     let sampler = Sampler { filter, ..Sampler::default() };
-    options(sampler, lobe(Form::Physical, BaseLobe::Plane))
+    options(sampler, shading_options(Form::Physical, BaseFrame::Plane))
 }
 
 /// Every model with its maps; GGX also with an anisotropy texture and with packed roughness.
 fn models() -> Vec<(Shading, Vec<TextureArray>)> {
     let mut models: Vec<_> = Shading::ALL.iter().map(|s| (*s, maps(*s, SampleType::F16))).collect();
-    let pbr = BakeOptions { layout: Shading::Ggx.layout(), bits: SampleType::U8, ..BakeOptions::default() };
+    let pbr =
+        BakeOptions { layout: Shading::Ggx.layout(), sample_type: SampleType::U8, ..BakeOptions::default() };
     let plain = PbrOptions::default();
     for choices in [
         PbrOptions { anisotropy: Some(AnisotropyOutput::Khr), ..plain },
@@ -92,7 +96,7 @@ fn unfiltered_pictures_of_every_model_and_shape_match() {
         for (index, (shading, maps)) in models.iter().enumerate() {
             // Each model in another form on the next shape.
             let (form, base) = FORMS[(place + index) % FORMS.len()];
-            let draw = options(unfiltered(), lobe(form, base));
+            let draw = options(unfiltered(), shading_options(form, base));
             let cpu = by_cpu(scene, *shading, maps, &draw, SIZE);
             let gpu = pictures.render(scene, *shading, maps, &draw, SIZE).expect("a picture");
             let apart = apart_within_texels(scene, &cpu, &gpu);
@@ -129,7 +133,7 @@ fn interpolated_pictures_agree_at_a_known_level() {
         for level in [0.0, 1.5, 3.0] {
             for shading in [Shading::Lean, Shading::OffCentre, Shading::Ggx] {
                 let sampler = Sampler { filter: Filter::Trilinear, level: Some(level), ..Sampler::default() };
-                let draw = options(sampler, lobe(Form::Physical, BaseLobe::Plane));
+                let draw = options(sampler, shading_options(Form::Physical, BaseFrame::Plane));
                 let apart = both(&mut pictures, &scene, shading, &draw);
                 assert!(apart.mean < INTERPOLATED, "{name}, {shading}, level {level}: {apart:?}");
             }
@@ -144,7 +148,7 @@ fn trilinear_pictures_agree_in_the_mean_with_and_without_a_bias() {
         let mut pictures = GpuPictures::new(&gpu, &scene, DETAIL);
         for (shading, bias) in Shading::ALL.iter().zip([0.0, 0.0, 1.0].into_iter().cycle()) {
             let sampler = Sampler { filter: Filter::Trilinear, mip_bias: bias, ..Sampler::default() };
-            let draw = options(sampler, lobe(Form::Physical, BaseLobe::Plane));
+            let draw = options(sampler, shading_options(Form::Physical, BaseFrame::Plane));
             let apart = both(&mut pictures, &scene, *shading, &draw);
             assert!(apart.mean < OWN_LEVEL, "{name}, {shading}, bias {bias}: {apart:?}");
         }
@@ -179,7 +183,7 @@ fn both(pictures: &mut GpuPictures, scene: &Scene, shading: Shading, draw: &Draw
 fn the_comparisons_fail_when_they_should() {
     let scene = scene(Shape::Plane(Plane::default()), View::Mid);
     let mut pictures = GpuPictures::new(&gpu(), &scene, 4);
-    let unfiltered = options(unfiltered(), lobe(Form::Normalised, BaseLobe::Plane));
+    let unfiltered = options(unfiltered(), shading_options(Form::Normalised, BaseFrame::Plane));
     let cpu =
         |shading, draw: &DrawOptions| by_cpu(&scene, shading, &maps(shading, SampleType::F16), draw, SIZE);
     let mut gpu = |shading, draw: &DrawOptions| {
@@ -190,9 +194,9 @@ fn the_comparisons_fail_when_they_should() {
     assert!(same.largest < SAME_TEXELS, "{same:?}");
     // Another model, another form, a base that differs by a hundredth, a picture that is shifted by a pixel.
     let mut darker = unfiltered;
-    darker.lobe.specular_power *= 1.01;
+    darker.shading_options.specular_power *= 1.01;
     let mut paper = unfiltered;
-    paper.lobe.form = Form::Paper;
+    paper.shading_options.form = Form::Paper;
     let mut shifted = cpu(Shading::Lean, &unfiltered);
     shifted.radiance.rotate_right(1);
     shifted.specular.rotate_right(1);
@@ -209,7 +213,7 @@ fn the_comparisons_fail_when_they_should() {
     // The means, too, see another filter, another level, another wrap, and another model.
     let at = |level, wrap| {
         let sampler = Sampler { filter: Filter::Trilinear, level: Some(level), wrap, ..Sampler::default() };
-        options(sampler, unfiltered.lobe)
+        options(sampler, unfiltered.shading_options)
     };
     let interpolated = gpu(Shading::Lean, &at(1.0, Wrap::Repeat));
     for other in [at(1.1, Wrap::Repeat), at(1.0, Wrap::Mirror), unfiltered] {
@@ -228,7 +232,7 @@ fn the_comparisons_of_filters_fail_when_they_should() {
     let with = |filter, mip_bias, power: f32| {
         let mut draw = with_filter(filter);
         draw.sampler.mip_bias = mip_bias;
-        draw.lobe.specular_power *= power;
+        draw.shading_options.specular_power *= power;
         draw
     };
     for view in [View::Mid, View::Grazing] {
@@ -268,7 +272,7 @@ fn the_comparisons_of_filters_fail_when_they_should() {
 fn round_shapes_converge_as_their_triangles_shrink() {
     let gpu = gpu();
     let scene = scene(Shape::Torus(Torus::default()), View::Near);
-    let draw = options(unfiltered(), lobe(Form::Normalised, BaseLobe::Plane));
+    let draw = options(unfiltered(), shading_options(Form::Normalised, BaseFrame::Plane));
     let maps = maps(Shading::Lean, SampleType::F16);
     let cpu = by_cpu(&scene, Shading::Lean, &maps, &draw, SIZE);
     let [coarse, fine] = [64, 256].map(|detail| {
@@ -290,7 +294,7 @@ fn every_format_and_wrap_is_read_as_the_cpu_reads_it() {
     for bits in [SampleType::U8, SampleType::U16, SampleType::F16, SampleType::F32] {
         for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
             let sampler = Sampler { wrap, ..unfiltered() };
-            let draw = options(sampler, lobe(Form::Physical, BaseLobe::Plane));
+            let draw = options(sampler, shading_options(Form::Physical, BaseFrame::Plane));
             let maps = maps(Shading::Lean, bits);
             let cpu = by_cpu(&scene, Shading::Lean, &maps, &draw, SIZE);
             let gpu = pictures.render(&scene, Shading::Lean, &maps, &draw, SIZE).expect("a picture");
@@ -306,7 +310,7 @@ fn no_light_and_many_lights_give_their_sum() {
     let mut scene = scene(Shape::Sphere(Sphere), View::Near);
     let mut pictures = GpuPictures::new(&gpu, &scene, DETAIL);
     let light = scene.lights[1];
-    let draw = options(unfiltered(), lobe(Form::Normalised, BaseLobe::Plane));
+    let draw = options(unfiltered(), shading_options(Form::Normalised, BaseFrame::Plane));
     for count in [0, 1, 3, 300] {
         scene.lights = vec![light; count];
         let maps = maps(Shading::Clean, SampleType::F16);

@@ -6,9 +6,9 @@ use common::pictures::{GpuPictures, options};
 use common::scenes::{SIDE, SIZE, maps, maps_with, scene};
 use common::{gpu, gpu_of_the_web};
 use pollster::block_on;
-use roughcast::shading::{LobeOptions, Shading};
+use roughcast::shading::{Shading, ShadingOptions};
 use roughcast::texture::{Layout, Part, TextureInfo};
-use roughcast::{BakeOptions, Lobe, SampleType};
+use roughcast::{Anisotropy, BakeOptions, SampleType};
 use roughcast_gpu::bake::{BakePath, GpuBaker};
 use roughcast_gpu::render::{
     Bumps, DEPTH_FORMAT, DrawOptions, Geometry, GpuTextures, LevelOfDetail, RenderTarget, Renderer,
@@ -43,7 +43,7 @@ fn every_shader_compiles_within_the_limits_of_the_web() {
             let textures = textures.expect("half floats are everywhere");
             for filter in [Filter::Nearest, Filter::Anisotropic] {
                 let sampler = Sampler { filter, ..Sampler::default() };
-                let draw = options(sampler, LobeOptions::default());
+                let draw = options(sampler, ShadingOptions::default());
                 block_on(renderer.prepare(&geometry, &textures, &draw)).expect("it compiles");
             }
         }
@@ -53,8 +53,8 @@ fn every_shader_compiles_within_the_limits_of_the_web() {
 #[test]
 fn shaders_sample_as_many_textures_as_the_model_has_inputs() {
     for shading in Shading::ALL {
-        for lobe in [Lobe::Isotropic, Lobe::Anisotropic] {
-            let reader = shading.layout().texel_reader(shading.wanted(), lobe).expect("its layout");
+        for anisotropy in [Anisotropy::Isotropic, Anisotropy::Anisotropic] {
+            let reader = shading.layout().texel_reader(shading.wanted(), anisotropy).expect("its layout");
             let key = ShaderKey {
                 shading: *shading,
                 reader,
@@ -168,7 +168,7 @@ fn invalid_renders_are_errors_of_one_line() {
     let clean = maps(Shading::Clean, SampleType::F16);
     let draw = DrawOptions::default();
     assert!(line(pictures.render(&scene, Shading::Lean, &clean, &draw, SIZE)).contains("lean1"));
-    let ewa = options(Sampler { filter: Filter::Ewa, ..Sampler::default() }, LobeOptions::default());
+    let ewa = options(Sampler { filter: Filter::Ewa, ..Sampler::default() }, ShadingOptions::default());
     assert!(line(pictures.render(&scene, Shading::Clean, &clean, &ewa, SIZE)).contains("ewa"));
 }
 
@@ -176,7 +176,7 @@ fn invalid_renders_are_errors_of_one_line() {
 fn formats_that_the_device_cannot_filter_are_named() {
     let device = plain_device();
     for (bits, format) in [(SampleType::U16, "Rgba16Unorm"), (SampleType::F32, "Rgba32Float")] {
-        let options = BakeOptions { layout: Layout::Clean, bits, ..BakeOptions::default() };
+        let options = BakeOptions { layout: Layout::Clean, sample_type: bits, ..BakeOptions::default() };
         let error = block_on(GpuTextures::new(&device, Shading::Clean, &maps_with(options)));
         let line = error.expect_err("a plain device has no such format").to_string();
         assert!(line.contains(format) && line.contains("half"), "{line}");
@@ -200,7 +200,7 @@ fn textures_baked_on_the_gpu_are_drawn_without_a_copy() {
         (Shading::Clean, SampleType::F16),
         (Shading::Phong, SampleType::U8),
     ] {
-        let options = BakeOptions { layout: shading.layout(), bits, ..BakeOptions::default() };
+        let options = BakeOptions { layout: shading.layout(), sample_type: bits, ..BakeOptions::default() };
         let source = bumps.source_options();
         let [here, back] = block_on(async {
             let path = BakePath::Fastest;

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use roughcast::Lobe;
+use roughcast::Anisotropy;
 use roughcast::shading::Shading;
 use roughcast::texture::Layout;
 use roughcast::wgsl::{MODULES, Role, library, library_of, renamed};
@@ -56,9 +56,10 @@ fn every_module_of_the_library_is_valid_with_what_it_needs() {
 fn every_shader_of_the_renderer_is_valid_and_has_all_of_its_files() {
     let mut sources = Vec::new();
     for layout in Layout::ALL {
-        for (shading, lobe) in Shading::ALL.iter().flat_map(|s| Lobe::ALL.iter().map(move |lobe| (*s, *lobe)))
+        for (shading, anisotropy) in
+            Shading::ALL.iter().flat_map(|s| Anisotropy::ALL.iter().map(move |a| (*s, *a)))
         {
-            let Some(reader) = layout.texel_reader(shading.wanted(), lobe) else { continue };
+            let Some(reader) = layout.texel_reader(shading.wanted(), anisotropy) else { continue };
             for level in [LevelOfDetail::Derivatives, LevelOfDetail::Fixed] {
                 for bumps in [Bumps::Filtered, Bumps::Resolved] {
                     let key = ShaderKey { shading, reader, level, bumps };

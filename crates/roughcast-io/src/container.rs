@@ -30,10 +30,10 @@ pub enum ContainerError {
         container: Container,
     },
     /// EXR stores half and single floats.
-    #[error("exr stores floats, not {bits} bits: store half or single floats")]
+    #[error("exr stores floats, not {sample_type} bits: store half or single floats")]
     IntegersInExr {
         /// The bits asked for.
-        bits: SampleType,
+        sample_type: SampleType,
     },
     /// The layout exists only in floats, which PNG cannot store.
     #[error("png cannot store floats, which the layout '{layout}' needs: write exr")]
@@ -42,10 +42,10 @@ pub enum ContainerError {
         layout: Layout,
     },
     /// PNG stores 8 or 16 bits.
-    #[error("png stores 8 or 16 bits, not {bits}: store 8 or 16 bits, or write exr")]
+    #[error("png stores 8 or 16 bits, not {sample_type}: store 8 or 16 bits, or write exr")]
     FloatsInPng {
         /// The bits asked for.
-        bits: SampleType,
+        sample_type: SampleType,
     },
     /// A texel of a GPU texture has at most four channels.
     #[error("a texel of {container} has at most four channels, fewer than the layout '{layout}': write exr")]
@@ -79,16 +79,16 @@ impl Container {
     /// # Errors
     /// [`ContainerError`] names what does not fit.
     pub fn check(self, options: &BakeOptions) -> Result<(), ContainerError> {
-        let (layout, bits) = (options.layout, options.bits);
+        let (layout, bits) = (options.layout, options.sample_type);
         let float = bits.is_float();
         let float_layout = layout.sample_types().iter().all(|sample_type| sample_type.is_float());
         Err(match self {
             Container::Exr | Container::Png if options.blocks == Blocks::Bc => {
                 ContainerError::Blocks { container: self }
             }
-            Container::Exr if !float => ContainerError::IntegersInExr { bits },
+            Container::Exr if !float => ContainerError::IntegersInExr { sample_type: bits },
             Container::Png if float_layout => ContainerError::FloatLayoutInPng { layout },
-            Container::Png if float => ContainerError::FloatsInPng { bits },
+            Container::Png if float => ContainerError::FloatsInPng { sample_type: bits },
             Container::Ktx2 | Container::Dds if !self.can_hold(layout) => {
                 ContainerError::TooManyChannels { container: self, layout }
             }
@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn what_does_not_fit_is_named() {
-        let with = |layout, bits| BakeOptions { layout, bits, ..BakeOptions::default() };
+        let with = |layout, bits| BakeOptions { layout, sample_type: bits, ..BakeOptions::default() };
         let moments = with(Layout::Moments, SampleType::F32);
         assert_eq!(Container::Exr.check(&moments), Ok(()));
         assert_eq!(
@@ -131,11 +131,11 @@ mod tests {
         );
         assert_eq!(
             Container::Exr.check(&with(Layout::Lean, SampleType::U16)),
-            Err(ContainerError::IntegersInExr { bits: SampleType::U16 })
+            Err(ContainerError::IntegersInExr { sample_type: SampleType::U16 })
         );
         assert_eq!(
             Container::Png.check(&with(Layout::Lean, SampleType::F16)),
-            Err(ContainerError::FloatsInPng { bits: SampleType::F16 })
+            Err(ContainerError::FloatsInPng { sample_type: SampleType::F16 })
         );
         let blocks = BakeOptions { blocks: Blocks::Bc, ..with(Layout::Pbr, SampleType::U8) };
         assert_eq!(Container::Png.check(&blocks), Err(ContainerError::Blocks { container: Container::Png }));

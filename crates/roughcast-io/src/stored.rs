@@ -215,7 +215,7 @@ mod tests {
         let map = Image::new(SIDE, SIDE, 3, Samples::U8(texels.collect())).expect("whole rows");
         let options = BakeOptions {
             layout: Layout::Pbr,
-            bits: SampleType::U8,
+            sample_type: SampleType::U8,
             blocks: Blocks::Bc,
             pbr: PbrOptions {
                 roughness_texture: roughcast::RoughnessTexture::Alone,

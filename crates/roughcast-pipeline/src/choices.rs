@@ -18,7 +18,7 @@ pub struct BakeChoices {
     pub layout: Layout,
     /// Bits per value. Open: 8 for blocks, `pbr` and `toksvig`, half floats for EXR, but single floats for `moments`, half
     /// floats for the web, otherwise 16.
-    pub bits: Option<SampleType>,
+    pub sample_type: Option<SampleType>,
     /// The largest slope that 8- and 16-bit texels represent.
     pub scale: ScaleChoice,
     /// The filter that makes each level from the previous one.
@@ -89,10 +89,10 @@ pub enum ChoiceError {
         layout: Layout,
     },
     /// Integers have one range of normals.
-    #[error("{bits} bits always store a normal as n/2 + 1/2")]
+    #[error("{sample_type} bits always store a normal as n/2 + 1/2")]
     NormalRangeOfIntegers {
         /// The bits.
-        bits: SampleType,
+        sample_type: SampleType,
     },
     /// Only KTX2 has supercompression.
     #[error("ktx2 can be supercompressed, {container} cannot")]
@@ -108,7 +108,7 @@ impl BakeChoices {
         let BakeOptions { scale, filter, base, brdf, blocks, .. } = BakeOptions::default();
         Self {
             layout,
-            bits: None,
+            sample_type: None,
             scale,
             filter,
             base,
@@ -126,14 +126,15 @@ impl BakeChoices {
 
     /// The options of the bake; open choices are made for the container, the target and the picture of the roughness.
     pub fn options(&self, container: Container, roughness: Option<&Roughness>) -> BakeOptions {
-        let bits = self.bits.unwrap_or(match (container, self.layout.default_sample_type(), self.blocks) {
-            (_, _, Blocks::Bc) => SampleType::U8,
-            (Container::Exr, SampleType::U8 | SampleType::U16, _) => SampleType::F16,
-            (Container::Ktx2 | Container::Dds, SampleType::U16, _) if self.target != Target::Desktop => {
-                SampleType::F16
-            }
-            (_, suited, _) => suited,
-        });
+        let bits =
+            self.sample_type.unwrap_or(match (container, self.layout.default_sample_type(), self.blocks) {
+                (_, _, Blocks::Bc) => SampleType::U8,
+                (Container::Exr, SampleType::U8 | SampleType::U16, _) => SampleType::F16,
+                (Container::Ktx2 | Container::Dds, SampleType::U16, _) if self.target != Target::Desktop => {
+                    SampleType::F16
+                }
+                (_, suited, _) => suited,
+            });
         // Blinn-Phong renderers need exponents, which only floats can store.
         let stored = match (self.roughness_stored, self.brdf) {
             (Some(stored), _) => stored,
@@ -142,7 +143,7 @@ impl BakeChoices {
         };
         BakeOptions {
             layout: self.layout,
-            bits,
+            sample_type: bits,
             scale: self.scale,
             base: self.base,
             brdf: self.brdf,
@@ -190,8 +191,8 @@ impl BakeChoices {
                 return Err(ChoiceError::OnlyForPbr { choice, layout: self.layout });
             }
         }
-        if self.normal_range.is_some() && !options.bits.is_float() {
-            return Err(ChoiceError::NormalRangeOfIntegers { bits: options.bits });
+        if self.normal_range.is_some() && !options.sample_type.is_float() {
+            return Err(ChoiceError::NormalRangeOfIntegers { sample_type: options.sample_type });
         }
         if self.supercompression == Supercompression::Zstd && container != Container::Ktx2 {
             return Err(ChoiceError::Supercompression { container });
@@ -216,7 +217,7 @@ mod tests {
         let bits = |container, layout, target| {
             let mut choices = BakeChoices::new(layout);
             choices.target = target;
-            choices.options(container, None).bits
+            choices.options(container, None).sample_type
         };
         assert_eq!(bits(Container::Ktx2, Layout::Lean, Target::Desktop), SampleType::U16);
         assert_eq!(bits(Container::Ktx2, Layout::Lean, Target::Web), SampleType::F16);
@@ -234,14 +235,14 @@ mod tests {
         let expected = ChoiceError::OnlyForPbr { choice: PbrChoice::NormalRange, layout: Layout::Lean };
         assert_eq!(choices.check(Container::Ktx2), Err(expected));
         choices.layout = Layout::Pbr;
-        let expected = ChoiceError::NormalRangeOfIntegers { bits: SampleType::U8 };
+        let expected = ChoiceError::NormalRangeOfIntegers { sample_type: SampleType::U8 };
         assert_eq!(choices.check(Container::Ktx2), Err(expected));
         let mut choices = BakeChoices::new(Layout::Lean);
         choices.supercompression = Supercompression::Zstd;
         let expected = ChoiceError::Supercompression { container: Container::Dds };
         assert_eq!(choices.check(Container::Dds), Err(expected));
         choices.target = Target::Web;
-        choices.bits = Some(SampleType::U16);
+        choices.sample_type = Some(SampleType::U16);
         assert_eq!(choices.check(Container::Ktx2), Err(TargetError::SixteenBits.into()));
     }
 }

@@ -3,17 +3,17 @@
 use roughcast::shading::Shading;
 use roughcast::texture::{BaseRole, TextureArray};
 use roughcast::{
-    AnisotropyOutput, Bake, BakeError, BakeOptions, BaseRoughness, ImageView, Lobe, PbrOptions, SampleType,
-    SourceOptions,
+    Anisotropy, AnisotropyOutput, Bake, BakeError, BakeOptions, BaseRoughness, ImageView, PbrOptions,
+    SampleType, SourceOptions,
 };
 
 /// How a model's textures are baked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextureOptions {
     /// The type of their texels.
-    pub bits: SampleType,
+    pub sample_type: SampleType,
     /// One roughness or two, for `ggx`.
-    pub lobe: Lobe,
+    pub anisotropy: Anisotropy,
     /// The exponent of the base roughness, which `toksvig` and `ggx` store; the other models add it when shading.
     pub specular_power: f32,
 }
@@ -28,10 +28,10 @@ pub fn bake_for<'a>(
     source: &SourceOptions,
     options: TextureOptions,
 ) -> Result<Vec<TextureArray>, BakeError> {
-    let anisotropy = (options.lobe == Lobe::Anisotropic).then_some(AnisotropyOutput::Khr);
+    let anisotropy = (options.anisotropy == Anisotropy::Anisotropic).then_some(AnisotropyOutput::Khr);
     let bake_options = BakeOptions {
         layout: shading.layout(),
-        bits: options.bits,
+        sample_type: options.sample_type,
         pbr: PbrOptions { anisotropy, ..PbrOptions::default() },
         ..BakeOptions::default()
     };

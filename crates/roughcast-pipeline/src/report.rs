@@ -56,13 +56,13 @@ impl JobReport {
 
     /// The range of the stored slopes, if a shader needs it to decode the texels.
     pub fn scale(&self) -> Option<f32> {
-        let BakeOptions { layout, bits, .. } = self.options;
+        let BakeOptions { layout, sample_type: bits, .. } = self.options;
         layout.uses_scale(bits).then_some(self.report.scale)
     }
 
     /// The range of the stored variances or standard deviations, if a shader needs it to decode the texels.
-    pub fn variance_scale(&self) -> Option<f32> {
-        let BakeOptions { layout, bits, .. } = self.options;
-        layout.uses_variance_scale(bits).then_some(self.report.variance_scale)
+    pub fn spread_scale(&self) -> Option<f32> {
+        let BakeOptions { layout, sample_type: bits, .. } = self.options;
+        layout.uses_spread_scale(bits).then_some(self.report.spread_scale)
     }
 }

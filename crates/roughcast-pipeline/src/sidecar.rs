@@ -79,7 +79,7 @@ impl Sidecar {
             "height": self.height,
             "levels": self.levels,
             "scale": info.scale,
-            "variance_scale": info.variance_scale,
+            "variance_scale": info.spread_scale,
             "base": info.base.name(),
             "base_variance": info.base_variance,
             "specular_power": info.specular_power(),

@@ -80,10 +80,10 @@ impl Target {
     pub fn check(self, container: Container, options: &BakeOptions) -> Result<(), TargetError> {
         Err(match (self, container) {
             (Target::Desktop, _) => return Ok(()),
-            (_, Container::Png) if options.bits == SampleType::U16 => {
+            (_, Container::Png) if options.sample_type == SampleType::U16 => {
                 TargetError::SixteenBitPng { layout: options.layout }
             }
-            _ if options.bits == SampleType::U16 => TargetError::SixteenBits,
+            _ if options.sample_type == SampleType::U16 => TargetError::SixteenBits,
             (Target::Any, _) if options.blocks == Blocks::Bc => TargetError::Blocks,
             _ => return Ok(()),
         })
@@ -94,7 +94,7 @@ impl Target {
         if self == Target::Desktop {
             return Vec::new();
         }
-        let floats = (options.bits == SampleType::F32).then_some(TargetFinding::FilteredFloats);
+        let floats = (options.sample_type == SampleType::F32).then_some(TargetFinding::FilteredFloats);
         let blocks = (options.blocks == Blocks::Bc).then_some(TargetFinding::Blocks);
         let levels = matches!(container, Container::Png | Container::Exr).then_some(TargetFinding::OneLevel);
         [floats, blocks, levels].into_iter().flatten().collect()

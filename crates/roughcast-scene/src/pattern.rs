@@ -136,7 +136,7 @@ mod tests {
     /// The moments of the whole map, by the library.
     fn whole(pattern: &Pattern) -> Moments {
         let options =
-            BakeOptions { layout: Layout::Moments, bits: SampleType::F32, ..BakeOptions::default() };
+            BakeOptions { layout: Layout::Moments, sample_type: SampleType::F32, ..BakeOptions::default() };
         let baked = Bake::of(&pattern.heights)
             .source(pattern.source_options())
             .options(options)

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use roughcast::shading::{LobeOptions, Shading, Wanted};
+use roughcast::shading::{Shading, ShadingOptions, Wanted};
 use roughcast::texture::{Layout, TextureArray};
 use roughcast::{Bake, BakeOptions, Covariance, Distribution, Slope, Wrap};
 use roughcast_scene::render::{Method, Truth, unwatched};
@@ -28,7 +28,7 @@ fn slopes() -> SlopeDetail {
 fn baked(layout: Layout) -> Vec<TextureArray> {
     let bumps = bumps();
     let bits = *layout.sample_types().last().expect("a layout has sample types");
-    let options = BakeOptions { layout, bits, ..BakeOptions::default() };
+    let options = BakeOptions { layout, sample_type: bits, ..BakeOptions::default() };
     let base = roughcast::BaseRoughness::Variance(1.0 / 64.0);
     let bake = Bake::of(&bumps.heights).source(bumps.source_options()).options(options).roughness(base);
     bake.run().expect("a map").arrays
@@ -50,7 +50,7 @@ fn points(texels: f64) -> (Shape, Vec<(Ray, Ray, Ray)>) {
 /// Mean over the points of the squared distances of mean slopes and of traces, each over the mean square of the reference.
 fn errors(reference: &dyn Detail, tested: &dyn Detail, texels: f64) -> [f64; 2] {
     let (shape, rays) = points(texels);
-    let options = LobeOptions::default();
+    let options = ShadingOptions::default();
     let (mut off, mut whole) = ([0.0; 2], [0.0; 2]);
     for (ray, right, below) in &rays {
         let hit = shape.hit(ray).expect("the plane");
@@ -93,7 +93,7 @@ impl<D: Detail> Detail for Scaled<D> {
         self.0.slope(at).transformed(HALF)
     }
 
-    fn distribution(&self, at: &DetailPoint<'_>, options: &LobeOptions) -> Distribution {
+    fn distribution(&self, at: &DetailPoint<'_>, options: &ShadingOptions) -> Distribution {
         self.0.distribution(at, options).transformed(HALF)
     }
 }
@@ -107,7 +107,7 @@ fn every_layout_that_a_sampler_reads_answers_both_questions() {
         let Ok(textures) = BakedTextures::new(Wanted::Distribution, &baked(layout)) else { continue };
         layouts += 1;
         let detail = textures.sampled(Sampler { filter: Filter::Trilinear, ..Sampler::default() });
-        let options = detail.options(LobeOptions { specular_power: 64.0, ..LobeOptions::default() });
+        let options = detail.options(ShadingOptions { specular_power: 64.0, ..ShadingOptions::default() });
         let (mut near, mut trace) = (0.0_f32, 0.0_f32);
         for (ray, right, below) in &rays {
             let hit = shape.hit(ray).expect("the plane");
@@ -135,7 +135,7 @@ fn bump_variance() -> f32 {
     let traces = rays.iter().map(|(ray, right, below)| {
         let hit = shape.hit(ray).expect("the plane");
         let at = DetailPoint::under_pixel(&hit, 1.0, (0, 0), right, below);
-        reference.distribution(&at, &LobeOptions::default()).whole().covariance.trace()
+        reference.distribution(&at, &ShadingOptions::default()).whole().covariance.trace()
     });
     traces.sum::<f32>() / rays.len() as f32
 }
@@ -150,7 +150,7 @@ fn any_model_shades_any_layout() {
     for layout in [Layout::Lean, Layout::Clean, Layout::Schilling, Layout::Pbr] {
         let textures = BakedTextures::new(Wanted::Distribution, &baked(layout)).expect("its own textures");
         let detail = textures.sampled(Sampler::default());
-        let options = detail.options(LobeOptions { specular_power: 20.0, ..LobeOptions::default() });
+        let options = detail.options(ShadingOptions { specular_power: 20.0, ..ShadingOptions::default() });
         for model in Shading::ALL {
             let lobe = model.surface_of(&detail.distribution(&at, &options), &options).lobe(up, up, &options);
             assert!(lobe.is_finite() && lobe > 0.0, "{model} on {layout}: {lobe}");
@@ -175,7 +175,7 @@ fn plane_scene() -> Scene {
 #[test]
 fn resolved_detail_rendered_once_a_pixel_is_ground_truth_with_one_sample() {
     let detail = slopes();
-    let options = LobeOptions { specular_power: 60.0, ..LobeOptions::default() };
+    let options = ShadingOptions { specular_power: 60.0, ..ShadingOptions::default() };
     let (scene, size) = (plane_scene(), (48, 32));
     let method = Method { shading: Shading::Lean, detail: &Resolved(&detail), options };
     let once = method.render(&scene, size, &unwatched).expect("a picture");
@@ -228,10 +228,10 @@ fn a_placement_by_the_second_set_looks_up_and_turns_slopes_by_it() {
         assert_ne!(found, plain.slope(&at));
         // The distribution is mirrored as the slope is: the mixed term changes its sign.
         let (seen, of_texture) = (
-            placed.distribution(&at, &LobeOptions::default()).whole(),
+            placed.distribution(&at, &ShadingOptions::default()).whole(),
             slopes()
                 .placed(Placement::default().with_uv_set(1))
-                .distribution(&at, &LobeOptions::default())
+                .distribution(&at, &ShadingOptions::default())
                 .whole(),
         );
         let Covariance { xx, yy, xy } = of_texture.covariance;

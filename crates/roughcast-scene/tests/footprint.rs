@@ -5,7 +5,7 @@ mod common;
 use std::sync::Arc;
 
 use common::picture;
-use roughcast::shading::{FootprintModel, LobeOptions, Material, Shading};
+use roughcast::shading::{FootprintModel, Material, Shading, ShadingOptions};
 use roughcast::texture::TextureArray;
 use roughcast::{Bake, BakeOptions, Green, Image, SourceOptions, Wrap};
 use roughcast_scene::metrics::rmse;
@@ -53,7 +53,7 @@ impl Seen {
         let truth = Truth {
             shading,
             detail: &SlopeDetail::new(self.slopes.clone(), Wrap::Repeat),
-            options: LobeOptions::default(),
+            options: ShadingOptions::default(),
             samples: 64,
         };
         truth.render(&self.scene, SIZE, &unwatched).expect("a picture")
@@ -64,7 +64,7 @@ impl Seen {
         let textures = BakedTextures::of_model(shading, &self.maps(shading)).expect("the model's maps");
         let sampler = Sampler { filter, ..Sampler::default() };
         [FootprintModel::Corrected, FootprintModel::Published].map(|footprint| {
-            let options = LobeOptions { footprint, ..LobeOptions::default() };
+            let options = ShadingOptions { footprint, ..ShadingOptions::default() };
             let method = Method { shading, detail: &textures.sampled(sampler), options };
             let picture = method.render(&self.scene, SIZE, &unwatched).expect("a picture");
             rmse(&picture, truth).expect("pictures of one size")

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use roughcast::shading::{LobeOptions, Material, Shading};
+use roughcast::shading::{Material, Shading, ShadingOptions};
 use roughcast::{Bake, BakeOptions, Image, SampleType};
 use roughcast_io::{ReadOptions, read_image_file};
 use roughcast_scene::metrics::{DEFAULT_PIXELS_PER_DEGREE, hdr_flip};
@@ -24,12 +24,12 @@ fn map(name: &str) -> Image {
 }
 
 fn picture(map: &Image, bits: SampleType, view: View) -> Picture {
-    let options = BakeOptions { bits, ..BakeOptions::default() };
+    let options = BakeOptions { sample_type: bits, ..BakeOptions::default() };
     let baked = Bake::of(map).options(options).run().expect("a map");
     let textures = BakedTextures::of_model(Shading::Lean, &baked.arrays).expect("LEAN's textures");
     let plane = Arc::new(Shape::Plane(Plane::default()));
     let scene = view.scene(plane, (map.width(), map.height()), SIZE, Material::default());
-    let options = LobeOptions { specular_power: SPECULAR_POWER, ..LobeOptions::default() };
+    let options = ShadingOptions { specular_power: SPECULAR_POWER, ..ShadingOptions::default() };
     let method = Method { shading: Shading::Lean, detail: &textures.sampled(Sampler::default()), options };
     method.render(&scene, SIZE, &unwatched).expect("a picture")
 }

@@ -5,7 +5,7 @@ mod common;
 use std::sync::Arc;
 
 use common::picture;
-use roughcast::shading::{Form, LobeOptions, Material, Shading};
+use roughcast::shading::{Form, Material, Shading, ShadingOptions};
 use roughcast::{Bake, SourceOptions, Wrap};
 use roughcast_scene::metrics::{energy_error, rmse};
 use roughcast_scene::render::{Method, Truth, unwatched};
@@ -32,7 +32,8 @@ fn lean_has_smaller_errors_on_real_maps() {
         let slopes = SlopeMap::of(&map, &source).unwrap();
         let plane = Arc::new(Shape::Plane(Plane::default()));
         let scene = View::Far.scene(plane, (map.width(), map.height()), SIZE, Material::default());
-        let options = LobeOptions { specular_power: 256.0, form: Form::Normalised, ..LobeOptions::default() };
+        let options =
+            ShadingOptions { specular_power: 256.0, form: Form::Normalised, ..ShadingOptions::default() };
         let errors = |shading: Shading, reconstruction| {
             let truth = Truth {
                 shading,

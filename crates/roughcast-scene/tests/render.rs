@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::DVec3;
-use roughcast::shading::{Form, LobeOptions, Material, Shading};
+use roughcast::shading::{Form, Material, Shading, ShadingOptions};
 use roughcast::texture::{Part, TextureArray};
 use roughcast::{Bake, BakeOptions, BaseRoughness, PbrOptions, RoughnessTexture, SampleType, Wrap};
 use roughcast_scene::metrics::{energy_error, flicker, rmse};
@@ -32,9 +32,9 @@ impl Map {
 
     fn baked(&self, shading: Shading, specular_power: f32) -> Vec<TextureArray> {
         let options =
-            BakeOptions { layout: shading.layout(), bits: SampleType::F32, ..BakeOptions::default() };
+            BakeOptions { layout: shading.layout(), sample_type: SampleType::F32, ..BakeOptions::default() };
         let options = match shading {
-            Shading::Ggx | Shading::Toksvig => BakeOptions { bits: SampleType::U16, ..options },
+            Shading::Ggx | Shading::Toksvig => BakeOptions { sample_type: SampleType::U16, ..options },
             _ => options,
         };
         let roughness = Some(BaseRoughness::Variance(1.0 / specular_power));
@@ -47,7 +47,7 @@ impl Map {
             .arrays
     }
 
-    fn method(&self, scene: &Scene, shading: Shading, filter: Filter, options: LobeOptions) -> Picture {
+    fn method(&self, scene: &Scene, shading: Shading, filter: Filter, options: ShadingOptions) -> Picture {
         self.method_at(scene, SIZE, shading, filter, options)
     }
 
@@ -57,7 +57,7 @@ impl Map {
         size: (u32, u32),
         shading: Shading,
         filter: Filter,
-        options: LobeOptions,
+        options: ShadingOptions,
     ) -> Picture {
         let textures =
             BakedTextures::of_model(shading, &self.baked(shading, options.specular_power)).unwrap();
@@ -67,13 +67,13 @@ impl Map {
             .unwrap()
     }
 
-    fn truth(&self, shading: Shading, options: LobeOptions, samples: u32) -> Truth<'_> {
+    fn truth(&self, shading: Shading, options: ShadingOptions, samples: u32) -> Truth<'_> {
         Truth { shading, detail: &self.slopes, options, samples }
     }
 }
 
-fn power(specular_power: f32, form: Form) -> LobeOptions {
-    LobeOptions { specular_power, form, ..LobeOptions::default() }
+fn power(specular_power: f32, form: Form) -> ShadingOptions {
+    ShadingOptions { specular_power, form, ..ShadingOptions::default() }
 }
 
 /// A plane from above, a highlight in its middle, with this many texels of a map of 256 a pixel.

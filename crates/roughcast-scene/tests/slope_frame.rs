@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use common::{Numbers, hits};
 use glam::{DVec2, DVec3};
-use roughcast::shading::{LobeOptions, Material, Shading};
+use roughcast::shading::{Material, Shading, ShadingOptions};
 use roughcast::{Bake, BakeOptions, Moments, SampleType, Slope};
 use roughcast_scene::render::{Method, unwatched};
 use roughcast_scene::{
@@ -361,8 +361,11 @@ fn a_mirrored_quad_matches_the_reflected_one() {
 fn picture(quad: Quad, mirror: fn(DVec3) -> DVec3) -> Picture {
     const SIZE: (u32, u32) = (96, 64);
     let bumps = pattern::random_bumps(64, 0.15, 5);
-    let options =
-        BakeOptions { layout: Shading::Lean.layout(), bits: SampleType::F32, ..BakeOptions::default() };
+    let options = BakeOptions {
+        layout: Shading::Lean.layout(),
+        sample_type: SampleType::F32,
+        ..BakeOptions::default()
+    };
     let maps = Bake::of(&bumps.heights).source(bumps.source_options()).options(options).run().unwrap().arrays;
     let textures = BakedTextures::of_model(Shading::Lean, &maps).unwrap();
     let middle = quad.point(DVec2::splat(0.5));
@@ -380,7 +383,7 @@ fn picture(quad: Quad, mirror: fn(DVec3) -> DVec3) -> Picture {
     };
     let sampler = Sampler { filter: Filter::Anisotropic, ..Sampler::default() };
     let detail = textures.sampled(sampler);
-    let method = Method { shading: Shading::Lean, detail: &detail, options: LobeOptions::default() };
+    let method = Method { shading: Shading::Lean, detail: &detail, options: ShadingOptions::default() };
     method.render(&scene, SIZE, &unwatched).unwrap()
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use common::picture;
 use roughcast::detect::{guess_channels, guess_range};
-use roughcast::shading::{LobeOptions, Material, Shading};
+use roughcast::shading::{Material, Shading, ShadingOptions};
 use roughcast::{Bake, BakeOptions, BakeReport, Green, Image, MaxSlope, SamplesMut, SourceOptions};
 use roughcast_scene::metrics::rmse;
 use roughcast_scene::render::{Method, Truth, unwatched};
@@ -52,7 +52,7 @@ impl Far {
             let truth = Truth {
                 shading,
                 detail: &SlopeDetail::new(slopes.clone(), source.wrap),
-                options: LobeOptions::default(),
+                options: ShadingOptions::default(),
                 samples: SAMPLES,
             };
             truth.render(&scene, SIZE, &unwatched).expect("a picture")
@@ -69,7 +69,7 @@ impl Far {
         let method = Method {
             shading: MODELS[model],
             detail: &textures.sampled(Sampler::default()),
-            options: LobeOptions::default(),
+            options: ShadingOptions::default(),
         };
         let picture = method.render(&self.scene, SIZE, &unwatched).expect("a picture");
         (rmse(&picture, &self.truth[model]).expect("pictures of one size"), baked.report)

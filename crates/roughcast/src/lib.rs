@@ -38,7 +38,7 @@
 //!
 //! # What stays
 //!
-//! - *Options* ([`SourceOptions`], [`BakeOptions`], [`PbrOptions`], [`shading::LobeOptions`]) and what files say of themselves
+//! - *Options* ([`SourceOptions`], [`BakeOptions`], [`PbrOptions`], [`shading::ShadingOptions`]) and what files say of themselves
 //!   ([`texture::TextureInfo`]) are plain structs of public fields. Write `..Default::default()`, or `..TextureInfo::new(…)`, at their
 //!   end, also where all fields are named: a minor version may add a field, whose default changes no byte.
 //! - *Reports* are `#[non_exhaustive]`: they are read, not made.
@@ -123,7 +123,7 @@ pub use named::{Named, UnknownName};
 pub use options::{BakeOptions, Gradient, MaxSlope, PyramidFilter, ScaleChoice, SourceOptions};
 pub use progress::BakeWatch;
 pub use pyramid::{LevelStats, levels_of_four};
-pub use roughness::{Lobe, RoughnessTexture, stored_from_variance, variance_from_stored};
+pub use roughness::{Anisotropy, RoughnessTexture, stored_from_variance, variance_from_stored};
 pub use slope::{
     LEAST_NORMAL_Z, Normal, Slope, SourceCounts, normal_from_slope, repaired_slope, slope_from_normal,
 };

@@ -152,7 +152,7 @@ pub struct BakeOptions {
     /// The layout.
     pub layout: Layout,
     /// The type of its texels.
-    pub bits: SampleType,
+    pub sample_type: SampleType,
     /// The range of its slopes, for unsigned types.
     pub scale: ScaleChoice,
     /// Whether base roughness is folded into the second moments.
@@ -172,7 +172,7 @@ impl Default for BakeOptions {
     fn default() -> Self {
         Self {
             layout: Layout::Lean,
-            bits: SampleType::U16,
+            sample_type: SampleType::U16,
             scale: ScaleChoice::Auto,
             base: Base::None,
             brdf: Brdf::Ggx,

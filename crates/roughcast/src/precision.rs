@@ -28,7 +28,7 @@ use crate::{ImageView, Moments, SampleType, parallel};
 #[non_exhaustive]
 pub struct Precision {
     /// The storage type.
-    pub bits: SampleType,
+    pub sample_type: SampleType,
     /// Range of the stored slopes; 1 for floats.
     pub scale: f32,
     /// The largest slope allowed. Where it was lowered for this type, errors are those of what is left.
@@ -67,7 +67,7 @@ pub fn measure<'a>(
     for bits in SampleType::ALL {
         let baked = Bake::of(image)
             .source(*source)
-            .options(BakeOptions { bits: *bits, ..BakeOptions::default() })
+            .options(BakeOptions { sample_type: *bits, ..BakeOptions::default() })
             .run()?;
         let limit = baked.report.max_slope;
         // A type's own limit of slopes is no error of the type.
@@ -87,7 +87,8 @@ fn reference(
     max_slope: f32,
 ) -> Result<Vec<TextureArray>, BakeError> {
     let source = SourceOptions { max_slope: MaxSlope::Limit(max_slope), ..*source };
-    let options = BakeOptions { layout: Layout::Schilling, bits: SampleType::F32, ..BakeOptions::default() };
+    let options =
+        BakeOptions { layout: Layout::Schilling, sample_type: SampleType::F32, ..BakeOptions::default() };
     Ok(Bake::of(image).source(source).options(options).run()?.arrays)
 }
 
@@ -103,7 +104,7 @@ fn measure_one(baked: &Baked, bits: SampleType, reference: &TextureArray) -> Pre
         (variance, eigenvalue) = worst.into_iter().fold((variance, eigenvalue), larger_of_both);
     }
     Precision {
-        bits,
+        sample_type: bits,
         scale: baked.report.scale,
         max_slope: baked.report.max_slope,
         bound: baked.report.bounds,
@@ -144,7 +145,7 @@ fn raw_covariance(moments: Moments) -> [f64; 3] {
 }
 
 /// The maximum slope, per component, at which a type still represents an exponent: the inverse of the bound.
-pub fn steepest_slope(bits: SampleType, specular_power: f32) -> f32 {
+pub fn maximum_slope(bits: SampleType, specular_power: f32) -> f32 {
     let allowed = |slope: f32| {
         let scale = if bits.is_float() { 1.0 } else { slope };
         let info = TextureInfo { scale, ..TextureInfo::new(Layout::Lean, Part::Whole) };
@@ -167,7 +168,7 @@ pub fn steepest_slope(bits: SampleType, specular_power: f32) -> f32 {
 pub fn recommend(measured: &[Precision], specular_power: f32) -> Option<SampleType> {
     let order = [SampleType::U8, SampleType::U16, SampleType::F16, SampleType::F32];
     order.into_iter().find(|bits| {
-        measured.iter().any(|row| row.bits == *bits && row.usable_specular_power() >= specular_power)
+        measured.iter().any(|row| row.sample_type == *bits && row.usable_specular_power() >= specular_power)
     })
 }
 
@@ -207,10 +208,10 @@ mod tests {
         for bits in [SampleType::U8, SampleType::U16] {
             for slope in [0.25, 1.0, 3.0] {
                 let power = unorm_specular_power(bits, slope);
-                let back = steepest_slope(bits, power);
+                let back = maximum_slope(bits, power);
                 assert!((back / slope - 1.0).abs() < BISECTION, "{bits}: {slope} -> {power} -> {back}");
             }
         }
-        assert!(steepest_slope(SampleType::F32, 100.0) > steepest_slope(SampleType::F16, 100.0));
+        assert!(maximum_slope(SampleType::F32, 100.0) > maximum_slope(SampleType::F16, 100.0));
     }
 }

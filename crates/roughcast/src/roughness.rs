@@ -45,8 +45,8 @@ named_enum! {
 }
 
 named_enum! {
-    /// How many shapes of roughness a physically based material tells apart.
-    pub enum Lobe: "lobe" {
+    /// Whether the roughness of a physically based material depends on the direction.
+    pub enum Anisotropy: "lobe" {
         /// One roughness for every direction.
         Isotropic = "isotropic",
         /// Two roughnesses and a direction, as KHR_materials_anisotropy has them.

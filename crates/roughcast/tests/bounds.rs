@@ -94,7 +94,7 @@ fn cases() -> Vec<Case> {
 fn material_cases(options: BakeOptions) -> Vec<Case> {
     let mut cases = Vec::new();
     for stored in RoughnessStored::ALL {
-        if *stored == RoughnessStored::SpecularPower && !options.bits.is_float() {
+        if *stored == RoughnessStored::SpecularPower && !options.sample_type.is_float() {
             continue;
         }
         for anisotropy in [None, Some(AnisotropyOutput::Khr)] {
@@ -210,7 +210,7 @@ fn check(
 
 /// Factors by which bounds may exceed the worst error on some map, each at most twice what is measured.
 fn loosest(case: &Case) -> Worst {
-    let BakeOptions { bits, layout, pbr, .. } = case.options;
+    let BakeOptions { sample_type: bits, layout, pbr, .. } = case.options;
     let slope = match bits {
         // Some texel is half a code off.
         SampleType::U8 => 1.1,
@@ -271,7 +271,7 @@ fn too_wide_bounds_are_detected() {
         );
         // A bound of twice the error is found where half a code is what counts.
         let doubled = Worst { slope: 0.5, variance: 0.5, eigenvalue: 0.5 };
-        if case.options.bits == SampleType::U8 {
+        if case.options.sample_type == SampleType::U8 {
             assert_eq!(wide_bound(&case, doubled), Some("slope"), "{case:?}");
         }
     }
@@ -332,7 +332,7 @@ fn decoded_files_are_within_tight_bounds() {
             worst.eigenvalue = worst.eigenvalue.max(here.eigenvalue);
         }
     }
-    for (case, worst) in cases.iter().zip(&worst).filter(|(case, _)| !case.options.bits.is_float()) {
+    for (case, worst) in cases.iter().zip(&worst).filter(|(case, _)| !case.options.sample_type.is_float()) {
         assert_eq!(wide_bound(case, *worst), None, "{case:?}: {worst:?}");
     }
 }

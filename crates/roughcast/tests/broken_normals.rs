@@ -120,5 +120,5 @@ fn a_completely_broken_map_is_flat() {
     let image = Image::new(4, 4, 3, Samples::U8(vec![0; 48])).expect("as many");
     let baked = baked(&image, &SourceOptions::default(), &options(Layout::Moments, SampleType::F32));
     assert_eq!(baked.report.counts, SourceCounts { behind: 16, ..Default::default() });
-    assert_eq!((baked.report.steepest, baked.report.rms_slope), (0.0, 0.0));
+    assert_eq!((baked.report.maximum_slope, baked.report.rms_slope), (0.0, 0.0));
 }

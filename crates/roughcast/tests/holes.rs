@@ -65,7 +65,7 @@ fn a_hole_and_its_neighbours_are_flat_and_all_others_keep_their_slope() {
                     assert_eq!(slope(&got.arrays[0], x, y), expected, "{gradient:?}, {hole}: {x}, {y}");
                 }
             }
-            assert!(got.report.steepest <= whole.report.steepest, "{gradient:?}, {hole}: a cliff");
+            assert!(got.report.maximum_slope <= whole.report.maximum_slope, "{gradient:?}, {hole}: a cliff");
         }
     }
 }

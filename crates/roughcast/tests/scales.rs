@@ -66,17 +66,17 @@ fn the_chosen_scale_is_the_smallest_that_holds_every_texel() {
                 for layout in [Layout::Lean, Layout::Clean] {
                     let report = report(layout);
                     close(report.scale, needs.second.sqrt());
-                    assert_eq!(report.variance_scale, 1.0);
+                    assert_eq!(report.spread_scale, 1.0);
                 }
                 for (layout, scale) in
                     [(Layout::Variance, needs.variance), (Layout::Schilling, needs.variance.sqrt())]
                 {
                     let report = report(layout);
                     close(report.scale, needs.slope);
-                    close(report.variance_scale, scale);
+                    close(report.spread_scale, scale);
                 }
                 // Its eigenvalue is bounded by the sum of two variances, not known beforehand.
-                let scale = f64::from(report(Layout::SchillingIsotropic).variance_scale);
+                let scale = f64::from(report(Layout::SchillingIsotropic).spread_scale);
                 let needed = needs.eigenvalue.sqrt();
                 assert!(
                     scale >= needed * (1.0 - ROUNDINGS * EPS)
@@ -115,8 +115,8 @@ fn flat_maps_bake_and_stay_flat() {
                 &options(*layout, *bits),
             );
             let report = &baked.report;
-            assert!(report.scale > 0.0 && report.variance_scale > 0.0 && report.advice.is_none());
-            assert_eq!(report.steepest, 0.0);
+            assert!(report.scale > 0.0 && report.spread_scale > 0.0 && report.advice.is_none());
+            assert_eq!(report.maximum_slope, 0.0);
             for level in decoded(&baked.arrays) {
                 for texel in level.texels() {
                     let c = texel.covariance();
@@ -223,7 +223,8 @@ fn advice_is_given_if_few_steep_texels_cost_much_and_it_is_correct() {
 #[test]
 fn few_steep_texels_do_not_hide_the_range_of_half_floats() {
     let (image, source) = with_steep_texels(0.5, [120.0, 0.0]);
-    let options = BakeOptions { layout: Layout::Lean, bits: SampleType::F16, ..BakeOptions::default() };
+    let options =
+        BakeOptions { layout: Layout::Lean, sample_type: SampleType::F16, ..BakeOptions::default() };
     let report = baked(&image, &source, &options).report;
     let (worst, most) =
         (report.bounds.usable_specular_power(), report.bounds_of_most.usable_specular_power());
@@ -370,7 +371,13 @@ fn contradictory_options_are_refused() {
         ("needs a roughness", &image, source, None, folded),
         ("depends on the base roughness", &image, source, None, with(Layout::Toksvig, SampleType::U8)),
         ("specular powers", &image, source, None, power),
-        ("no scale to choose", &image, source, None, BakeOptions { bits: SampleType::F32, ..fixed(1.0) }),
+        (
+            "no scale to choose",
+            &image,
+            source,
+            None,
+            BakeOptions { sample_type: SampleType::F32, ..fixed(1.0) },
+        ),
         ("above zero", &image, source, None, fixed(0.0)),
         ("above zero", &image, source, None, fixed(-1.0)),
         ("above zero", &image, source, None, fixed(f32::NAN)),

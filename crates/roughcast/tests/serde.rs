@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use roughcast::detect::GreenVerdict;
 use roughcast::precision::{Precision, measure};
-use roughcast::shading::{LobeOptions, Shading};
+use roughcast::shading::{Shading, ShadingOptions};
 use roughcast::texture::{Layout, Part, TextureInfo, decode};
 use roughcast::{
     AnisotropyOutput, Bake, BakeOptions, BakePlan, BakeReport, Covariance, Distribution, Green, Image, Kind,
@@ -55,7 +55,7 @@ fn options_survive_and_what_is_left_out_is_the_default() {
     options.pbr.anisotropy = Some(AnisotropyOutput::Khr);
     round_trip(&options);
     round_trip(&PbrOptions::default());
-    round_trip(&LobeOptions::published(90.0));
+    round_trip(&ShadingOptions::published(90.0));
     let short: BakeOptions = from_value(json!({ "layout": "clean" })).expect("the rest is the default");
     assert_eq!((short.layout, short.bits), (Layout::Clean, BakeOptions::default().bits));
     let error = from_value::<BakeOptions>(json!({ "layuot": "clean" })).expect_err("a misprint").to_string();

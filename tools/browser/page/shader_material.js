@@ -19,7 +19,7 @@ const mat3 world_from_tangent = mat3(vec3(1.0, 0.0, 0.0), vec3(0.0, 0.0, -1.0), 
 
 const INPUTS = `
 uniform rc_Packing packing;
-uniform rc_LobeOptions options;
+uniform rc_ShadingOptions options;
 uniform vec3 albedo;
 uniform vec3 specular;
 uniform vec3 towards_light;
@@ -86,7 +86,7 @@ function struct(members) {
 
 /**
  * `textures` by the names of the layers; of the job `material` (the model), `library` (what was exported), `packing` (as in the file that
- * `bake --sidecar` writes), `options` (LobeOptions), `albedo`, `specular`, `light`.
+ * `bake --sidecar` writes), `options` (ShadingOptions), `albedo`, `specular`, `light`.
  */
 export function shaderMaterial(textures, job) {
   const uniforms = {

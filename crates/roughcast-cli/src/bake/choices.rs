@@ -30,7 +30,7 @@ impl Args {
 
     fn choices(&self) -> BakeChoices {
         let mut choices = BakeChoices::new(self.layout);
-        choices.bits = self.bits;
+        choices.sample_type = self.bits;
         choices.scale = self.scale;
         choices.filter = self.filter;
         choices.base = self.roughness.base;

@@ -130,7 +130,7 @@ fn text(words: &[u32]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use roughcast::Lobe;
+    use roughcast::Anisotropy;
     use roughcast::shading::Shading;
     use roughcast::texture::TexelReader;
     use roughcast_gpu::render::{Bumps, LevelOfDetail, ShaderKey, shader_source};
@@ -172,7 +172,7 @@ mod tests {
     }
 
     fn reader(shading: Shading) -> &'static TexelReader {
-        let reader = shading.layout().texel_reader(shading.wanted(), Lobe::Isotropic);
+        let reader = shading.layout().texel_reader(shading.wanted(), Anisotropy::Isotropic);
         reader.expect("every model samples its layout")
     }
 

@@ -33,7 +33,7 @@ impl Distribution {
     /// [`BakeError`] if the map cannot be read.
     pub fn of(map: &Image, source: &SourceOptions, specular_power: f32) -> Result<Self, BakeError> {
         let options =
-            BakeOptions { layout: Layout::Moments, bits: SampleType::F32, ..BakeOptions::default() };
+            BakeOptions { layout: Layout::Moments, sample_type: SampleType::F32, ..BakeOptions::default() };
         let baked = Bake::of(map).source(*source).options(options).run()?;
         let levels = decode(&baked.arrays).expect("a bake of this layout is complete");
         let whole = levels.last().expect("there is a level").moments[0];

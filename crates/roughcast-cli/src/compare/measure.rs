@@ -41,7 +41,7 @@ pub struct Settings<'a> {
 pub struct Comparison {
     pub view: View,
     pub lights: Vec<Light>,
-    /// The ground truth of each base lobe, in the order of the models.
+    /// The ground truth of each reference, in the order of the models.
     pub truths: Vec<(Shading, Srgb8Picture)>,
     /// By model, then by filter.
     pub trials: Vec<Trial>,
@@ -61,12 +61,12 @@ pub struct Trial {
 
 /// The ground truths of a view, frame by frame.
 struct Truths {
-    lobes: Vec<Shading>,
+    references: Vec<Shading>,
     /// For every lobe its frames.
     frames: Vec<Vec<Picture>>,
 }
 
-/// Work is counted in samples of a ground truth with all lobes, 0.24 µs of a core each; a pixel of a method takes as long as this many,
+/// Work is counted in samples of a ground truth with all references, 0.24 µs of a core each; a pixel of a method takes as long as this many,
 /// its filtering included ...
 const METHOD_PIXEL: u64 = 3;
 /// ... and a pixel of FLIP, over all exposures, this many.
@@ -115,7 +115,7 @@ impl Settings<'_> {
                     let method = Method {
                         shading: *shading,
                         detail: &textures.sampled(sampler),
-                        options: self.shading.lobe_options(),
+                        options: self.shading.shading_options(),
                     };
                     let frames = self.frames_of(&method, &moves, bar)?;
                     let row = self.row(subject, view, *shading, *filter);
@@ -136,18 +136,19 @@ impl Settings<'_> {
         let truth = Truth {
             shading: Shading::Lean,
             detail: &SlopeDetail::new(slopes, subject.options.wrap).with_reconstruction(self.reconstruction),
-            options: self.shading.lobe_options(),
+            options: self.shading.shading_options(),
             samples: self.samples,
         };
-        let lobes: Vec<Shading> = Shading::ALL.iter().map(|shading| shading.base_lobe()).collect();
-        let lobes = without_repeats(&lobes);
+        let references: Vec<Shading> = Shading::ALL.iter().map(|shading| shading.reference()).collect();
+        let references = without_repeats(&references);
         let watch = steps(bar, u64::from(self.samples));
-        let mut frames = vec![Vec::new(); lobes.len()];
+        let mut frames = vec![Vec::new(); references.len()];
         for scene in moves {
-            let pictures = truth.render_each(&lobes, scene, (self.size.width, self.size.height), &watch)?;
+            let pictures =
+                truth.render_each(&references, scene, (self.size.width, self.size.height), &watch)?;
             frames.iter_mut().zip(pictures).for_each(|(frames, picture)| frames.push(picture));
         }
-        Ok(Truths { lobes, frames })
+        Ok(Truths { references, frames })
     }
 
     fn frames_of(&self, method: &Method<'_>, moves: &[Scene], bar: &ProgressBar) -> Result<Vec<Picture>> {
@@ -211,13 +212,13 @@ impl Comparison {
 impl Truths {
     /// The frames of the ground truth that a method is compared with.
     fn of(&self, shading: Shading) -> &[Picture] {
-        let place = self.lobes.iter().position(|lobe| *lobe == shading.base_lobe());
-        &self.frames[place.expect("there is a ground truth of every base lobe")]
+        let place = self.references.iter().position(|reference| *reference == shading.reference());
+        &self.frames[place.expect("there is a ground truth of every reference")]
     }
 
     fn stills(&self, exposure: f32) -> Vec<(Shading, Srgb8Picture)> {
         let stills = self.frames.iter().map(|frames| shown(&frames[0], exposure));
-        self.lobes.iter().copied().zip(stills).collect()
+        self.references.iter().copied().zip(stills).collect()
     }
 }
 

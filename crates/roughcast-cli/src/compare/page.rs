@@ -21,7 +21,7 @@ pub fn page(settings: &Settings<'_>, compared: &[Compared]) -> String {
     let (given, others) = compared.split_first().expect("a map was given");
     let mut page = Page::new(&format!("roughcast compare: {}", given.subject.name));
     page.paragraph(
-        "Every shading model, with every texture filter, against the ground truth of its own base lobe: many rays per pixel, each \
+        "Every shading model, with every texture filter, against the ground truth: many rays per pixel, each \
          shaded at the finest level, in the same form and with the same energy. All numbers are measured in linear radiance, \
          before any tone curve.",
     );
@@ -63,7 +63,7 @@ fn how_it_was_made(page: &mut Page, settings: &Settings<'_>, given: &Compared) {
         ("form of the lobes", shading.form.name().to_owned()),
         ("masking", shading.masking.name().to_owned()),
         ("footprint", shading.footprint.name().to_owned()),
-        ("base lobe in the surface", shading.base.name().to_owned()),
+        ("base lobe in the surface", shading.base_frame.name().to_owned()),
         (
             "ground truth",
             format!("{} samples per pixel, Gaussian pixel filter, float slopes", settings.samples),
@@ -183,7 +183,7 @@ fn table(page: &mut Page, comparison: &Comparison) {
         let numbers = &trial.row;
         vec![
             format!("{}, {}", numbers.method, numbers.filter),
-            numbers.method.base_lobe().name().to_owned(),
+            numbers.method.reference().name().to_owned(),
             format!("{:.5}", numbers.rmse),
             format!("{:.4}", numbers.flip),
             format!("{:+.1} %", 100.0 * numbers.energy),
@@ -194,12 +194,12 @@ fn table(page: &mut Page, comparison: &Comparison) {
     page.table(&["method, filter", "ground truth", "RMSE", "FLIP", "energy", "flicker"], &rows);
 }
 
-/// The ground truth of every base lobe, and beside it each of its models' pictures with these filters and their errors.
+/// Every ground truth, and beside it each of its models' pictures with these filters and their errors.
 fn pictures(page: &mut Page, comparison: &Comparison, filters: &[Filter]) {
-    for (lobe, truth) in &comparison.truths {
+    for (reference, truth) in &comparison.truths {
         page.begin_row();
-        page.photograph(truth, &format!("{lobe}: truth"));
-        for method in Shading::ALL.iter().filter(|method| method.base_lobe() == *lobe) {
+        page.photograph(truth, &format!("{reference}: truth"));
+        for method in Shading::ALL.iter().filter(|method| method.reference() == *reference) {
             for filter in filters {
                 let trial = comparison.trial(*method, *filter);
                 page.photograph(&trial.picture, &format!("{method}, {filter}: RMSE {:.4}", trial.row.rmse));

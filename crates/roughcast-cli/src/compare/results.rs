@@ -4,7 +4,7 @@ use roughcast::shading::Shading;
 use roughcast_scene::{Filter, View};
 use serde_json::{Value, json};
 
-/// The error of one method with one filter against the ground truth of its base lobe.
+/// The error of one method with one filter against the ground truth of its reference.
 #[derive(Clone, Debug)]
 pub struct Row {
     pub map: String,

@@ -92,7 +92,7 @@ mod tests {
     fn the_grooves_have_two_slopes_and_little_between() {
         let subject = v_groove();
         let options =
-            BakeOptions { layout: Layout::Moments, bits: SampleType::F32, ..BakeOptions::default() };
+            BakeOptions { layout: Layout::Moments, sample_type: SampleType::F32, ..BakeOptions::default() };
         let baked = Bake::of(&subject.image).source(subject.options).options(options).run().expect("a map");
         let finest = &decode(&baked.arrays).expect("moments")[0];
         let slopes = finest.moments.iter().map(|moments| f64::from(moments.mean.x));

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use glam::DVec3;
 use roughcast::SampleType;
-use roughcast::shading::{LobeOptions, Shading};
+use roughcast::shading::{Shading, ShadingOptions};
 use roughcast_scene::metrics::{energy_error, rmse};
 use roughcast_scene::pattern::random_ridges;
 use roughcast_scene::{Camera, Filter, Shape, Torus};
@@ -77,8 +77,8 @@ fn stage(distance: f64) -> Stage {
     Stage {
         map: random_ridges(512, 0.25, 13),
         scene: scene(Shape::Torus(Torus::default()), 4.0, camera, DVec3::new(0.5, 1.0, 0.6)),
-        options: LobeOptions::published(SPECULAR_POWER),
-        bits: SampleType::U8,
+        options: ShadingOptions::published(SPECULAR_POWER),
+        sample_type: SampleType::U8,
         size: (pixels, pixels),
     }
 }

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use glam::DVec3;
 use roughcast::SampleType;
-use roughcast::shading::{LobeOptions, Shading};
+use roughcast::shading::{Shading, ShadingOptions};
 use roughcast_scene::metrics::{energy_error, flicker, rmse};
 use roughcast_scene::pattern::raised_checker;
 use roughcast_scene::{Camera, Filter, Plane, Sampler, Shape, slow_move};
@@ -133,8 +133,8 @@ fn stage(size: (u32, u32), edge_slope: f64) -> Stage {
     Stage {
         map: raised_checker(512, 16, 4.0, edge_slope),
         scene: scene(shape, 16.0, camera, DVec3::new(0.05, 0.35, -1.0)),
-        options: LobeOptions::published(SPECULAR_POWER),
-        bits: SampleType::U16,
+        options: ShadingOptions::published(SPECULAR_POWER),
+        sample_type: SampleType::U16,
         size,
     }
 }

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use glam::{DVec2, DVec3};
-use roughcast::shading::{LobeOptions, Shading};
+use roughcast::shading::{Shading, ShadingOptions};
 use roughcast::texture::{Layout, decode};
 use roughcast::{Bake, BakeOptions, Covariance, SampleType};
 use roughcast_scene::pattern::{Pattern, random_bumps, random_ridges};
@@ -74,7 +74,7 @@ impl Parts {
         let finest = stage.sampled(Shading::BlinnPhong, at(0.0))?;
         let ordinary = stage.sampled(Shading::BlinnPhong, at(last))?;
         let lean = stage.sampled(Shading::Lean, at(last))?;
-        stage.bits = SampleType::U8;
+        stage.sample_type = SampleType::U8;
         let lean_8 = stage.sampled(Shading::Lean, at(last))?;
         stage.scene.repeats = FAR_REPEATS;
         let truth = stage.truth(Shading::OffCentre, SAMPLES)?;
@@ -115,7 +115,8 @@ impl Parts {
 
 /// The aspect ratio that the whole map's covariance and the base roughness predict.
 fn expected(map: &Pattern) -> Result<f64> {
-    let options = BakeOptions { layout: Layout::Moments, bits: SampleType::F32, ..BakeOptions::default() };
+    let options =
+        BakeOptions { layout: Layout::Moments, sample_type: SampleType::F32, ..BakeOptions::default() };
     let levels = decode(&Bake::of(&map.heights).source(map.source_options()).options(options).run()?.arrays)?;
     let covariance = levels.last().expect("there is a level").moments[0].covariance();
     let base = 1.0 / SPECULAR_POWER;
@@ -171,5 +172,11 @@ fn stage(map: Pattern) -> Stage {
     let camera = Camera { eye, target: DVec3::ZERO, up: DVec3::Y, vertical_fov: 0.18 };
     let mut scene = scene(Shape::Sphere(Sphere), 2.0, camera, eye);
     scene.material.albedo = [0.02; 3];
-    Stage { map, scene, options: LobeOptions::published(SPECULAR_POWER), bits: SampleType::U16, size: SIZE }
+    Stage {
+        map,
+        scene,
+        options: ShadingOptions::published(SPECULAR_POWER),
+        sample_type: SampleType::U16,
+        size: SIZE,
+    }
 }

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use glam::DVec3;
 use roughcast::SampleType;
-use roughcast::shading::{LobeOptions, Shading};
+use roughcast::shading::{Shading, ShadingOptions};
 use roughcast_scene::metrics::{DEFAULT_PIXELS_PER_DEGREE, hdr_flip};
 use roughcast_scene::pattern::random_bumps;
 use roughcast_scene::{Camera, Filter, Light, Picture, Sampler, Shape, Sphere};
@@ -79,8 +79,8 @@ fn stage() -> Stage {
     Stage {
         map: random_bumps(512, 0.15, 5),
         scene,
-        options: LobeOptions::published(SPECULAR_POWER),
-        bits: SampleType::U16,
+        options: ShadingOptions::published(SPECULAR_POWER),
+        sample_type: SampleType::U16,
         size: SIZE,
     }
 }

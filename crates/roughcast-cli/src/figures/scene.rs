@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use anyhow::Result;
 use glam::DVec3;
-use roughcast::shading::{LobeOptions, Material, Shading};
-use roughcast::{Lobe, SampleType, Wrap};
+use roughcast::shading::{Material, Shading, ShadingOptions};
+use roughcast::{Anisotropy, SampleType, Wrap};
 use roughcast_pipeline::{TextureOptions, bake_for};
 use roughcast_scene::pattern::Pattern;
 use roughcast_scene::render::{Method, Truth, unwatched};
@@ -20,9 +20,9 @@ pub const MATERIAL: Material = Material { albedo: [0.05; 3], ambient: [0.2; 3], 
 pub struct Stage {
     pub map: Pattern,
     pub scene: Scene,
-    pub options: LobeOptions,
+    pub options: ShadingOptions,
     /// The type of the texels of every method.
-    pub bits: SampleType,
+    pub sample_type: SampleType,
     /// Width and height of the pictures.
     pub size: (u32, u32),
 }
@@ -58,8 +58,8 @@ impl Stage {
         scenes: &[Scene],
     ) -> Result<Vec<Picture>> {
         let options = TextureOptions {
-            bits: self.bits,
-            lobe: Lobe::Isotropic,
+            sample_type: self.sample_type,
+            anisotropy: Anisotropy::Isotropic,
             specular_power: self.options.specular_power,
         };
         let arrays = bake_for(shading, &self.map.heights, &self.map.source_options(), options)?;
@@ -68,7 +68,7 @@ impl Stage {
         scenes.iter().map(|scene| Ok(method.render(scene, self.size, &unwatched)?)).collect()
     }
 
-    /// The ground truth of a model's base lobe.
+    /// The ground truth of a model's reference.
     pub fn truth(&self, shading: Shading, samples: u32) -> Result<Picture> {
         Ok(self.truth_frames(shading, samples, std::slice::from_ref(&self.scene))?.remove(0))
     }

@@ -106,13 +106,13 @@ mod tests {
         let undefined = BlockCompression::Undefined;
         let lost = BlockCompression::WouldLoseVariance;
         for (error, option) in [
-            (BakeError::FloatsOnly { layout, bits }, "--bits half"),
+            (BakeError::FloatsOnly { layout, sample_type: bits }, "--bits half"),
             (BakeError::NoBaseToFoldIn, "--specular-power"),
             (BakeError::NeedsBase { layout }, "--specular-power"),
-            (BakeError::SpecularPowersNeedFloats { bits }, "--roughness-output"),
+            (BakeError::SpecularPowersNeedFloats { sample_type: bits }, "--roughness-output"),
             (BakeError::NoScale { layout }, "leave --scale out"),
-            (BakeError::ScaleOfFloats { bits }, "leave --scale out"),
-            (BakeError::BlocksNeedEightBits { bits }, "--bits 8"),
+            (BakeError::ScaleOfFloats { sample_type: bits }, "leave --scale out"),
+            (BakeError::BlocksNeedEightBits { sample_type: bits }, "--bits 8"),
             (
                 BakeError::NotCompressible { layout, reason: undefined },
                 "cannot be block-compressed: use --as",

@@ -8,7 +8,7 @@ use roughcast::wgsl::Module;
 
 use super::prefix::{CONSTRUCT, Prefix, global_names, is_constant};
 
-/// The module whose constants are the choices of `LobeOptions`.
+/// The module whose constants are the choices of `ShadingOptions`.
 const OPTIONS: &str = "options";
 
 /// A constant, struct or function of the generated code.

@@ -111,7 +111,7 @@ mod tests {
     #[test]
     fn uniform_structs_have_the_same_offsets_by_every_rule() {
         let module = whole();
-        for name in ["Packing", "LobeOptions"] {
+        for name in ["Packing", "ShadingOptions"] {
             let [natural, std140, cbuffer] =
                 [Rule::Natural, Rule::Std140, Rule::Cbuffer].map(|rule| layout(&module, name, rule));
             assert_eq!(natural, std140, "{name}");

@@ -1,7 +1,7 @@
 //! The fragment shaders of the SPIR-V modules: WGSL files with generic names, combined for each model.
 
 use anyhow::{Result, bail};
-use roughcast::Lobe;
+use roughcast::Anisotropy;
 use roughcast::shading::{Gaussians, Shading};
 use roughcast::texture::{Layout, TexelReader};
 use roughcast::wgsl::{self, Module, renamed};
@@ -27,7 +27,7 @@ const OWN_FUNCTIONS: [&str; 11] = [
 
 /// How the textures of a model's layout are read, anisotropy included.
 pub fn reader_of(model: Shading) -> &'static TexelReader {
-    let reader = model.layout().texel_reader(model.wanted(), Lobe::Anisotropic);
+    let reader = model.layout().texel_reader(model.wanted(), Anisotropy::Anisotropic);
     reader.expect("every model samples its layout")
 }
 

@@ -34,7 +34,7 @@ impl Target {
                 options.filter
             ));
         }
-        let format = match options.bits {
+        let format = match options.sample_type {
             SampleType::U8 => wgpu::TextureFormat::Rgba8Unorm,
             SampleType::U16 => wgpu::TextureFormat::Rgba16Unorm,
             SampleType::F16 => wgpu::TextureFormat::Rgba16Float,
@@ -46,7 +46,7 @@ impl Target {
                 );
             }
         };
-        Ok(Self { layout: options.layout, format, sample_type: options.bits })
+        Ok(Self { layout: options.layout, format, sample_type: options.sample_type })
     }
 
     /// Textures of the layout.

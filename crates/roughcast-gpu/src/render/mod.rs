@@ -27,7 +27,7 @@ mod views;
 
 use std::collections::HashMap;
 
-use roughcast::shading::LobeOptions;
+use roughcast::shading::ShadingOptions;
 use roughcast_scene::{Filter, Sampler, Scene};
 
 pub use geometry::Geometry;
@@ -79,7 +79,7 @@ pub struct DrawOptions {
     /// The texture filter. Hardware has three of them: nearest, trilinear and anisotropic with up to 16 taps.
     pub sampler: Sampler,
     /// The lobe. Properties stored with the textures take precedence.
-    pub lobe: LobeOptions,
+    pub shading_options: ShadingOptions,
     /// What is shaded: filtered bumps, or resolved ones as ground truth has them.
     pub bumps: Bumps,
 }

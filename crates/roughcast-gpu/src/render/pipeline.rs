@@ -157,7 +157,7 @@ impl MapUniforms {
         sampling: &Sampling,
     ) -> Result<Self, GpuError> {
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
-        let options = textures.options(options.lobe).to_words();
+        let options = textures.options(options.shading_options).to_words();
         let packing = textures.packing.to_words();
         let sampling = sampling.words(textures);
         Ok(Self {
@@ -169,7 +169,7 @@ impl MapUniforms {
 
     /// Writes what may change from frame to frame.
     pub fn write(&self, gpu: &Gpu, textures: &GpuTextures, options: &DrawOptions, sampling: &Sampling) {
-        let words = textures.options(options.lobe).to_words();
+        let words = textures.options(options.shading_options).to_words();
         gpu.queue.write_buffer(&self.options, 0, bytemuck::cast_slice(&words));
         gpu.queue.write_buffer(&self.sampling, 0, bytemuck::cast_slice(&sampling.words(textures)));
     }

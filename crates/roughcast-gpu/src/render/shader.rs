@@ -96,7 +96,7 @@ impl ShaderKey {
 /// alpha is coverage) and `parts` (that, and the specular part for a second target).
 ///
 /// Group 0 contains what changes with the view: 0 the view and the material's colours, 1 the lights. Group 1 contains the maps:
-/// 0 [`roughcast::shading::LobeOptions`], 1 [`roughcast::texture::Packing`], 2 the sampling, 3 a sampler, and from 4 on the
+/// 0 [`roughcast::shading::ShadingOptions`], 1 [`roughcast::texture::Packing`], 2 the sampling, 3 a sampler, and from 4 on the
 /// textures in the order of [`TexelReader::inputs`].
 ///
 /// # Errors

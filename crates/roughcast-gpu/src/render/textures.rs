@@ -1,8 +1,8 @@
 //! A model's textures in the GPU's memory, in their stored format.
 
-use roughcast::shading::{LobeOptions, Shading};
+use roughcast::shading::{Shading, ShadingOptions};
 use roughcast::texture::{Packing, TexelReader, Texture, TextureArray, TextureInfo};
-use roughcast::{Image, Lobe, SampleType, Samples};
+use roughcast::{Anisotropy, Image, SampleType, Samples};
 use roughcast_scene::{DetailError, model_inputs};
 
 use crate::{Gpu, GpuError};
@@ -54,8 +54,9 @@ impl GpuTextures {
         info: &TextureInfo,
     ) -> Result<Self, GpuError> {
         let layout = shading.layout();
-        let reader =
-            layout.texel_reader(shading.wanted(), Lobe::Isotropic).ok_or(DetailError::NotSampled(layout))?;
+        let reader = layout
+            .texel_reader(shading.wanted(), Anisotropy::Isotropic)
+            .ok_or(DetailError::NotSampled(layout))?;
         let inputs = reader.inputs;
         if info.layout != shading.layout() || textures.len() < inputs.len() {
             return Err(GpuError::Shape(format!(
@@ -91,7 +92,7 @@ impl GpuTextures {
     }
 
     /// The options, with the properties stored with the textures.
-    pub(super) fn options(&self, options: LobeOptions) -> LobeOptions {
+    pub(super) fn options(&self, options: ShadingOptions) -> ShadingOptions {
         options.for_maps(&self.info)
     }
 }

@@ -1,6 +1,6 @@
 //! Pictures of the CPU and of the GPU compared.
 
-use roughcast::shading::LobeOptions;
+use roughcast::shading::ShadingOptions;
 use roughcast::texture::TextureArray;
 use roughcast_gpu::render::{Bumps, DrawOptions, Geometry, GpuTextures, RenderTarget, Renderer, render};
 use roughcast_gpu::{Gpu, GpuError};
@@ -18,14 +18,14 @@ pub fn by_cpu(
     size: (u32, u32),
 ) -> Picture {
     let textures = BakedTextures::of_model(shading, maps).expect("the maps are the model's");
-    let DrawOptions { sampler, lobe, bumps } = *options;
+    let DrawOptions { sampler, shading_options, bumps } = *options;
     let detail = textures.sampled(sampler);
     let resolved = Resolved(&detail);
     let detail: &dyn Detail = match bumps {
         Bumps::Filtered => &detail,
         Bumps::Resolved => &resolved,
     };
-    Method { shading, detail, options: lobe }.render(scene, size, &unwatched).expect("a picture")
+    Method { shading, detail, options: shading_options }.render(scene, size, &unwatched).expect("a picture")
 }
 
 /// The same by the GPU; the geometry is the scene's.
@@ -58,8 +58,8 @@ impl GpuPictures {
     }
 }
 
-pub fn options(sampler: Sampler, lobe: LobeOptions) -> DrawOptions {
-    DrawOptions { sampler, lobe, ..DrawOptions::default() }
+pub fn options(sampler: Sampler, shading_options: ShadingOptions) -> DrawOptions {
+    DrawOptions { sampler, shading_options, ..DrawOptions::default() }
 }
 
 /// The difference of two pictures.

@@ -60,7 +60,7 @@ pub const SPECULAR_POWER: f32 = 64.0;
 
 /// Random bumps in the layout of a model.
 pub fn maps(shading: Shading, bits: SampleType) -> Vec<TextureArray> {
-    maps_with(BakeOptions { layout: shading.layout(), bits, ..BakeOptions::default() })
+    maps_with(BakeOptions { layout: shading.layout(), sample_type: bits, ..BakeOptions::default() })
 }
 
 pub fn maps_with(options: BakeOptions) -> Vec<TextureArray> {

@@ -153,7 +153,7 @@ pub fn distribution_twins() -> Vec<Twin> {
     ]
 }
 
-fn pixel_words(a: &[f32], o: &LobeOptions, _: &roughcast::texture::Packing) -> Vec<f32> {
+fn pixel_words(a: &[f32], o: &ShadingOptions, _: &roughcast::texture::Packing) -> Vec<f32> {
     let ratio = ratio(&a[WORDS..]);
     distribution_words(&pixel_distribution(distribution(a), &ratio, ratio.moments, o))
 }

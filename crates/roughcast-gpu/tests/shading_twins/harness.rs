@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use roughcast::shading::LobeOptions;
+use roughcast::shading::ShadingOptions;
 use roughcast::texture::Packing;
 use roughcast::wgsl::{self, Role};
 use roughcast_gpu::Gpu;
@@ -27,7 +27,7 @@ pub struct Twin {
     /// Arguments of a case.
     pub arguments: fn(&mut crate::inputs::Inputs) -> Vec<f32>,
     /// The Rust twin; where Rust has it only inside of others, the formula in f64.
-    pub rust: fn(&[f32], &LobeOptions, &Packing) -> Vec<f32>,
+    pub rust: fn(&[f32], &ShadingOptions, &Packing) -> Vec<f32>,
 }
 
 /// What a function gives, where that decides how far roundings on the way bear on it.
@@ -50,7 +50,7 @@ pub enum Gives {
 /// One call.
 pub struct Case {
     pub packing: Packing,
-    pub options: LobeOptions,
+    pub options: ShadingOptions,
     pub arguments: Vec<f32>,
 }
 

@@ -23,9 +23,9 @@ fn f4(i: u32) -> vec4f {
 }
 
 // The options stand before the arguments.
-fn o() -> LobeOptions {
+fn o() -> ShadingOptions {
     let i = input_at - OPTION_WORDS;
-    return LobeOptions(
+    return ShadingOptions(
         bitcast<f32>(input_words[i]),
         input_words[i + 1u],
         input_words[i + 2u],

@@ -2,7 +2,7 @@
 
 use roughcast::Slope;
 use roughcast::shading::{
-    BaseLobe, FootprintModel, Form, LobeOptions, Masking, Repair, SlopeGaussian, bump_facet, ggx_surface,
+    BaseFrame, FootprintModel, Form, Masking, Repair, ShadingOptions, SlopeGaussian, bump_facet, ggx_surface,
     slope_gaussian,
 };
 use roughcast::texture::{Base, Packing, RoughnessStored, normal_moments, pbr_moments};
@@ -11,7 +11,7 @@ use roughcast::{Covariance, Distribution, MAX_GAUSSIANS, Moments, WeightedGaussi
 /// A source of arguments, the same in every run.
 pub struct Inputs {
     state: u64,
-    pub options: LobeOptions,
+    pub options: ShadingOptions,
     pub packing: Packing,
 }
 
@@ -29,7 +29,7 @@ const SCALED: Packing = Packing {
 
 impl Inputs {
     pub fn new(seed: u64) -> Self {
-        Self { state: seed, options: LobeOptions::default(), packing: Packing::IDENTITY }
+        Self { state: seed, options: ShadingOptions::default(), packing: Packing::IDENTITY }
     }
 
     /// Options and packing of the next case.
@@ -38,10 +38,10 @@ impl Inputs {
             0 => [1.0, 2.0, 13.0, 13_777.0, 16_384.0][self.below(5)],
             _ => 2.0_f32.powf(self.between(0.0, 14.0)),
         };
-        self.options = LobeOptions {
+        self.options = ShadingOptions {
             specular_power: power,
             form: Form::ALL[self.below(3)],
-            base: BaseLobe::ALL[self.below(2)],
+            base_frame: BaseFrame::ALL[self.below(2)],
             repair: Repair::ALL[self.below(2)],
             masking: Masking::ALL[self.below(2)],
             footprint: FootprintModel::ALL[usize::from(self.below(8) == 0)],
@@ -236,7 +236,8 @@ impl Inputs {
     pub fn offset_in_gaussian(&mut self) -> Vec<f32> {
         let [xx, yy] = [self.of_any_size(1e-6, 1.0).abs(), self.of_any_size(1e-6, 1.0).abs()];
         let xy = self.between(-0.999, 0.999) * (xx * yy).sqrt();
-        let gaussian = slope_gaussian(Slope::default(), Covariance { xx, yy, xy }, &LobeOptions::default());
+        let gaussian =
+            slope_gaussian(Slope::default(), Covariance { xx, yy, xy }, &ShadingOptions::default());
         let (along, across) = (self.between(-4.0, 4.0), self.between(-4.0, 4.0));
         let x = along * xx.sqrt();
         let y = x * xy / xx + across * (gaussian.determinant / xx).sqrt();

@@ -1,6 +1,6 @@
 //! Which textures of a bake a renderer samples: the same choice for every renderer.
 
-use roughcast::Lobe;
+use roughcast::Anisotropy;
 use roughcast::shading::{Shading, Wanted};
 use roughcast::texture::{
     DecodeError, Input, Layout, Packing, Part, TexelReader, Texture, TextureArray, TextureInfo,
@@ -77,8 +77,8 @@ fn inputs_of(
 ) -> Result<TextureInputs<'_>, DetailError> {
     arrays.iter().try_for_each(TextureArray::check)?;
     let lobe = match array(Part::Anisotropy, arrays) {
-        Some(_) => Lobe::Anisotropic,
-        None => Lobe::Isotropic,
+        Some(_) => Anisotropy::Anisotropic,
+        None => Anisotropy::Isotropic,
     };
     let reader = layout.texel_reader(wanted, lobe).ok_or(DetailError::NotSampled(layout))?;
     let first = array(reader.inputs[0].part, arrays).ok_or_else(|| missing(reader.inputs[0]))?;

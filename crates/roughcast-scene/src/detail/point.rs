@@ -1,7 +1,7 @@
 //! The interface of a source of bumps, and the point at which a renderer asks it.
 
 use glam::DVec2;
-use roughcast::shading::LobeOptions;
+use roughcast::shading::ShadingOptions;
 use roughcast::{Distribution, Slope};
 
 use crate::filter::Quad;
@@ -13,10 +13,10 @@ pub trait Detail: Sync {
     fn slope(&self, at: &DetailPoint<'_>) -> Slope;
 
     /// The distribution of slopes under the pixel.
-    fn distribution(&self, at: &DetailPoint<'_>, options: &LobeOptions) -> Distribution;
+    fn distribution(&self, at: &DetailPoint<'_>, options: &ShadingOptions) -> Distribution;
 
     /// The options with what the source itself states of the base roughness.
-    fn options(&self, options: LobeOptions) -> LobeOptions {
+    fn options(&self, options: ShadingOptions) -> ShadingOptions {
         options
     }
 }
@@ -31,11 +31,11 @@ impl Detail for Resolved<'_> {
         self.0.slope(at)
     }
 
-    fn distribution(&self, at: &DetailPoint<'_>, _options: &LobeOptions) -> Distribution {
+    fn distribution(&self, at: &DetailPoint<'_>, _options: &ShadingOptions) -> Distribution {
         Distribution::of_slope(self.0.slope(at))
     }
 
-    fn options(&self, options: LobeOptions) -> LobeOptions {
+    fn options(&self, options: ShadingOptions) -> ShadingOptions {
         self.0.options(options)
     }
 }

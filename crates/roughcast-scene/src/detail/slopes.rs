@@ -1,6 +1,6 @@
 //! The slopes of a map at level 0 as a source of bumps: what ground truth is made of.
 
-use roughcast::shading::LobeOptions;
+use roughcast::shading::ShadingOptions;
 use roughcast::{Covariance, Distribution, Moments, Normal, Slope, Wrap, normal_from_slope};
 
 use super::{Detail, DetailPoint, Placement, Reconstruction, SlopeMap};
@@ -50,7 +50,7 @@ impl Detail for SlopeDetail {
 
     /// Mean and covariance of 256 slopes, drawn from the pixel filter, a Gaussian: what the textures of a bake approximate. Footprints of
     /// more than a few dozen texels want more samples; ground truth takes them one by one.
-    fn distribution(&self, at: &DetailPoint<'_>, _options: &LobeOptions) -> Distribution {
+    fn distribution(&self, at: &DetailPoint<'_>, _options: &ShadingOptions) -> Distribution {
         let set = self.placement.uv_set();
         let (uv, footprint) = (at.uv(set), at.footprint(set));
         let offset = |cell: u32| pixel_filter_quantile((f64::from(cell) + 0.5) / f64::from(SIDE));

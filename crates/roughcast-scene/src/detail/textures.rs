@@ -1,6 +1,6 @@
 //! Baked textures of any layout as a source of bumps.
 
-use roughcast::shading::{FootprintRatio, LobeOptions, Shading, Wanted};
+use roughcast::shading::{FootprintRatio, Shading, ShadingOptions, Wanted};
 use roughcast::texture::{Packing, TexelReader, TextureArray, TextureInfo};
 use roughcast::{Distribution, Slope};
 
@@ -100,12 +100,12 @@ impl Detail for TextureDetail<'_> {
         let finest = Sampler { filter: Filter::Trilinear, level: Some(0.0), ..self.sampler };
         let BakedTextures { reader, textures, packing, .. } = self.textures;
         let texels = self.sample_all(&finest, &self.lookup(at, Footprint::default()));
-        let read = reader.read(&texels[..textures.len()], packing, &self.options(LobeOptions::default()));
+        let read = reader.read(&texels[..textures.len()], packing, &self.options(ShadingOptions::default()));
         let mean = read.whole().mean;
         self.placement.matrix(self.textures.size(), at).map_or(mean, |matrix| mean.transformed(matrix))
     }
 
-    fn distribution(&self, at: &DetailPoint<'_>, options: &LobeOptions) -> Distribution {
+    fn distribution(&self, at: &DetailPoint<'_>, options: &ShadingOptions) -> Distribution {
         let BakedTextures { reader, textures, packing, .. } = self.textures;
         let lookup = self.lookup(at, at.footprint(self.placement.uv_set()));
         let texels = self.sample_all(&self.sampler, &lookup);
@@ -120,7 +120,7 @@ impl Detail for TextureDetail<'_> {
         seen
     }
 
-    fn options(&self, options: LobeOptions) -> LobeOptions {
+    fn options(&self, options: ShadingOptions) -> ShadingOptions {
         options.for_maps(&self.textures.info)
     }
 }

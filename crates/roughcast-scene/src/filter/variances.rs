@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 use roughcast::shading::{
-    FilterVariances, FootprintAxes, FootprintModel, FootprintRatio, LobeOptions, footprint_axes,
+    FilterVariances, FootprintAxes, FootprintModel, FootprintRatio, ShadingOptions, footprint_axes,
     footprint_ratio, hardware_variances, level_variances,
 };
 
@@ -47,7 +47,7 @@ impl Sampler {
         slope: [f32; 2],
         mean: [f32; 4],
         at: &Lookup,
-        options: &LobeOptions,
+        options: &ShadingOptions,
     ) -> FootprintRatio {
         if options.footprint == FootprintModel::Published || self.filter == Filter::Nearest {
             return FootprintRatio::WHOLE;

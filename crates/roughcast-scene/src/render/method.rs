@@ -1,6 +1,6 @@
 //! A shading method as a GPU runs it: one sample per pixel, at its centre, from filtered detail.
 
-use roughcast::shading::{LobeOptions, Shading};
+use roughcast::shading::{Shading, ShadingOptions};
 
 use super::shade::Shaded;
 use super::{Progress, RenderError, render_rows};
@@ -15,7 +15,7 @@ pub struct Method<'a> {
     pub detail: &'a dyn Detail,
     /// The lobe. Properties that the detail states itself, such as an exponent that is baked into its textures, take precedence over
     /// these options.
-    pub options: LobeOptions,
+    pub options: ShadingOptions,
 }
 
 impl Method<'_> {

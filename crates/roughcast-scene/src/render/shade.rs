@@ -1,6 +1,6 @@
 //! Shades one ray.
 
-use roughcast::shading::{LightSample, LobeOptions, Surface, ambient_radiance, reflect};
+use roughcast::shading::{LightSample, ShadingOptions, Surface, ambient_radiance, reflect};
 
 use crate::{Hit, Ray, Scene};
 
@@ -25,7 +25,7 @@ impl Shaded {
     ///
     /// On a mesh the shading frame may face away from a viewer of the triangle: such a point has no highlight.
     #[inline]
-    pub fn lit(scene: &Scene, ray: &Ray, hit: &Hit<'_>, surface: &Surface, options: &LobeOptions) -> Self {
+    pub fn lit(scene: &Scene, ray: &Ray, hit: &Hit<'_>, surface: &Surface, options: &ShadingOptions) -> Self {
         let tangent = |v| hit.frame.tangent_from_world(v).as_vec3().to_array();
         let view = tangent(-ray.direction);
         let mut radiance = ambient_radiance(scene.material.albedo, scene.material.ambient);

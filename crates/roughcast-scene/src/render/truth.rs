@@ -1,9 +1,9 @@
-//! Ground truth: many rays per pixel, each shaded with the model's base lobe at level 0.
+//! Ground truth: many rays per pixel, each shaded by the model's reference at level 0.
 //!
 //! Source: LEAN mapping, Figure 14: supersampling with a Gaussian pixel filter.
 
 use glam::DVec2;
-use roughcast::shading::{LobeOptions, PIXEL_DEVIATION, Shading};
+use roughcast::shading::{PIXEL_DEVIATION, Shading, ShadingOptions};
 
 use super::normal_quantile::normal_quantile;
 use super::shade::Shaded;
@@ -18,19 +18,19 @@ pub const PIXEL_FILTER_RADIUS: f64 = 2.0;
 /// The fraction of a normal distribution below minus four standard deviations, where the pixel filter ends.
 const BEYOND: f64 = 3.167_124_183_311_998e-5;
 
-/// The supersampled ground truth for a base lobe, in one form and with one energy.
+/// The supersampled ground truth of a model's reference, in one form and with one energy.
 ///
 /// Samples are drawn from the pixel filter itself by its inverse distribution, so that all have the same weight: a square
 /// number of them, one in each cell of a square grid of probabilities, jittered by a hash of pixel and sample. The same
 /// scene gives the same bits.
 #[derive(Clone, Copy)]
 pub struct Truth<'a> {
-    /// The model under test; its [base lobe](Shading::base_lobe) is shaded.
+    /// The model under test; its [reference](Shading::reference) shades.
     pub shading: Shading,
     /// The source of the bumps; only its exact slopes are used.
     pub detail: &'a dyn Detail,
     /// The lobe. Roughness in the maps does not matter here.
-    pub options: LobeOptions,
+    pub options: ShadingOptions,
     /// Samples per pixel: a square number, 1 ..= [`MAX_SAMPLES`].
     pub samples: u32,
 }

@@ -13,7 +13,7 @@ pub(super) fn allocate(
     options: &BakeOptions,
     size: (usize, usize),
 ) -> Vec<TextureArray> {
-    let sample_type = options.bits;
+    let sample_type = options.sample_type;
     let mut earlier = earlier.into_iter().flat_map(|array| array.layers);
     let mut texture = |spec: &LayerSpec, channels: usize| {
         let levels = level_sizes(size.0, size.1);

@@ -12,10 +12,10 @@ use crate::texture::{BaseRole, BlockCompression, Blocks};
 const LARGEST_SLOPE_IN_HALF: f32 = 255.0;
 
 pub(super) fn check_options(options: &BakeOptions, has_roughness: bool) -> Result<(), BakeError> {
-    let BakeOptions { layout, bits, .. } = *options;
+    let BakeOptions { layout, sample_type: bits, .. } = *options;
     let is_float = bits.is_float();
     if !layout.sample_types().contains(&bits) {
-        return Err(BakeError::FloatsOnly { layout, bits });
+        return Err(BakeError::FloatsOnly { layout, sample_type: bits });
     }
     if options.base == Base::Baked && !has_roughness {
         return Err(BakeError::NoBaseToFoldIn);
@@ -25,14 +25,14 @@ pub(super) fn check_options(options: &BakeOptions, has_roughness: bool) -> Resul
     }
     let stores_powers = options.pbr.roughness_stored == RoughnessStored::SpecularPower;
     if layout.reads_pbr_options() && stores_powers && !is_float {
-        return Err(BakeError::SpecularPowersNeedFloats { bits });
+        return Err(BakeError::SpecularPowersNeedFloats { sample_type: bits });
     }
     if let ScaleChoice::Fixed(scale) = options.scale {
         if layout.rules().stores() == Stores::Normals {
             return Err(BakeError::NoScale { layout });
         }
         if is_float {
-            return Err(BakeError::ScaleOfFloats { bits });
+            return Err(BakeError::ScaleOfFloats { sample_type: bits });
         }
         if !(scale.is_finite() && scale > 0.0) {
             return Err(BakeError::InvalidScale { scale });
@@ -41,7 +41,9 @@ pub(super) fn check_options(options: &BakeOptions, has_roughness: bool) -> Resul
     match (options.blocks, layout.block_compression()) {
         (Blocks::None, _) => Ok(()),
         (Blocks::Bc, BlockCompression::FromEightBits) if bits == SampleType::U8 => Ok(()),
-        (Blocks::Bc, BlockCompression::FromEightBits) => Err(BakeError::BlocksNeedEightBits { bits }),
+        (Blocks::Bc, BlockCompression::FromEightBits) => {
+            Err(BakeError::BlocksNeedEightBits { sample_type: bits })
+        }
         (Blocks::Bc, reason) => Err(BakeError::NotCompressible { layout, reason }),
     }
 }
@@ -55,7 +57,7 @@ pub(super) fn limit_slopes(
 ) -> Result<(), BakeError> {
     let stores_squares = options.layout.rules().stores() == Stores::RawMoments;
     let asked = source.max_slope.before_a_look();
-    if options.bits == SampleType::F16 && stores_squares && asked > LARGEST_SLOPE_IN_HALF {
+    if options.sample_type == SampleType::F16 && stores_squares && asked > LARGEST_SLOPE_IN_HALF {
         return Err(BakeError::SlopeBeyondHalf { max_slope: asked, largest: LARGEST_SLOPE_IN_HALF });
     }
     if let ScaleChoice::Fixed(scale) = options.scale {
@@ -77,5 +79,5 @@ pub(super) fn limit_slopes(
 
 /// Whether texels hold slopes or variances over a range that follows from the map.
 fn has_range_of_the_map(options: &BakeOptions) -> bool {
-    options.scale == ScaleChoice::Auto && options.layout.uses_scale(options.bits)
+    options.scale == ScaleChoice::Auto && options.layout.uses_scale(options.sample_type)
 }

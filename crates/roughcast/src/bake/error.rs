@@ -13,12 +13,12 @@ pub enum BakeError {
     #[error(transparent)]
     Source(#[from] SourceError),
     /// The layout holds floats, and texels of another type were asked for.
-    #[error("the layout '{layout}' holds floats, not {bits} bits: choose half or single floats")]
+    #[error("the layout '{layout}' holds floats, not {sample_type} bits: choose half or single floats")]
     FloatsOnly {
         /// The layout.
         layout: Layout,
         /// The type asked for.
-        bits: SampleType,
+        sample_type: SampleType,
     },
     /// The base roughness was to be folded in, and there is none.
     #[error("folding in the base roughness needs a roughness: give one")]
@@ -33,7 +33,7 @@ pub enum BakeError {
     #[error("specular powers do not fit into 0 to 1: choose floats, or another way to store roughness")]
     SpecularPowersNeedFloats {
         /// The type asked for.
-        bits: SampleType,
+        sample_type: SampleType,
     },
     /// A scale was chosen for a layout without slopes.
     #[error("the layout '{layout}' stores normals, not slopes: it has no scale to choose")]
@@ -45,7 +45,7 @@ pub enum BakeError {
     #[error("float texels hold slopes as they are: they have no scale to choose")]
     ScaleOfFloats {
         /// The type asked for.
-        bits: SampleType,
+        sample_type: SampleType,
     },
     /// A scale is not above zero, or not finite.
     #[error("the scale must be above zero, not {scale}")]
@@ -54,10 +54,10 @@ pub enum BakeError {
         scale: f32,
     },
     /// Textures shaped for block compression were asked for in another type than 8 bits.
-    #[error("blocks are compressed from 8 bits, not from {bits}")]
+    #[error("blocks are compressed from 8 bits, not from {sample_type}")]
     BlocksNeedEightBits {
         /// The type asked for.
-        bits: SampleType,
+        sample_type: SampleType,
     },
     /// The layout cannot be block-compressed.
     #[error("the layout '{layout}' cannot be block-compressed{}", in_words(*reason))]

@@ -37,7 +37,7 @@ pub(super) fn find_ranges(
         .transpose()?;
     let mut needed = NeededRange { peaks: looked_at.as_ref().map(|looked_at| looked_at.peaks), variance };
     let limit = match (&looked_at, max_slope) {
-        (Some(looked_at), MaxSlope::Auto) => limit_steepest(
+        (Some(looked_at), MaxSlope::Auto) => limit_of_most(
             source,
             &mut needed,
             looked_at,
@@ -51,7 +51,7 @@ pub(super) fn find_ranges(
 }
 
 fn scale_is_open(options: &BakeOptions) -> bool {
-    !options.bits.is_float() && options.scale == ScaleChoice::Auto
+    !options.sample_type.is_float() && options.scale == ScaleChoice::Auto
 }
 
 /// The texels that [`find_ranges`] counts as progress, at most.
@@ -69,7 +69,7 @@ pub(super) fn work(
 }
 
 /// Lowers the largest slope of a source and what the ranges have to hold, where that wins more than [`STEEP_COST`]; says so.
-fn limit_steepest(
+fn limit_of_most(
     source: &mut MapSource<'_>,
     needed: &mut NeededRange,
     looked_at: &Survey,

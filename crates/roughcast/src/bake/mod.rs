@@ -63,14 +63,14 @@ pub struct BakeReport {
     /// Range of the stored slopes; 1 for float types.
     pub scale: f32,
     /// Range of the stored variances or standard deviations; 1 where there are none.
-    pub variance_scale: f32,
+    pub spread_scale: f32,
     /// The largest slope allowed: that of the options, what a fixed scale can hold, or what
     /// [`MaxSlope::Auto`](crate::MaxSlope::Auto) has found.
     pub max_slope: f32,
     /// Set where [`MaxSlope::Auto`](crate::MaxSlope::Auto) has lowered it.
     pub limit: Option<SlopeLimit>,
-    /// Length of the steepest slope.
-    pub steepest: f32,
+    /// Length of the largest slope.
+    pub maximum_slope: f32,
     /// Root mean square length of the slopes, without any base roughness.
     pub rms_slope: f64,
     /// The same with the base roughness, where it is folded in.
@@ -118,7 +118,7 @@ pub struct Baked {
 ///     .options(BakeOptions { layout: Layout::Variance, ..BakeOptions::default() })
 ///     .run()?;
 /// assert_eq!(baked.arrays[0].size(), (64, 32));
-/// assert_eq!(baked.report.steepest, 0.0);
+/// assert_eq!(baked.report.maximum_slope, 0.0);
 ///
 /// // The next frame of the same size takes over the memory.
 /// let next = Bake::of(&heights).source(source).reusing(baked.arrays).run()?;
@@ -230,7 +230,7 @@ fn bake(parts: Bake<'_>) -> Result<Baked, BakeError> {
     let extras = options.layout.rules().extras(&info).to_vec();
     let mut source = MapSource::new(image, source_options, base, extras)?;
     let pyramid_options = PyramidOptions { filter: options.filter, wrap: source_options.wrap };
-    let sample_type = options.bits;
+    let sample_type = options.sample_type;
     let last = pyramid::work(size.0, size.1, pyramid_options);
     let before = limit::work(size, source_options.max_slope, pyramid_options, options);
     let progress = Progress::of(before + last, watch);
@@ -247,7 +247,7 @@ fn bake(parts: Bake<'_>) -> Result<Baked, BakeError> {
     let finest = &built.levels[0];
     let peaks = Peaks {
         component: finest.largest_component,
-        slope: finest.steepest,
+        slope: finest.maximum_slope,
         variance: needed.variance.unwrap_or(finest.max_variance),
     };
     // Where no scale was to be found, a few rows tell how the slopes are distributed.
@@ -257,10 +257,10 @@ fn bake(parts: Bake<'_>) -> Result<Baked, BakeError> {
         counts: built.counts,
         texels: image.width() as u64 * image.height() as u64,
         scale: info.scale,
-        variance_scale: info.variance_scale,
+        spread_scale: info.spread_scale,
         max_slope: source.max_slope(),
         limit: limit.map(|limit| SlopeLimit { texels: built.counts.clamped, ..limit }),
-        steepest: finest.steepest,
+        maximum_slope: finest.maximum_slope,
         rms_slope,
         rms_slope_with_base,
         whole: built.whole,

@@ -55,7 +55,7 @@ impl BakePlan {
 
 /// How unit vectors are stored. Only `pbr` has a choice, and only in floats.
 fn normal_range(options: &BakeOptions) -> NormalRange {
-    match options.bits.is_float() {
+    match options.sample_type.is_float() {
         false => NormalRange::Unorm,
         true if options.layout.reads_pbr_options() => options.pbr.normal_range,
         true => NormalRange::Signed,

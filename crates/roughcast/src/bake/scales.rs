@@ -40,7 +40,7 @@ pub(super) struct NeededRange {
 
 /// Chooses the scales of unsigned texels.
 pub(super) fn set_scales(info: &mut TextureInfo, needed: &NeededRange, options: &BakeOptions) {
-    if options.bits.is_float() {
+    if options.sample_type.is_float() {
         return;
     }
     info.scale = match (options.scale, &needed.peaks) {
@@ -48,7 +48,7 @@ pub(super) fn set_scales(info: &mut TextureInfo, needed: &NeededRange, options: 
         (ScaleChoice::Auto, Some(peaks)) => options.layout.rules().stores().smallest_scale(peaks),
         (ScaleChoice::Auto, None) => unreachable!("a scale to be found is looked for"),
     };
-    info.variance_scale = options.layout.rules().variance_scale(needed.variance.unwrap_or(0.0));
+    info.spread_scale = options.layout.rules().spread_scale(needed.variance.unwrap_or(0.0));
 }
 
 /// The peaks without the steepest texels of which [`ScaleAdvice`] speaks.

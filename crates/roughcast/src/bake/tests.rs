@@ -18,7 +18,7 @@ const SIZES: [(usize, usize); 3] = [(128, 64), (130, 66), (67, 131)];
 
 fn bake_of(map: &Image, layout: Layout, filter: PyramidFilter) -> Bake<'_> {
     let bits = layout.default_sample_type();
-    let options = BakeOptions { layout, bits, filter, ..BakeOptions::default() };
+    let options = BakeOptions { layout, sample_type: bits, filter, ..BakeOptions::default() };
     Bake::of(map).roughness(BaseRoughness::Variance(0.01)).options(options)
 }
 

@@ -171,7 +171,7 @@ impl StatsSum {
             mean_variance_y: self.yy / texels,
             max_variance: self.max,
             largest_component: self.component,
-            steepest: self.squared_length.sqrt(),
+            maximum_slope: self.squared_length.sqrt(),
         }
     }
 }

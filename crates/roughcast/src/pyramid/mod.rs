@@ -45,7 +45,7 @@ pub struct LevelStats {
     /// Largest magnitude of a component of a mean slope.
     pub largest_component: f32,
     /// Largest length of a mean slope.
-    pub steepest: f32,
+    pub maximum_slope: f32,
 }
 
 /// How levels are made.

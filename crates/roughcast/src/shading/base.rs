@@ -1,20 +1,20 @@
 //! The base roughness of the material as a covariance in the plane of the surface.
 //!
-//! Source: LEAN mapping, 3.4, where it is `I / s` for every slope of the facet ([`BaseLobe::Plane`]). [`BaseLobe::Facet`] is
+//! Source: LEAN mapping, 3.4, where it is `I / s` for every slope of the facet ([`BaseFrame::Plane`]). [`BaseFrame::Facet`] is
 //! the lobe that a facet of slope B really shows there: a turn takes the plane of slopes about the facet into that of the
 //! surface, and its Jacobian at the lobe's middle stretches standard deviations by `1 + B²` along B and by `sqrt(1 + B²)` across.
 
-use super::{BaseLobe, LobeOptions};
+use super::{BaseFrame, ShadingOptions};
 use crate::moments::Covariance;
 use crate::roughness::Base;
 use crate::slope::Slope;
 
 /// Slope covariance of the base roughness about a facet with this slope, in the plane of the surface.
-pub fn base_covariance(slope: Slope, options: &LobeOptions) -> Covariance {
+pub fn base_covariance(slope: Slope, options: &ShadingOptions) -> Covariance {
     let variance = 1.0 / options.specular_power;
-    match options.base {
-        BaseLobe::Plane => Covariance::isotropic(variance),
-        BaseLobe::Facet => {
+    match options.base_frame {
+        BaseFrame::Plane => Covariance::isotropic(variance),
+        BaseFrame::Facet => {
             // (1 + B²) (I + B Bᵀ) / s has the two stretches, squared, as its eigenvalues.
             let across = variance * (1.0 + slope.x * slope.x + slope.y * slope.y);
             Covariance {
@@ -27,7 +27,7 @@ pub fn base_covariance(slope: Slope, options: &LobeOptions) -> Covariance {
 }
 
 /// The variance along each axis that the base roughness has in a distribution: none where it is added at shading.
-pub fn base_in_map(base: Base, options: &LobeOptions) -> f32 {
+pub fn base_in_map(base: Base, options: &ShadingOptions) -> f32 {
     match base {
         Base::None => 0.0,
         Base::Baked => 1.0 / options.specular_power,
@@ -35,7 +35,7 @@ pub fn base_in_map(base: Base, options: &LobeOptions) -> f32 {
 }
 
 /// The base roughness that is still to be added to a distribution: none where it is in it.
-pub fn base_to_add(mean: Slope, base: Base, options: &LobeOptions) -> Covariance {
+pub fn base_to_add(mean: Slope, base: Base, options: &ShadingOptions) -> Covariance {
     match base {
         Base::None => base_covariance(mean, options),
         Base::Baked => Covariance::default(),

@@ -8,16 +8,16 @@ use std::f32::consts::TAU;
 use super::facet::{BumpFacet, LEAST_COSINE, bump_facet, facet_visible_part};
 use super::gaussian::LARGEST_EXPONENT;
 use super::vector::{Vector, cross, dot, half_vector};
-use super::{Form, LobeOptions};
+use super::{Form, ShadingOptions};
 use crate::distribution::Distribution;
 
 /// The facet of a distribution's filtered normal.
-pub fn beckmann_surface(distribution: &Distribution, options: &LobeOptions) -> BumpFacet {
+pub fn beckmann_surface(distribution: &Distribution, options: &ShadingOptions) -> BumpFacet {
     bump_facet(distribution.normal().to_array(), options.specular_power)
 }
 
 /// The lobe for unit directions to the viewer and to the light. Normalised about the bump normal.
-pub fn beckmann_lobe(surface: &BumpFacet, view: Vector, light: Vector, options: &LobeOptions) -> f32 {
+pub fn beckmann_lobe(surface: &BumpFacet, view: Vector, light: Vector, options: &ShadingOptions) -> f32 {
     let Some(half) = half_vector(view, light) else { return 0.0 };
     let cosine = dot(surface.normal, half);
     if cosine < LEAST_COSINE {

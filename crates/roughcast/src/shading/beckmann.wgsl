@@ -1,10 +1,10 @@
 // Beckmann's distribution in the frame of the filtered bump normal, of variance 1 / s.
 
-fn beckmann_surface(distribution: Distribution, options: LobeOptions) -> BumpFacet {
+fn beckmann_surface(distribution: Distribution, options: ShadingOptions) -> BumpFacet {
     return bump_facet(distribution.normal, options.specular_power);
 }
 
-fn beckmann_lobe(surface: BumpFacet, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {
+fn beckmann_lobe(surface: BumpFacet, view: vec3f, light: vec3f, options: ShadingOptions) -> f32 {
     if !both_above(view, light) {
         return 0.0;
     }

@@ -1,10 +1,10 @@
 // Blinn-Phong: a cosine lobe about the filtered bump normal, in the half vector.
 
-fn blinn_phong_surface(distribution: Distribution, options: LobeOptions) -> BumpFacet {
+fn blinn_phong_surface(distribution: Distribution, options: ShadingOptions) -> BumpFacet {
     return bump_facet(distribution.normal, options.specular_power);
 }
 
-fn blinn_phong_lobe(surface: BumpFacet, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {
+fn blinn_phong_lobe(surface: BumpFacet, view: vec3f, light: vec3f, options: ShadingOptions) -> f32 {
     if !both_above(view, light) {
         return 0.0;
     }

@@ -71,11 +71,11 @@ mod tests {
         {
             let code = library(&[&[model.name()], gaussians.modules()].concat()).expect("they exist");
             let Calls { surface, lobe } = model.calls(gaussians);
-            let made = format!("fn {surface}(distribution: Distribution, options: LobeOptions) -> ");
+            let made = format!("fn {surface}(distribution: Distribution, options: ShadingOptions) -> ");
             let (_, rest) = code.split_once(&made).unwrap_or_else(|| panic!("{model}: no {made}"));
             let of_type = rest.split_whitespace().next().expect("a type");
             let taken =
-                format!("fn {lobe}(surface: {of_type}, view: vec3f, light: vec3f, options: LobeOptions)");
+                format!("fn {lobe}(surface: {of_type}, view: vec3f, light: vec3f, options: ShadingOptions)");
             assert!(code.contains(&taken), "{model}: no {taken}");
         }
     }

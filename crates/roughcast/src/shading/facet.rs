@@ -2,7 +2,7 @@
 
 use super::masking::{gaussian_lambda, visible_part};
 use super::vector::{Vector, cross, dot, normalize};
-use super::{Form, LobeOptions, Masking};
+use super::{Form, Masking, ShadingOptions};
 use crate::slope::LEAST_NORMAL_Z;
 
 /// Cosines below this count as none. Its square is the smallest by which an f32 can still be divided.
@@ -49,7 +49,7 @@ pub const LEAST_VIEW_COSINE: f32 = 1e-4;
 
 /// `G2 / n·v` about the normal of a facet, whose own roughness masks as the equivalent Gaussian of slopes. Zero where the light is
 /// not above the facet.
-pub fn facet_visible_part(surface: &BumpFacet, view: Vector, light: Vector, options: &LobeOptions) -> f32 {
+pub fn facet_visible_part(surface: &BumpFacet, view: Vector, light: Vector, options: &ShadingOptions) -> f32 {
     let cosines = [dot(surface.normal, view).max(LEAST_VIEW_COSINE), dot(surface.normal, light)];
     if cosines[1] < LEAST_COSINE {
         return 0.0;

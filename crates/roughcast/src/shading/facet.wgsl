@@ -49,7 +49,7 @@ const LEAST_VIEW_COSINE: f32 = 1e-4;
 
 // G2 / n.v about the normal of a facet, whose own roughness masks as the equivalent Gaussian of slopes. Zero where the light is
 // not above the facet.
-fn facet_visible_part(surface: BumpFacet, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {
+fn facet_visible_part(surface: BumpFacet, view: vec3f, light: vec3f, options: ShadingOptions) -> f32 {
     let of_view = max(dot(surface.normal, view), LEAST_VIEW_COSINE);
     let of_light = dot(surface.normal, light);
     if of_light < LEAST_COSINE {

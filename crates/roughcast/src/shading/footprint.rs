@@ -24,7 +24,7 @@
 //! Where variance itself is stored ([`super::Shading::Variance`]), interpolation between texels makes none, and K is the box
 //! under each alone.
 
-use super::{FootprintModel, LobeOptions};
+use super::{FootprintModel, ShadingOptions};
 use crate::moments::Covariance;
 
 /// Standard deviation of the pixel filter, a Gaussian, in pixels.
@@ -192,7 +192,7 @@ pub fn footprint_ratio(
     filter: &FilterVariances,
     mean_dx: [f32; 2],
     mean_dy: [f32; 2],
-    options: &LobeOptions,
+    options: &ShadingOptions,
 ) -> FootprintRatio {
     if options.footprint == FootprintModel::Published {
         return FootprintRatio::WHOLE;

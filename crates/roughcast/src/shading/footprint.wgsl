@@ -125,7 +125,7 @@ fn footprint_ratio(
     filtered: FilterVariances,
     mean_dx: vec2f,
     mean_dy: vec2f,
-    options: LobeOptions,
+    options: ShadingOptions,
 ) -> FootprintRatio {
     if options.footprint == FOOTPRINT_PUBLISHED {
         return whole_footprint();

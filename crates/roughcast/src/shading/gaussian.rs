@@ -7,7 +7,7 @@ use std::f32::consts::TAU;
 
 use super::masking::{gaussian_lambda, projected_variance, visible_part};
 use super::vector::{Vector, half_vector};
-use super::{Form, LobeOptions, Masking, Repair};
+use super::{Form, Masking, Repair, ShadingOptions};
 use crate::moments::Covariance;
 use crate::slope::Slope;
 
@@ -31,7 +31,7 @@ pub struct SlopeGaussian {
 
 /// The Gaussian with this mean and covariance, which has its base roughness in it. [`Repair::Clamp`] sees to it that the
 /// variance is at least [`LEAST_VARIANCE`] along every direction; [`Repair::Published`] leaves it as it is.
-pub fn slope_gaussian(mean: Slope, covariance: Covariance, options: &LobeOptions) -> SlopeGaussian {
+pub fn slope_gaussian(mean: Slope, covariance: Covariance, options: &ShadingOptions) -> SlopeGaussian {
     let Covariance { xx, yy, xy } = covariance;
     // The products are exact in f64: narrow lobes leave little of their difference.
     let determinant = (f64::from(xx) * f64::from(yy) - f64::from(xy) * f64::from(xy)) as f32;
@@ -55,7 +55,7 @@ pub fn slope_gaussian(mean: Slope, covariance: Covariance, options: &LobeOptions
 
 /// The lobe of the Gaussian for unit directions to the viewer and to the light, in the surface frame. Zero where one of
 /// them is not above the surface.
-pub fn gaussian_lobe(surface: &SlopeGaussian, view: Vector, light: Vector, options: &LobeOptions) -> f32 {
+pub fn gaussian_lobe(surface: &SlopeGaussian, view: Vector, light: Vector, options: &ShadingOptions) -> f32 {
     let Some(half) = half_vector(view, light) else { return 0.0 };
     let SlopeGaussian { mean, covariance, determinant } = *surface;
     // Both sides of the quotient times h.z², so that grazing half vectors divide nothing by zero.
@@ -81,7 +81,7 @@ pub fn gaussian_visible_part(
     surface: &SlopeGaussian,
     view: [f32; 3],
     light: [f32; 3],
-    options: &LobeOptions,
+    options: &ShadingOptions,
 ) -> f32 {
     let covariance = match options.masking {
         Masking::Base => Covariance::isotropic(1.0 / options.specular_power),

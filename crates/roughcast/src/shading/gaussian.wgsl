@@ -21,7 +21,7 @@ fn positive_semidefinite(sigma: vec3f) -> vec3f {
 }
 
 // The Gaussian with this mean and covariance (xx, yy, xy), which has its base roughness in it.
-fn slope_gaussian(mean: vec2f, sigma: vec3f, options: LobeOptions) -> SlopeGaussian {
+fn slope_gaussian(mean: vec2f, sigma: vec3f, options: ShadingOptions) -> SlopeGaussian {
     let trace = sigma.x + sigma.y;
     // Where fma rounds once, the rounding of the square is made good (Kahan); elsewhere this is the plain difference.
     let square = sigma.z * sigma.z;
@@ -45,7 +45,7 @@ fn squared_deviations(surface: SlopeGaussian, d: vec2f) -> f32 {
 }
 
 // G2 / v.z about the surface normal.
-fn gaussian_visible_part(surface: SlopeGaussian, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {
+fn gaussian_visible_part(surface: SlopeGaussian, view: vec3f, light: vec3f, options: ShadingOptions) -> f32 {
     let base = 1.0 / options.specular_power;
     let full = vec3f(surface.variance, surface.covariance);
     let sigma = select(vec3f(base, base, 0.0), full, options.masking == MASKING_FULL);
@@ -55,7 +55,7 @@ fn gaussian_visible_part(surface: SlopeGaussian, view: vec3f, light: vec3f, opti
 }
 
 // The lobe for unit directions to the viewer and to the light.
-fn gaussian_lobe(surface: SlopeGaussian, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {
+fn gaussian_lobe(surface: SlopeGaussian, view: vec3f, light: vec3f, options: ShadingOptions) -> f32 {
     if !both_above(view, light) {
         return 0.0;
     }

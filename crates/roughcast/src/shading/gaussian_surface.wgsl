@@ -1,12 +1,12 @@
 // From a distribution to the Gaussian that is shaded: repaired, with its base roughness.
 
-fn shaded_gaussian(gaussian: WeightedGaussian, base: u32, options: LobeOptions) -> SlopeGaussian {
+fn shaded_gaussian(gaussian: WeightedGaussian, base: u32, options: ShadingOptions) -> SlopeGaussian {
     let stored = vec3f(gaussian.variance, gaussian.covariance);
     let repaired = select(positive_semidefinite(stored), stored, options.repair == REPAIR_PUBLISHED);
     return slope_gaussian(gaussian.mean, repaired + base_to_add(gaussian.mean, base, options), options);
 }
 
 // Of a distribution of one Gaussian. Of several take mixture_surface.
-fn gaussian_surface(distribution: Distribution, options: LobeOptions) -> SlopeGaussian {
+fn gaussian_surface(distribution: Distribution, options: ShadingOptions) -> SlopeGaussian {
     return shaded_gaussian(distribution.first, distribution.base, options);
 }

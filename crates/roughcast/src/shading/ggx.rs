@@ -10,7 +10,7 @@ use super::facet::{LEAST_COSINE, LEAST_VIEW_COSINE, unit_normal};
 use super::gaussian::LEAST_VARIANCE;
 use super::masking::visible_part;
 use super::vector::{Vector, cross, dot, half_vector, normalize, scaled, sum};
-use super::{Form, LobeOptions};
+use super::{Form, ShadingOptions};
 use crate::distribution::Distribution;
 use crate::moments::Covariance;
 use crate::roughness::Base;
@@ -69,7 +69,7 @@ pub fn principal_axes(covariance: Covariance) -> PrincipalAxes {
 }
 
 /// The facet of a distribution, base roughness included: `α² = 2σ²` along each principal axis of the covariance.
-pub fn ggx_surface(distribution: &Distribution, options: &LobeOptions) -> GgxSurface {
+pub fn ggx_surface(distribution: &Distribution, options: &ShadingOptions) -> GgxSurface {
     let bumps = distribution.whole().covariance.positive_semidefinite();
     let base = match distribution.base() {
         Base::None => Covariance::isotropic(1.0 / options.specular_power),
@@ -90,7 +90,7 @@ fn ggx_facet(normal: Vector, [x, y]: [f32; 2], along: f32, across: f32) -> GgxSu
 }
 
 /// The lobe for unit directions to the viewer and to the light. Normalised about the bump normal.
-pub fn ggx_lobe(surface: &GgxSurface, view: Vector, light: Vector, options: &LobeOptions) -> f32 {
+pub fn ggx_lobe(surface: &GgxSurface, view: Vector, light: Vector, options: &ShadingOptions) -> f32 {
     let Some(half) = half_vector(view, light) else { return 0.0 };
     let cosine = dot(surface.normal, half);
     if cosine <= 0.0 {

@@ -43,7 +43,7 @@ fn ggx_facet(normal: vec3f, direction: vec2f, along: f32, across: f32) -> GgxSur
 }
 
 // The facet of a distribution, base roughness included: alpha^2 = 2 variance along each principal axis.
-fn ggx_surface(distribution: Distribution, options: LobeOptions) -> GgxSurface {
+fn ggx_surface(distribution: Distribution, options: ShadingOptions) -> GgxSurface {
     let whole = whole_gaussian(distribution);
     let bumps = positive_semidefinite(vec3f(whole.variance, whole.covariance));
     let base = select(1.0 / options.specular_power, 0.0, distribution.base == MAPS_WITH_BASE);
@@ -72,7 +72,7 @@ fn ggx_visible_part(surface: GgxSurface, view: vec3f, light: vec3f) -> f32 {
     return visible_part(of_view, lambda_of_view, ggx_lambda(surface, light, of_light));
 }
 
-fn ggx_lobe(surface: GgxSurface, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {
+fn ggx_lobe(surface: GgxSurface, view: vec3f, light: vec3f, options: ShadingOptions) -> f32 {
     if !both_above(view, light) {
         return 0.0;
     }

@@ -4,7 +4,7 @@
 use super::base::base_to_add;
 use super::gaussian::{SlopeGaussian, gaussian_lobe, slope_gaussian};
 use super::vector::Vector;
-use super::{LobeOptions, Repair};
+use super::{Repair, ShadingOptions};
 use crate::distribution::{Distribution, MAX_GAUSSIANS, WeightedGaussian};
 use crate::roughness::Base;
 
@@ -25,7 +25,7 @@ impl MixtureSurface {
 
 /// A Gaussian of a distribution, repaired, with its base roughness.
 #[inline]
-pub fn shaded_gaussian(gaussian: &WeightedGaussian, base: Base, options: &LobeOptions) -> SlopeGaussian {
+pub fn shaded_gaussian(gaussian: &WeightedGaussian, base: Base, options: &ShadingOptions) -> SlopeGaussian {
     let repaired = match options.repair {
         Repair::Clamp => gaussian.covariance.positive_semidefinite(),
         Repair::Published => gaussian.covariance,
@@ -35,14 +35,14 @@ pub fn shaded_gaussian(gaussian: &WeightedGaussian, base: Base, options: &LobeOp
 
 /// The first Gaussian of a distribution, repaired, with its base roughness: all there is where there is one.
 #[inline]
-pub fn gaussian_surface(distribution: &Distribution, options: &LobeOptions) -> SlopeGaussian {
+pub fn gaussian_surface(distribution: &Distribution, options: &ShadingOptions) -> SlopeGaussian {
     shaded_gaussian(&distribution.gaussians()[0], distribution.base(), options)
 }
 
 /// The Gaussians of a distribution, repaired, each with its base roughness.
 // Not inlined, nor is the lobe: their stack frames would cost the usual case, a single Gaussian, 4 % of a sample.
 #[inline(never)]
-pub fn mixture_surface(distribution: &Distribution, options: &LobeOptions) -> MixtureSurface {
+pub fn mixture_surface(distribution: &Distribution, options: &ShadingOptions) -> MixtureSurface {
     let parts = distribution.gaussians();
     let first = shaded_gaussian(&parts[0], distribution.base(), options);
     let mut surface = MixtureSurface {
@@ -59,6 +59,6 @@ pub fn mixture_surface(distribution: &Distribution, options: &LobeOptions) -> Mi
 
 /// The lobe for unit directions to the viewer and to the light. Normalised about the surface normal.
 #[inline(never)]
-pub fn mixture_lobe(surface: &MixtureSurface, view: Vector, light: Vector, options: &LobeOptions) -> f32 {
+pub fn mixture_lobe(surface: &MixtureSurface, view: Vector, light: Vector, options: &ShadingOptions) -> f32 {
     surface.gaussians().map(|(weight, gaussian)| weight * gaussian_lobe(gaussian, view, light, options)).sum()
 }

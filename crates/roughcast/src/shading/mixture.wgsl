@@ -8,7 +8,7 @@ struct MixtureSurface {
     fourth: SlopeGaussian,
 }
 
-fn mixture_surface(distribution: Distribution, options: LobeOptions) -> MixtureSurface {
+fn mixture_surface(distribution: Distribution, options: ShadingOptions) -> MixtureSurface {
     let base = distribution.base;
     let weights = vec4f(
         distribution.first.weight,
@@ -30,7 +30,7 @@ fn mixture_surface(distribution: Distribution, options: LobeOptions) -> MixtureS
     return surface;
 }
 
-fn mixture_lobe(surface: MixtureSurface, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {
+fn mixture_lobe(surface: MixtureSurface, view: vec3f, light: vec3f, options: ShadingOptions) -> f32 {
     var lobe = surface.weights.x * gaussian_lobe(surface.first, view, light, options);
     if surface.weights.y > 0.0 {
         lobe += surface.weights.y * gaussian_lobe(surface.second, view, light, options);
@@ -49,7 +49,7 @@ fn pixel_mixture(
     filtered: Distribution,
     ratio: FootprintRatio,
     part: PixelPart,
-    options: LobeOptions,
+    options: ShadingOptions,
 ) -> Distribution {
     let base = base_in_map(filtered.base, options);
     var seen = filtered;

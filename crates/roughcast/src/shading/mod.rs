@@ -18,12 +18,12 @@
 //! to 10⁵.
 //!
 //! ```
-//! use roughcast::shading::{LobeOptions, Shading};
+//! use roughcast::shading::{ShadingOptions, Shading};
 //! use roughcast::{Covariance, Distribution, Slope};
 //!
 //! // Bumps with a standard deviation of 0.1 along x hide under the pixel; the material's own exponent is 200.
 //! let bumps = Distribution::gaussian(Slope::default(), Covariance { xx: 0.01, yy: 0.0, xy: 0.0 });
-//! let options = LobeOptions { specular_power: 200.0, ..LobeOptions::default() };
+//! let options = ShadingOptions { specular_power: 200.0, ..ShadingOptions::default() };
 //! let surface = Shading::Lean.surface_of(&bumps, &options);
 //! let from = |x: f32, y: f32| [x, y, (1.0 - x * x - y * y).sqrt()];
 //! // The highlight is wider along x than along y.
@@ -152,7 +152,7 @@ named_enum! {
 named_enum! {
     /// What the base roughness of a facet looks like in the plane of the surface, for lobes in the surface frame.
     #[non_exhaustive]
-    pub enum BaseLobe: "base lobe" {
+    pub enum BaseFrame: "base lobe" {
         /// Round, with variance `1 / s` whatever the facet's slope: LEAN's approximation.
         Plane = "plane",
         /// The true lobe of a facet of slope B, seen there: variance `(1 + B^2)^2 / s` along B, `(1 + B^2) / s` across.
@@ -187,13 +187,13 @@ pub enum Wanted {
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
-pub struct LobeOptions {
+pub struct ShadingOptions {
     /// Blinn-Phong exponent `s` of the base roughness; its slope variance is `1 / s`.
     pub specular_power: f32,
     /// The form of the lobe.
     pub form: Form,
     /// The base roughness in the plane of the surface.
-    pub base: BaseLobe,
+    pub base_frame: BaseFrame,
     /// What to do with invalid covariances.
     pub repair: Repair,
     /// Whose slopes mask, in the physical form.
@@ -202,12 +202,12 @@ pub struct LobeOptions {
     pub footprint: FootprintModel,
 }
 
-impl Default for LobeOptions {
+impl Default for ShadingOptions {
     fn default() -> Self {
         Self {
             specular_power: 256.0,
             form: Form::Physical,
-            base: BaseLobe::Plane,
+            base_frame: BaseFrame::Plane,
             repair: Repair::Clamp,
             masking: Masking::Base,
             footprint: FootprintModel::Corrected,
@@ -215,20 +215,20 @@ impl Default for LobeOptions {
     }
 }
 
-impl LobeOptions {
+impl ShadingOptions {
     /// LEAN mapping as published: the paper's form, and all variance under the texture filter.
     #[must_use]
     pub fn published(specular_power: f32) -> Self {
         Self { specular_power, form: Form::Paper, footprint: FootprintModel::Published, ..Self::default() }
     }
 
-    /// The bytes of WGSL's `struct LobeOptions`: the exponent's bits, the place of each choice in its enum's `ALL`, and two words
+    /// The bytes of WGSL's `struct ShadingOptions`: the exponent's bits, the place of each choice in its enum's `ALL`, and two words
     /// that are not used.
     pub fn to_words(&self) -> [u32; 8] {
         [
             self.specular_power.to_bits(),
             self.form as u32,
-            self.base as u32,
+            self.base_frame as u32,
             self.repair as u32,
             self.masking as u32,
             self.footprint as u32,
@@ -247,8 +247,8 @@ impl Shading {
         }
     }
 
-    /// The model's base lobe: the lobe if every bump were resolved. A method is compared with the ground truth of that lobe.
-    pub const fn base_lobe(self) -> Self {
+    /// The model with whose lobe ground truth shades each bump, which it resolves. It has no filtered moments.
+    pub const fn reference(self) -> Self {
         match self {
             Self::Phong => Self::Phong,
             Self::BlinnPhong | Self::Toksvig => Self::BlinnPhong,

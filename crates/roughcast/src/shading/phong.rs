@@ -7,11 +7,11 @@ use std::f32::consts::TAU;
 
 use super::facet::{BumpFacet, bump_facet, cosine_lobe, cosine_power};
 use super::vector::{Vector, both_above, dot, scaled, sum};
-use super::{Form, LobeOptions};
+use super::{Form, ShadingOptions};
 use crate::distribution::Distribution;
 
 /// The facet of a distribution's filtered normal.
-pub fn phong_surface(distribution: &Distribution, options: &LobeOptions) -> BumpFacet {
+pub fn phong_surface(distribution: &Distribution, options: &ShadingOptions) -> BumpFacet {
     bump_facet(distribution.normal().to_array(), options.specular_power)
 }
 
@@ -19,7 +19,7 @@ pub fn phong_surface(distribution: &Distribution, options: &LobeOptions) -> Bump
 ///
 /// Phong's lobe is one of directions to the light, not of facets, so that there is nothing to mask: in the physical form it
 /// is `4 (s + 1) / (2 π) cos^s`, with which all light that arrives along the reflected ray is reflected.
-pub fn phong_lobe(surface: &BumpFacet, view: Vector, light: Vector, options: &LobeOptions) -> f32 {
+pub fn phong_lobe(surface: &BumpFacet, view: Vector, light: Vector, options: &ShadingOptions) -> f32 {
     if !both_above(view, light) {
         return 0.0;
     }

@@ -1,10 +1,10 @@
 // Phong: a cosine lobe about the reflected ray, with Phong's own exponent.
 
-fn phong_surface(distribution: Distribution, options: LobeOptions) -> BumpFacet {
+fn phong_surface(distribution: Distribution, options: ShadingOptions) -> BumpFacet {
     return bump_facet(distribution.normal, options.specular_power);
 }
 
-fn phong_lobe(surface: BumpFacet, view: vec3f, light: vec3f, options: LobeOptions) -> f32 {
+fn phong_lobe(surface: BumpFacet, view: vec3f, light: vec3f, options: ShadingOptions) -> f32 {
     if !both_above(view, light) {
         return 0.0;
     }

@@ -1,6 +1,6 @@
 //! The distribution under a pixel, of that under a texture filter, which covers more.
 
-use super::LobeOptions;
+use super::ShadingOptions;
 use super::base::base_in_map;
 use super::footprint::{FootprintRatio, PixelPart};
 use crate::distribution::Distribution;
@@ -12,7 +12,7 @@ pub fn pixel_distribution(
     mut filtered: Distribution,
     ratio: &FootprintRatio,
     part: PixelPart,
-    options: &LobeOptions,
+    options: &ShadingOptions,
 ) -> Distribution {
     reduce_to_pixel(&mut filtered, ratio, part, options);
     filtered
@@ -24,7 +24,7 @@ pub(crate) fn reduce_to_pixel(
     filtered: &mut Distribution,
     ratio: &FootprintRatio,
     part: PixelPart,
-    options: &LobeOptions,
+    options: &ShadingOptions,
 ) {
     let base = base_in_map(filtered.base(), options);
     for gaussian in filtered.gaussians_mut() {

@@ -18,7 +18,7 @@ fn pixel_distribution(
     filtered: Distribution,
     ratio: FootprintRatio,
     part: PixelPart,
-    options: LobeOptions,
+    options: ShadingOptions,
 ) -> Distribution {
     var seen = filtered;
     seen.first = pixel_gaussian(filtered.first, ratio, part, base_in_map(filtered.base, options));

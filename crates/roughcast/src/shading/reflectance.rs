@@ -22,7 +22,7 @@
 use std::f32::consts::PI;
 
 use super::vector::{Vector, dot, half_vector};
-use super::{Form, LobeOptions, Surface};
+use super::{Form, ShadingOptions, Surface};
 
 /// Colours of a material, in linear RGB.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,7 +94,7 @@ pub fn specular_radiance(
     view: [f32; 3],
     light: [f32; 3],
     irradiance: [f32; 3],
-    options: &LobeOptions,
+    options: &ShadingOptions,
 ) -> [f32; 3] {
     let Some(half) = half_vector(view, light) else { return [0.0; 3] };
     let coefficient = match options.form {
@@ -112,7 +112,7 @@ pub fn reflect(
     material: &Material,
     view: Vector,
     light: &LightSample,
-    options: &LobeOptions,
+    options: &ShadingOptions,
 ) -> Radiance {
     let LightSample { direction, irradiance } = *light;
     let lobe = surface.lobe(view, direction, options);

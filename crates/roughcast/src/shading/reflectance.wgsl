@@ -24,7 +24,7 @@ fn specular_radiance(
     view: vec3f,
     light: vec3f,
     irradiance: vec3f,
-    options: LobeOptions,
+    options: ShadingOptions,
 ) -> vec3f {
     if !both_above(view, light) {
         return vec3f(0.0);

@@ -9,7 +9,7 @@ use super::mixture::{MixtureSurface, gaussian_surface, mixture_lobe, mixture_sur
 use super::off_centre::off_centre_surface;
 use super::phong::{phong_lobe, phong_surface};
 use super::toksvig::toksvig_surface;
-use super::{LobeOptions, Shading};
+use super::{Shading, ShadingOptions};
 use crate::distribution::Distribution;
 use crate::slope::Slope;
 
@@ -44,7 +44,7 @@ pub enum ModelSurface {
 impl Surface {
     /// The lobe for unit directions to the viewer and to the light, in the surface frame; zero where either is not above
     /// the surface.
-    pub fn lobe(&self, view: [f32; 3], light: [f32; 3], options: &LobeOptions) -> f32 {
+    pub fn lobe(&self, view: [f32; 3], light: [f32; 3], options: &ShadingOptions) -> f32 {
         match &self.model {
             ModelSurface::Phong(facet) => phong_lobe(facet, view, light, options),
             ModelSurface::BlinnPhong(facet) => blinn_phong_lobe(facet, view, light, options),
@@ -59,7 +59,7 @@ impl Surface {
 impl Shading {
     /// The surface that the model makes of a distribution of slopes: repaired, with its base roughness.
     #[inline]
-    pub fn surface_of(self, distribution: &Distribution, options: &LobeOptions) -> Surface {
+    pub fn surface_of(self, distribution: &Distribution, options: &ShadingOptions) -> Surface {
         let model = match self {
             Self::Phong => ModelSurface::Phong(phong_surface(distribution, options)),
             Self::BlinnPhong => ModelSurface::BlinnPhong(blinn_phong_surface(distribution, options)),
@@ -76,10 +76,10 @@ impl Shading {
     }
 
     /// The surface of a single bump of this slope, as the supersampled ground truth sees it: that of the model's
-    /// [base lobe](Shading::base_lobe).
+    /// [reference](Shading::reference).
     #[inline]
-    pub fn surface_of_slope(self, slope: Slope, options: &LobeOptions) -> Surface {
-        let resolved = match self.base_lobe() {
+    pub fn surface_of_slope(self, slope: Slope, options: &ShadingOptions) -> Surface {
+        let resolved = match self.reference() {
             // The slope itself, and not that of a rounded normal.
             Self::OffCentre => Self::Lean,
             other => other,

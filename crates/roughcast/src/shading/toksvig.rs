@@ -2,14 +2,14 @@
 //!
 //! Source: Toksvig, "Mipmapping normal maps", 2005. His texture gives the variance; any other distribution works too.
 
-use super::LobeOptions;
+use super::ShadingOptions;
 use super::facet::{BumpFacet, bump_facet};
 use super::gaussian::LEAST_VARIANCE;
 use crate::distribution::Distribution;
 use crate::roughness::Base;
 
 /// The facet of a distribution's filtered normal, with its dulled exponent.
-pub fn toksvig_surface(distribution: &Distribution, options: &LobeOptions) -> BumpFacet {
+pub fn toksvig_surface(distribution: &Distribution, options: &ShadingOptions) -> BumpFacet {
     let bumps = (0.5 * distribution.whole().covariance.trace()).max(0.0);
     let base = match distribution.base() {
         Base::None => 1.0 / options.specular_power,

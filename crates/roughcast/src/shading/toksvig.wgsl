@@ -1,6 +1,6 @@
 // Toksvig: Blinn-Phong with the exponent that base and bumps leave together, 1 / s' = 1 / s + variance.
 
-fn toksvig_surface(distribution: Distribution, options: LobeOptions) -> BumpFacet {
+fn toksvig_surface(distribution: Distribution, options: ShadingOptions) -> BumpFacet {
     let whole = whole_gaussian(distribution);
     let bumps = max(0.5 * (whole.variance.x + whole.variance.y), 0.0);
     let base = select(1.0 / options.specular_power, 0.0, distribution.base == MAPS_WITH_BASE);

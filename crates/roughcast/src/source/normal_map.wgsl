@@ -15,7 +15,7 @@ fn z_from_xy(normal_xy: vec2f) -> f32 {
 }
 
 // The slope of a normal of any length.
-fn slope_from_normal(normal: vec3f, max_slope: f32) -> RepairedSlope {
+fn repaired_slope_from_normal(normal: vec3f, max_slope: f32) -> RepairedSlope {
     if (normal.z > 0.0) & is_finite(normal.z) {
         let slope = normal.xy * quotient(1.0, normal.z);
         let squares = rounded2(slope * slope);
@@ -27,11 +27,11 @@ fn slope_from_normal(normal: vec3f, max_slope: f32) -> RepairedSlope {
 }
 
 // The slope of a two-channel normal, whose x and y are multiplied by the factors once z is known.
-fn slope_from_normal_xy(normal_xy: vec2f, factors: vec2f, max_slope: f32) -> RepairedSlope {
+fn repaired_slope_from_normal_xy(normal_xy: vec2f, factors: vec2f, max_slope: f32) -> RepairedSlope {
     let squares = rounded2(normal_xy * normal_xy);
     let finite = is_finite(normal_xy.x) & is_finite(normal_xy.y);
     if finite & (squares.x + squares.y > INVALID_XY_SQUARED) {
         return RepairedSlope(vec2f(0.0), FAULT_INVALID);
     }
-    return slope_from_normal(vec3f(rounded2(normal_xy * factors), z_from_xy(normal_xy)), max_slope);
+    return repaired_slope_from_normal(vec3f(rounded2(normal_xy * factors), z_from_xy(normal_xy)), max_slope);
 }

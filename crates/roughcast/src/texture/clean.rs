@@ -14,7 +14,7 @@ use super::decode::{Files, TexelDecoder};
 use super::rules::{BlockCompression, LayoutRules, Storage, Stores};
 use super::{TexelReader, TextureInfo, texels};
 use crate::moments::{Covariance, Moments};
-use crate::roughness::Lobe;
+use crate::roughness::Anisotropy;
 use crate::row::RowView;
 use crate::shading::Wanted;
 use crate::slope::Slope;
@@ -51,7 +51,7 @@ impl LayoutRules for Clean {
         Box::new(move |texel: &[f32]| decode(units, texel))
     }
 
-    fn texel_reader(&self, _: Wanted, _: Lobe) -> Option<&'static TexelReader> {
+    fn texel_reader(&self, _: Wanted, _: Anisotropy) -> Option<&'static TexelReader> {
         Some(&texels::clean::MOMENTS)
     }
 

@@ -63,14 +63,14 @@ impl Affine {
 pub(crate) struct Units {
     sample_type: SampleType,
     scale: f32,
-    variance_scale: f32,
+    spread_scale: f32,
     normal_range: NormalRange,
 }
 
 impl Units {
     pub fn new(info: &TextureInfo, sample_type: SampleType) -> Self {
-        let TextureInfo { scale, variance_scale, normal_range, .. } = *info;
-        Self { sample_type, scale, variance_scale, normal_range }
+        let TextureInfo { scale, spread_scale, normal_range, .. } = *info;
+        Self { sample_type, scale, spread_scale, normal_range }
     }
 
     fn unsigned(self, full: f32) -> Affine {
@@ -101,14 +101,14 @@ impl Units {
         self.unsigned(2.0 * self.scale * self.scale)
     }
 
-    /// A variance or a standard deviation, over 0 ..= variance_scale.
-    pub fn variance(self) -> Affine {
-        self.unsigned(self.variance_scale)
+    /// A variance or a standard deviation, over 0 ..= spread_scale.
+    pub fn spread(self) -> Affine {
+        self.unsigned(self.spread_scale)
     }
 
-    /// A signed entry of a covariance's factor, over -variance_scale ..= variance_scale.
-    pub fn signed_variance(self) -> Affine {
-        self.signed(self.variance_scale)
+    /// A signed entry of a covariance's factor, over -spread_scale ..= spread_scale.
+    pub fn signed_spread(self) -> Affine {
+        self.signed(self.spread_scale)
     }
 
     /// A component of a unit vector.

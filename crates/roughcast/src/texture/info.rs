@@ -46,8 +46,9 @@ pub struct TextureInfo {
     pub part: Part,
     /// Slopes are stored over `-scale ..= scale`, second moments over `scale^2`. One in float files, which hold values as they are.
     pub scale: f32,
-    /// Full scale of a stored variance, or of a stored standard deviation for Schilling's layouts. One in float files.
-    pub variance_scale: f32,
+    /// What a stored 1 stands for in the channels that hold the spread of slopes: a variance, in Schilling's layouts a standard
+    /// deviation. One in float files. Their key is `roughcast.variance-scale`.
+    pub spread_scale: f32,
     /// Whether base roughness is in the second moments.
     pub base: Base,
     /// Slope variance of the base roughness per axis, `alpha^2 / 2`; 0 without one, NaN where it varies over the map.
@@ -107,7 +108,7 @@ pub enum InfoError {
 const LAYOUT: &str = "roughcast.layout";
 const PART: &str = "roughcast.part";
 const SCALE: &str = "roughcast.scale";
-const VARIANCE_SCALE: &str = "roughcast.variance-scale";
+const SPREAD_SCALE: &str = "roughcast.variance-scale";
 const BASE: &str = "roughcast.base";
 const BASE_VARIANCE: &str = "roughcast.base-variance";
 const BRDF: &str = "roughcast.brdf";
@@ -131,7 +132,7 @@ impl TextureInfo {
             layout,
             part,
             scale: 1.0,
-            variance_scale: 1.0,
+            spread_scale: 1.0,
             base: Base::None,
             base_variance: 0.0,
             brdf: Brdf::Ggx,
@@ -162,7 +163,7 @@ impl TextureInfo {
             (LAYOUT, self.layout.name().to_owned()),
             (PART, self.part.name().to_owned()),
             (SCALE, self.scale.to_string()),
-            (VARIANCE_SCALE, self.variance_scale.to_string()),
+            (SPREAD_SCALE, self.spread_scale.to_string()),
             (BASE, self.base.name().to_owned()),
             (BASE_VARIANCE, self.base_variance.to_string()),
             (BRDF, self.brdf.name().to_owned()),
@@ -216,7 +217,7 @@ impl TextureInfo {
             layout,
             part,
             scale: value(pairs, SCALE)?,
-            variance_scale: value(pairs, VARIANCE_SCALE)?,
+            spread_scale: value(pairs, SPREAD_SCALE)?,
             base: value(pairs, BASE)?,
             base_variance: value(pairs, BASE_VARIANCE)?,
             brdf: value(pairs, BRDF)?,
@@ -259,7 +260,7 @@ impl TextureInfo {
                 value: self.roughness_texture.to_string(),
             });
         }
-        for (key, value) in [(SCALE, self.scale), (VARIANCE_SCALE, self.variance_scale)] {
+        for (key, value) in [(SCALE, self.scale), (SPREAD_SCALE, self.spread_scale)] {
             if !(value.is_finite() && value > 0.0) {
                 return Err(InfoError::Invalid { key, value: value.to_string() });
             }

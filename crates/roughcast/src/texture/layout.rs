@@ -7,7 +7,7 @@ use super::{
 };
 use crate::SampleType;
 use crate::named::named_enum;
-use crate::roughness::Lobe;
+use crate::roughness::Anisotropy;
 use crate::shading::Wanted;
 
 named_enum! {
@@ -89,8 +89,8 @@ impl Layout {
 
     /// How a renderer reads this layout's textures for what it wants; `None` for layouts with more channels than a sampler returns.
     /// `lobe` tells whether a material has an anisotropy texture; other layouts do not care.
-    pub fn texel_reader(self, wanted: Wanted, lobe: Lobe) -> Option<&'static TexelReader> {
-        self.rules().texel_reader(wanted, lobe)
+    pub fn texel_reader(self, wanted: Wanted, anisotropy: Anisotropy) -> Option<&'static TexelReader> {
+        self.rules().texel_reader(wanted, anisotropy)
     }
 
     /// The most channels that one texture of the layout has.
@@ -128,8 +128,8 @@ impl Layout {
     }
 
     /// Whether texels of this type hold variances or standard deviations over
-    /// [`TextureInfo::variance_scale`].
-    pub fn uses_variance_scale(self, sample_type: SampleType) -> bool {
+    /// [`TextureInfo::spread_scale`].
+    pub fn uses_spread_scale(self, sample_type: SampleType) -> bool {
         self.stores_variance() && !sample_type.is_float()
     }
 }

@@ -21,7 +21,7 @@ use super::decode::{Files, TexelDecoder};
 use super::rules::{BlockCompression, LayoutRules, Storage, Stores};
 use super::{TexelReader, TextureInfo, texels};
 use crate::moments::Moments;
-use crate::roughness::Lobe;
+use crate::roughness::Anisotropy;
 use crate::row::{Extra, RowView};
 use crate::shading::Wanted;
 use crate::slope::Slope;
@@ -63,7 +63,7 @@ impl LayoutRules for Lean {
         Box::new(move |texel: &[f32]| decode(units, texel))
     }
 
-    fn texel_reader(&self, wanted: Wanted, _: Lobe) -> Option<&'static TexelReader> {
+    fn texel_reader(&self, wanted: Wanted, _: Anisotropy) -> Option<&'static TexelReader> {
         Some(match wanted {
             Wanted::Normal => &texels::lean::NORMAL,
             Wanted::Distribution => &texels::lean::MOMENTS,

@@ -2,7 +2,7 @@
 
 use super::{Layout, TextureInfo};
 use crate::roughness::Base;
-use crate::shading::{FootprintModel, LobeOptions, Masking, Shading};
+use crate::shading::{FootprintModel, Masking, Shading, ShadingOptions};
 
 impl Shading {
     /// The layout that the model is made for. It shades the distributions of any other as well.
@@ -17,7 +17,7 @@ impl Shading {
     }
 }
 
-impl LobeOptions {
+impl ShadingOptions {
     /// The same options for textures with this meaning. Maps that hold a base roughness, or a factor of one, bring its
     /// exponent with them. Where it varies over the map it is no longer told from the bumps: then all of the map's variance
     /// masks, and none is taken off for the footprint, which could be the base's.

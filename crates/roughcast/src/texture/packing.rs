@@ -55,8 +55,8 @@ impl Packing {
             second: inverse(units.second()),
             mixed: inverse(units.mixed()),
             trace: inverse(units.trace()),
-            spread: inverse(units.variance()),
-            signed_spread: inverse(units.signed_variance()),
+            spread: inverse(units.spread()),
+            signed_spread: inverse(units.signed_spread()),
             unit: inverse(units.unit()),
             base: info.base,
             roughness_stored: info.roughness_stored,
@@ -99,7 +99,7 @@ mod tests {
     const ROUNDING: f32 = 2.0 * f32::EPSILON;
 
     fn info() -> TextureInfo {
-        TextureInfo { scale: 1.37, variance_scale: 0.021, ..TextureInfo::new(Layout::Lean, Part::Whole) }
+        TextureInfo { scale: 1.37, spread_scale: 0.021, ..TextureInfo::new(Layout::Lean, Part::Whole) }
     }
 
     #[test]
@@ -112,8 +112,8 @@ mod tests {
             (units.second(), packing.second, scale * scale),
             (units.mixed(), packing.mixed, scale * scale),
             (units.trace(), packing.trace, 2.0 * scale * scale),
-            (units.variance(), packing.spread, info().variance_scale),
-            (units.signed_variance(), packing.signed_spread, info().variance_scale),
+            (units.spread(), packing.spread, info().spread_scale),
+            (units.signed_spread(), packing.signed_spread, info().spread_scale),
             (units.unit(), packing.unit, 1.0),
         ];
         for (affine, pair, full) in pairs {

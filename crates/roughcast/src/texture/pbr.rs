@@ -30,7 +30,7 @@ use crate::SampleType;
 use crate::convention::NormalRange;
 use crate::moments::{Covariance, Moments};
 use crate::named::named_enum;
-use crate::roughness::Lobe;
+use crate::roughness::Anisotropy;
 use crate::roughness::{RoughnessStored, RoughnessTexture, stored_from_variance, variance_from_stored};
 use crate::row::{Extra, RowView};
 use crate::shading::Wanted;
@@ -183,11 +183,11 @@ impl LayoutRules for Pbr {
         decoder(files)
     }
 
-    fn texel_reader(&self, wanted: Wanted, lobe: Lobe) -> Option<&'static TexelReader> {
-        Some(match (wanted, lobe) {
+    fn texel_reader(&self, wanted: Wanted, anisotropy: Anisotropy) -> Option<&'static TexelReader> {
+        Some(match (wanted, anisotropy) {
             (Wanted::Normal, _) => &texels::pbr::NORMAL,
-            (Wanted::Distribution, Lobe::Isotropic) => &texels::pbr::MOMENTS,
-            (Wanted::Distribution, Lobe::Anisotropic) => &texels::pbr::ANISOTROPIC_MOMENTS,
+            (Wanted::Distribution, Anisotropy::Isotropic) => &texels::pbr::MOMENTS,
+            (Wanted::Distribution, Anisotropy::Anisotropic) => &texels::pbr::ANISOTROPIC_MOMENTS,
         })
     }
 

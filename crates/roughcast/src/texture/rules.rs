@@ -7,7 +7,7 @@ use super::decode::{Files, TexelDecoder};
 use super::pbr::PbrOptions;
 use super::{Part, TexelReader, TextureArray, TextureInfo};
 use crate::SampleType;
-use crate::roughness::Lobe;
+use crate::roughness::Anisotropy;
 use crate::row::Extra;
 use crate::shading::Wanted;
 
@@ -19,7 +19,7 @@ pub(crate) const SMALLEST_SCALE: f32 = 1.0 / 1024.0;
 pub(crate) enum Stores {
     /// Mean slopes over `-scale ..= scale` and raw second moments over `scale^2`.
     RawMoments,
-    /// Mean slopes over `-scale ..= scale`, and variances or standard deviations over `variance_scale`.
+    /// Mean slopes over `-scale ..= scale`, and variances or standard deviations over `spread_scale`.
     Variances,
     /// Unit normals and roughness, whose ranges do not depend on the map.
     Normals,
@@ -154,7 +154,7 @@ pub(crate) trait LayoutRules: Sync {
     }
 
     /// The range of stored variances or standard deviations, given the largest variance along an axis of any level.
-    fn variance_scale(&self, largest_variance: f32) -> f32 {
+    fn spread_scale(&self, largest_variance: f32) -> f32 {
         let _ = largest_variance;
         1.0
     }
@@ -172,10 +172,10 @@ pub(crate) trait LayoutRules: Sync {
     /// normal, which has two.
     fn decoder(&self, files: &Files<'_>) -> TexelDecoder;
 
-    /// How a renderer reads filtered texels of this layout for what it wants. `lobe` tells whether a material has an anisotropy texture.
+    /// How a renderer reads filtered texels of this layout for what it wants. `anisotropy` tells whether a material has an anisotropy texture.
     /// `None` if a texture has more channels than a sampler returns.
-    fn texel_reader(&self, wanted: Wanted, lobe: Lobe) -> Option<&'static TexelReader> {
-        let _ = (wanted, lobe);
+    fn texel_reader(&self, wanted: Wanted, anisotropy: Anisotropy) -> Option<&'static TexelReader> {
+        let _ = (wanted, anisotropy);
         None
     }
 

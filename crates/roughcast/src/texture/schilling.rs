@@ -21,7 +21,7 @@ use super::decode::{Files, TexelDecoder};
 use super::rules::{LayoutRules, SMALLEST_SCALE, Storage, Stores};
 use super::{TexelReader, TextureInfo, texels};
 use crate::moments::{Covariance, Moments};
-use crate::roughness::Lobe;
+use crate::roughness::Anisotropy;
 use crate::row::{Extra, RowView};
 use crate::shading::Wanted;
 use crate::slope::Slope;
@@ -49,7 +49,7 @@ impl LayoutRules for Schilling {
         &NORMAL
     }
 
-    fn variance_scale(&self, largest_variance: f32) -> f32 {
+    fn spread_scale(&self, largest_variance: f32) -> f32 {
         largest_variance.sqrt().max(SMALLEST_SCALE)
     }
 
@@ -62,7 +62,7 @@ impl LayoutRules for Schilling {
         Box::new(move |texel: &[f32]| decode(units, texel))
     }
 
-    fn texel_reader(&self, wanted: Wanted, _: Lobe) -> Option<&'static TexelReader> {
+    fn texel_reader(&self, wanted: Wanted, _: Anisotropy) -> Option<&'static TexelReader> {
         Some(match wanted {
             Wanted::Normal => &texels::schilling::NORMAL,
             Wanted::Distribution => &texels::schilling::MOMENTS,
@@ -93,7 +93,7 @@ impl LayoutRules for SchillingIsotropic {
         ISOTROPIC_LAYERS
     }
 
-    fn variance_scale(&self, largest_variance: f32) -> f32 {
+    fn spread_scale(&self, largest_variance: f32) -> f32 {
         // The larger eigenvalue can reach the sum of both variances.
         (2.0 * largest_variance).sqrt().max(SMALLEST_SCALE)
     }
@@ -107,7 +107,7 @@ impl LayoutRules for SchillingIsotropic {
         Box::new(move |texel: &[f32]| decode_isotropic(units, texel))
     }
 
-    fn texel_reader(&self, _: Wanted, _: Lobe) -> Option<&'static TexelReader> {
+    fn texel_reader(&self, _: Wanted, _: Anisotropy) -> Option<&'static TexelReader> {
         Some(&texels::schilling::ISOTROPIC_MOMENTS)
     }
 
@@ -156,7 +156,7 @@ impl RowEncoder for Encoder {
     fn encode(&self, row: RowView<'_>, planes: &mut [Vec<f32>]) {
         let [nx, ny, nz, d2, bx, by, d1, d3] = planes else { unreachable!("Schilling has eight channels") };
         let (unit, slope) = (self.0.unit(), self.0.slope());
-        let (deviation, signed) = (self.0.variance(), self.0.signed_variance());
+        let (deviation, signed) = (self.0.spread(), self.0.signed_spread());
         map1(nx, row.extras[0], |n| unit.store(n));
         map1(ny, row.extras[1], |n| unit.store(n));
         nz.copy_from_slice(row.extras[2]);
@@ -172,10 +172,10 @@ impl RowEncoder for Encoder {
 }
 
 fn decode(units: Units, texel: &[f32]) -> Moments {
-    let (slope, deviation) = (units.slope(), units.variance());
+    let (slope, deviation) = (units.slope(), units.spread());
     let factor = Factor {
         d1: deviation.load(texel[6]),
-        d2: units.signed_variance().load(texel[3]),
+        d2: units.signed_spread().load(texel[3]),
         d3: deviation.load(texel[7]),
     };
     let mean = Slope { x: slope.load(texel[4]), y: slope.load(texel[5]) };
@@ -184,8 +184,8 @@ fn decode(units: Units, texel: &[f32]) -> Moments {
 
 fn bounds(units: Units, peaks: &Peaks) -> Bounds {
     let deviation = peaks.variance.sqrt();
-    let unsigned = units.error(units.variance(), deviation);
-    let signed = units.error(units.signed_variance(), deviation);
+    let unsigned = units.error(units.spread(), deviation);
+    let signed = units.error(units.signed_spread(), deviation);
     // (d + e)² - d² for each square of a sum; xx has two of them, and |(d1, d2)| is the standard deviation itself.
     let length = unsigned.hypot(signed);
     let variance = 2.0 * deviation * length + length * length;
@@ -204,7 +204,7 @@ struct IsotropicEncoder(Units);
 impl RowEncoder for IsotropicEncoder {
     fn encode(&self, row: RowView<'_>, planes: &mut [Vec<f32>]) {
         let [bx, by, sigma, one] = planes else { unreachable!("the isotropic layout has four channels") };
-        let (slope, deviation) = (self.0.slope(), self.0.variance());
+        let (slope, deviation) = (self.0.slope(), self.0.spread());
         map1(bx, row.bx, |x| slope.store(x));
         map1(by, row.by, |y| slope.store(y));
         for (i, out) in sigma.iter_mut().enumerate() {
@@ -217,7 +217,7 @@ impl RowEncoder for IsotropicEncoder {
 
 fn decode_isotropic(units: Units, texel: &[f32]) -> Moments {
     let slope = units.slope();
-    let sigma = units.variance().load(texel[2]);
+    let sigma = units.spread().load(texel[2]);
     let mean = Slope { x: slope.load(texel[0]), y: slope.load(texel[1]) };
     Moments::from_mean_and_covariance(mean, Covariance::isotropic(sigma * sigma))
 }
@@ -225,7 +225,7 @@ fn decode_isotropic(units: Units, texel: &[f32]) -> Moments {
 fn isotropic_bounds(units: Units, peaks: &Peaks) -> Bounds {
     // The larger eigenvalue is at most the sum of both variances.
     let sigma = (2.0 * peaks.variance).sqrt();
-    let error = units.error(units.variance(), sigma);
+    let error = units.error(units.spread(), sigma);
     let variance = 2.0 * sigma * error + error * error;
     Bounds { slope: units.error(units.slope(), peaks.component), variance, eigenvalue: variance }
 }

@@ -69,7 +69,8 @@ mod tests {
     use crate::{Bake, BakeOptions, BaseRoughness, Image, SampleType, SourceOptions};
 
     fn set_of(variance: f32) -> Vec<u64> {
-        let options = BakeOptions { layout: Layout::Pbr, bits: crate::SampleType::U8, ..Default::default() };
+        let options =
+            BakeOptions { layout: Layout::Pbr, sample_type: crate::SampleType::U8, ..Default::default() };
         let map = Image::zeros(8, 8, 3, SampleType::F32);
         let base = Some(BaseRoughness::Variance(variance));
         let source = SourceOptions { range: crate::NormalRange::Signed, ..Default::default() };

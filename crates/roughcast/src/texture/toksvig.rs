@@ -22,7 +22,7 @@ use super::rules::{BaseRole, BlockCompression, LayoutRules, Storage, Stores};
 use super::{Part, PbrOptions, TexelReader, TextureInfo, texels};
 use crate::SampleType;
 use crate::moments::{Covariance, Moments};
-use crate::roughness::Lobe;
+use crate::roughness::Anisotropy;
 use crate::row::{Extra, RowView};
 use crate::shading::Wanted;
 use crate::slope::{Normal, slope_from_normal};
@@ -103,7 +103,7 @@ impl LayoutRules for Toksvig {
         }
     }
 
-    fn texel_reader(&self, _: Wanted, _: Lobe) -> Option<&'static TexelReader> {
+    fn texel_reader(&self, _: Wanted, _: Anisotropy) -> Option<&'static TexelReader> {
         Some(&texels::toksvig::MOMENTS)
     }
 

@@ -15,7 +15,7 @@ use super::decode::{Files, TexelDecoder};
 use super::rules::{BlockCompression, LayoutRules, SMALLEST_SCALE, Storage, Stores};
 use super::{Part, PbrOptions, TexelReader, TextureInfo, texels};
 use crate::moments::{Covariance, Moments};
-use crate::roughness::Lobe;
+use crate::roughness::Anisotropy;
 use crate::row::RowView;
 use crate::shading::Wanted;
 use crate::slope::Slope;
@@ -54,7 +54,7 @@ impl LayoutRules for Variance {
         if info.part == Part::Split { SPLIT_LAYERS } else { LAYERS }
     }
 
-    fn variance_scale(&self, largest_variance: f32) -> f32 {
+    fn spread_scale(&self, largest_variance: f32) -> f32 {
         largest_variance.max(SMALLEST_SCALE * SMALLEST_SCALE)
     }
 
@@ -67,13 +67,13 @@ impl LayoutRules for Variance {
         Box::new(move |texel: &[f32]| decode(units, texel))
     }
 
-    fn texel_reader(&self, _: Wanted, _: Lobe) -> Option<&'static TexelReader> {
+    fn texel_reader(&self, _: Wanted, _: Anisotropy) -> Option<&'static TexelReader> {
         Some(&texels::variance::MOMENTS)
     }
 
     fn bounds(&self, storage: &Storage<'_>, peaks: &Peaks) -> Bounds {
         let units = storage.units();
-        let variance = units.error(units.variance(), peaks.variance);
+        let variance = units.error(units.spread(), peaks.variance);
         Bounds { slope: units.error(units.slope(), peaks.component), variance, eigenvalue: variance }
     }
 }
@@ -90,7 +90,7 @@ struct Encoder(Units);
 impl RowEncoder for Encoder {
     fn encode(&self, row: RowView<'_>, planes: &mut [Vec<f32>]) {
         let [bx, by, xx, yy] = planes else { unreachable!("the variance layout has four channels") };
-        let (slope, variance) = (self.0.slope(), self.0.variance());
+        let (slope, variance) = (self.0.slope(), self.0.spread());
         map1(bx, row.bx, |x| slope.store(x));
         map1(by, row.by, |y| slope.store(y));
         map1(xx, row.xx, |v| variance.store(v));
@@ -99,7 +99,7 @@ impl RowEncoder for Encoder {
 }
 
 fn decode(units: Units, texel: &[f32]) -> Moments {
-    let (slope, variance) = (units.slope(), units.variance());
+    let (slope, variance) = (units.slope(), units.spread());
     let mean = Slope { x: slope.load(texel[0]), y: slope.load(texel[1]) };
     let covariance = Covariance { xx: variance.load(texel[2]), yy: variance.load(texel[3]), xy: 0.0 };
     Moments::from_mean_and_covariance(mean, covariance)

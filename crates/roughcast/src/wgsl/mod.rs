@@ -135,7 +135,7 @@ pub fn map_words(code: &str, new: impl Fn(&str, &str) -> Option<String>) -> Stri
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shading::{LobeOptions, Shading};
+    use crate::shading::{Shading, ShadingOptions};
     use crate::texture::{Base, Packing, RoughnessStored};
 
     #[test]
@@ -154,7 +154,8 @@ mod tests {
     #[test]
     fn a_library_contains_each_module_once() {
         let text = library(&["lean", "clean", "lean"]).expect("these modules exist");
-        for once in ["fn lean_moments(", "fn clean_moments(", "fn gaussian_lobe(", "struct LobeOptions {"] {
+        for once in ["fn lean_moments(", "fn clean_moments(", "fn gaussian_lobe(", "struct ShadingOptions {"]
+        {
             assert_eq!(text.matches(once).count(), 1, "{once}");
         }
         assert!(!text.contains("ggx"));
@@ -168,8 +169,8 @@ mod tests {
             let (_, rest) = source.split_once(&format!("const {name}: u32 = ")).expect(name);
             rest.split_once('u').expect("a number ends with u").0.parse::<u32>().expect(name)
         };
-        let words = |options: LobeOptions| options.to_words();
-        let default = LobeOptions::default();
+        let words = |options: ShadingOptions| options.to_words();
+        let default = ShadingOptions::default();
         for (stored, name) in RoughnessStored::ALL.iter().zip([
             "STORED_PERCEPTUAL",
             "STORED_ALPHA",
@@ -180,28 +181,28 @@ mod tests {
             let packing = Packing { roughness_stored: *stored, ..Packing::IDENTITY };
             assert_eq!(packing.to_words()[15], number(name));
         }
-        use crate::shading::{BaseLobe, FootprintModel, Form, Masking, Repair};
+        use crate::shading::{BaseFrame, FootprintModel, Form, Masking, Repair};
         for (form, name) in Form::ALL.iter().copied().zip(["FORM_PHYSICAL", "FORM_NORMALISED", "FORM_PAPER"])
         {
-            assert_eq!(words(LobeOptions { form, ..default })[1], number(name));
+            assert_eq!(words(ShadingOptions { form, ..default })[1], number(name));
         }
-        for (base, name) in [(BaseLobe::Plane, "BASE_PLANE"), (BaseLobe::Facet, "BASE_FACET")] {
-            assert_eq!(words(LobeOptions { base, ..default })[2], number(name));
+        for (base_frame, name) in [(BaseFrame::Plane, "BASE_PLANE"), (BaseFrame::Facet, "BASE_FACET")] {
+            assert_eq!(words(ShadingOptions { base_frame, ..default })[2], number(name));
         }
         for (repair, name) in [(Repair::Clamp, "REPAIR_CLAMP"), (Repair::Published, "REPAIR_PUBLISHED")] {
-            assert_eq!(words(LobeOptions { repair, ..default })[3], number(name));
+            assert_eq!(words(ShadingOptions { repair, ..default })[3], number(name));
         }
         for (base, name) in [(Base::None, "MAPS_WITHOUT_BASE"), (Base::Baked, "MAPS_WITH_BASE")] {
             assert_eq!(Packing { base, ..Packing::IDENTITY }.to_words()[14], number(name));
         }
         for (masking, name) in [(Masking::Base, "MASKING_BASE"), (Masking::Full, "MASKING_FULL")] {
-            assert_eq!(words(LobeOptions { masking, ..default })[4], number(name));
+            assert_eq!(words(ShadingOptions { masking, ..default })[4], number(name));
         }
         for (footprint, name) in [
             (FootprintModel::Corrected, "FOOTPRINT_CORRECTED"),
             (FootprintModel::Published, "FOOTPRINT_PUBLISHED"),
         ] {
-            assert_eq!(words(LobeOptions { footprint, ..default })[5], number(name));
+            assert_eq!(words(ShadingOptions { footprint, ..default })[5], number(name));
         }
         // A caller that leaves all choices zero has the defaults.
         assert_eq!(words(default)[1..], [0; 7]);

@@ -36,7 +36,7 @@ pub fn baked_with(
 
 /// Options for a layout and a sample type, everything else as by default.
 pub fn options(layout: roughcast::texture::Layout, bits: SampleType) -> BakeOptions {
-    BakeOptions { layout, bits, ..BakeOptions::default() }
+    BakeOptions { layout, sample_type: bits, ..BakeOptions::default() }
 }
 
 /// Options for the moments themselves in single floats.

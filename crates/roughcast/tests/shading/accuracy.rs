@@ -1,7 +1,7 @@
 //! Every lobe against its formula in f64, on the same single-precision inputs.
 
 use roughcast::shading::{
-    BaseLobe, FootprintRatio, Form, LobeOptions, Shading, Surface, phong_lobe, phong_surface,
+    BaseFrame, FootprintRatio, Form, Shading, ShadingOptions, Surface, phong_lobe, phong_surface,
 };
 use roughcast::texture::{Base, ISOTROPIC, Packing, RoughnessStored, normal_moments};
 use roughcast::{Covariance, Moments, Slope};
@@ -34,8 +34,8 @@ fn draw_slope(random: &mut Random) -> Slope {
     Slope { x: random.between(-1.5, 1.5) as f32, y: random.between(-1.5, 1.5) as f32 }
 }
 
-fn options(specular_power: f32, form: Form) -> LobeOptions {
-    LobeOptions { specular_power, form, ..LobeOptions::default() }
+fn options(specular_power: f32, form: Form) -> ShadingOptions {
+    ShadingOptions { specular_power, form, ..ShadingOptions::default() }
 }
 
 /// The largest relative difference over many draws, where the lobe is not far below its peak. At least a hundred draws
@@ -55,7 +55,7 @@ fn largest_difference(mut draw: impl FnMut(&mut Random) -> Option<(f64, f64, f64
 }
 
 /// Of a base lobe against an oracle, which takes the slope and the half vector.
-fn difference_of(shading: Shading, options: LobeOptions, oracle: impl Fn([f64; 2], Vector) -> f64) -> f64 {
+fn difference_of(shading: Shading, options: ShadingOptions, oracle: impl Fn([f64; 2], Vector) -> f64) -> f64 {
     largest_difference(|random| {
         let slope = draw_slope(random);
         let b = [f64::from(slope.x), f64::from(slope.y)];
@@ -110,7 +110,7 @@ fn base_lobes() {
 #[test]
 fn the_facets_base() {
     for s in POWERS {
-        let options = LobeOptions { base: BaseLobe::Facet, ..options(s, Form::Normalised) };
+        let options = ShadingOptions { base_frame: BaseFrame::Facet, ..options(s, Form::Normalised) };
         let s = f64::from(s);
         let difference = difference_of(Shading::OffCentre, options, |[x, y], h| {
             let across = (1.0 + x * x + y * y) / s;

@@ -4,13 +4,14 @@ use std::f64::consts::TAU;
 
 use roughcast::Slope;
 use roughcast::shading::{
-    BaseLobe, FootprintRatio, Form, LobeOptions, ModelSurface, Shading, Surface, Wanted, beckmann_surface,
-    blinn_phong_surface, gaussian_lobe, ggx_surface, mixture_surface, phong_surface, slope_gaussian,
+    BaseFrame, FootprintRatio, Form, ModelSurface, Shading, ShadingOptions, Surface, Wanted,
+    beckmann_surface, blinn_phong_surface, gaussian_lobe, ggx_surface, mixture_surface, phong_surface,
+    slope_gaussian,
 };
 use roughcast::texture::{
     Base, Layout, Packing, RoughnessStored, TextureInfo, layers_of, normal_moments, pbr_moments,
 };
-use roughcast::{Covariance, Distribution, Lobe, MAX_GAUSSIANS, WeightedGaussian};
+use roughcast::{Anisotropy, Covariance, Distribution, MAX_GAUSSIANS, WeightedGaussian};
 
 use super::oracle::reflected;
 use super::support::{Frame, Vector, narrow, surface_of_texels};
@@ -51,7 +52,7 @@ fn round(width: f64) -> [[f64; 2]; 2] {
 }
 
 /// The lobe where viewer and light both look along the half vector.
-fn along(surface: ModelSurface, options: LobeOptions) -> impl Fn(Vector) -> f64 {
+fn along(surface: ModelSurface, options: ShadingOptions) -> impl Fn(Vector) -> f64 {
     let surface = Surface { normal: [0.0, 0.0, 1.0], model: surface };
     move |h| f64::from(surface.lobe(narrow(h), narrow(h), &options))
 }
@@ -60,8 +61,8 @@ fn flat() -> Distribution {
     Distribution::of_slope(Slope::default())
 }
 
-fn options(specular_power: f32, form: Form) -> LobeOptions {
-    LobeOptions { specular_power, form, ..LobeOptions::default() }
+fn options(specular_power: f32, form: Form) -> ShadingOptions {
+    ShadingOptions { specular_power, form, ..ShadingOptions::default() }
 }
 
 fn is_one(integral: f64) -> bool {
@@ -101,10 +102,10 @@ fn gaussians_in_the_surface_frame() {
 
 #[test]
 fn off_centre_lobes_of_both_bases() {
-    for base in BaseLobe::ALL {
+    for base in BaseFrame::ALL {
         for slope in slopes() {
             for s in POWERS {
-                let options = LobeOptions { base: *base, ..options(s, Form::Normalised) };
+                let options = ShadingOptions { base_frame: *base, ..options(s, Form::Normalised) };
                 let surface = mixture_surface(&Distribution::of_slope(slope), &options);
                 let centre = [f64::from(slope.x), f64::from(slope.y)];
                 let covariance = surface.gaussians().next().expect("at least one").1.covariance;
@@ -213,9 +214,9 @@ fn the_papers_form_is_the_normalised_one_without_its_constants() {
     for shading in Shading::ALL {
         let surface = |form| shading.surface_of_slope(Slope { x: 0.3, y: -0.1 }, &options(300.0, form)).model;
         let value = |form| along(surface(form), options(300.0, form))(h);
-        let normal = surface_axis(shading.base_lobe());
+        let normal = surface_axis(shading.reference());
         let cosine = normal.iter().zip(h).map(|(n, h)| n * h).sum::<f64>();
-        let expected = match shading.base_lobe() {
+        let expected = match shading.reference() {
             Shading::Phong | Shading::BlinnPhong => TAU * 300.0 / 302.0,
             _ => TAU * cosine.powi(4),
         };
@@ -225,8 +226,8 @@ fn the_papers_form_is_the_normalised_one_without_its_constants() {
 }
 
 /// The axis of a lobe for the slope (0.3, -0.1).
-fn surface_axis(base_lobe: Shading) -> Vector {
-    match base_lobe {
+fn surface_axis(reference: Shading) -> Vector {
+    match reference {
         Shading::OffCentre => [0.0, 0.0, 1.0],
         _ => Frame::SURFACE.direction([0.3, -0.1]),
     }
@@ -252,8 +253,8 @@ fn the_integral_detects_unnormalised_lobes() {
 fn every_reader_samples_textures_of_its_layout() {
     let mut readers = 0;
     for layout in Layout::ALL.iter().copied() {
-        for (wanted, lobe) in [Wanted::Normal, Wanted::Distribution].into_iter().zip(Lobe::ALL) {
-            let Some(reader) = layout.texel_reader(wanted, *lobe) else { continue };
+        for (wanted, anisotropy) in [Wanted::Normal, Wanted::Distribution].into_iter().zip(Anisotropy::ALL) {
+            let Some(reader) = layout.texel_reader(wanted, *anisotropy) else { continue };
             readers += 1;
             assert!(!reader.inputs.is_empty());
             for input in reader.inputs {
@@ -267,7 +268,10 @@ fn every_reader_samples_textures_of_its_layout() {
     assert!(readers > 10, "{readers}");
     // Every model can shade the layout that it is made for.
     for shading in Shading::ALL {
-        assert!(shading.layout().texel_reader(shading.wanted(), Lobe::Isotropic).is_some(), "{shading}");
+        assert!(
+            shading.layout().texel_reader(shading.wanted(), Anisotropy::Isotropic).is_some(),
+            "{shading}"
+        );
     }
 }
 

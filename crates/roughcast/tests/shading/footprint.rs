@@ -1,7 +1,7 @@
 //! Footprint correction: what a pixel sees of the variance under a texture filter.
 
 use roughcast::shading::{
-    FilterVariances, FootprintModel, FootprintRatio, LobeOptions, ModelSurface, PixelPart, Shading,
+    FilterVariances, FootprintModel, FootprintRatio, ModelSurface, PixelPart, Shading, ShadingOptions,
     footprint_axes, footprint_ratio, hardware_variances, level_variances,
 };
 use roughcast::texture::{Base, Packing};
@@ -117,7 +117,7 @@ fn degenerate_footprints_give_ratios() {
                 for taps in [1.0, 16.0] {
                     let filter = hardware_variances(&axes, taps, 0.0);
                     for mean in [[0.0, 0.0], [0.3, -1e-9], [100.0, 50.0]] {
-                        let options = LobeOptions::default();
+                        let options = ShadingOptions::default();
                         let ratio = footprint_ratio(&axes, &filter, mean, [mean[1], mean[0]], &options);
                         assert!((0.0..=1.0).contains(&ratio.magnified), "{ax} {ay} {by}: {ratio:?}");
                         for part in [ratio.moments, ratio.variances] {
@@ -138,7 +138,7 @@ fn degenerate_footprints_give_ratios() {
 }
 
 /// Of the mean over places of the trace that LEAN finds in a ramp of slopes at level 0, corrected.
-fn corrected_trace_of_a_ramp(gradient: [f32; 2], texels: f32, options: &LobeOptions) -> f64 {
+fn corrected_trace_of_a_ramp(gradient: [f32; 2], texels: f32, options: &ShadingOptions) -> f64 {
     const PLACES: u32 = 64;
     let axes = footprint_axes([texels, 0.0], [0.0, texels]);
     let mean_dx = gradient.map(|g| g * texels);
@@ -163,9 +163,10 @@ fn a_ramp_keeps_the_variance_of_the_pixel() {
             let squared = f64::from(gradient[0] * gradient[0] + gradient[1] * gradient[1]);
             // The pixel's Gaussian has a standard deviation of half a pixel.
             let wanted = squared * f64::from(0.5 * texels).powi(2);
-            let found = corrected_trace_of_a_ramp(gradient, texels, &LobeOptions::default());
+            let found = corrected_trace_of_a_ramp(gradient, texels, &ShadingOptions::default());
             assert!((found / wanted - 1.0).abs() < 1e-3, "{texels}: {found} {wanted}");
-            let published = LobeOptions { footprint: FootprintModel::Published, ..LobeOptions::default() };
+            let published =
+                ShadingOptions { footprint: FootprintModel::Published, ..ShadingOptions::default() };
             let found = corrected_trace_of_a_ramp(gradient, texels, &published);
             assert!((found / (squared / 6.0) - 1.0).abs() < 1e-3 && found > 2.0 * wanted, "{found} {wanted}");
         }
@@ -177,7 +178,7 @@ fn pixels_that_cover_whole_texels_are_unchanged() {
     for level in 0..6 {
         let texels = 2.0_f32.powi(level);
         let axes = footprint_axes([texels, 0.0], [0.0, texels]);
-        let options = LobeOptions::default();
+        let options = ShadingOptions::default();
         let filter = hardware_variances(&axes, 16.0, 0.0);
         let ratio = footprint_ratio(&axes, &filter, [0.2, 0.1], [-0.1, 0.3], &options);
         assert_eq!((ratio.moments.ratio, ratio.variances.ratio), (1.0, 1.0), "level {level}");
@@ -190,7 +191,7 @@ fn the_correction_fades_out_on_coarser_levels() {
     let ratio = |long: f32| {
         let axes = footprint_axes([long, 0.0], [0.0, 0.25 * long]);
         let filter = hardware_variances(&axes, 1.0, 0.0);
-        footprint_ratio(&axes, &filter, [0.2, 0.0], [0.1, 0.2], &LobeOptions::default()).moments.ratio
+        footprint_ratio(&axes, &filter, [0.2, 0.0], [0.1, 0.2], &ShadingOptions::default()).moments.ratio
     };
     let (level_1, between, level_2) = (ratio(2.0), ratio(3.0), ratio(4.0));
     assert!(level_1 < 0.6 && level_1 < between && between < 1.0, "{level_1} {between}");
@@ -215,7 +216,7 @@ fn a_magnified_texel_has_only_the_linear_change() {
     let gradient = [[0.5_f64, -0.2], [0.1, 0.3]];
     let change = |d: [f32; 2]| gradient.map(|[gx, gy]| (gx * f64::from(d[0]) + gy * f64::from(d[1])) as f32);
     let axes = footprint_axes(dx, dy);
-    let options = LobeOptions::default();
+    let options = ShadingOptions::default();
     let ratio = footprint_ratio(&axes, &level_variances(0.0), change(dx), change(dy), &options);
     assert!(ratio.magnified > 0.99, "{ratio:?}");
     // A quarter of `G J Jᵀ Gᵀ`: the pixel's Gaussian as the slopes have it.
@@ -242,7 +243,7 @@ fn shaded(
     sigma: Covariance,
     ratio: &FootprintRatio,
     base: Base,
-    options: &LobeOptions,
+    options: &ShadingOptions,
 ) -> Covariance {
     let mean = Slope { x: 0.3, y: -0.2 };
     let moments = Moments::from_mean_and_covariance(mean, sigma);
@@ -264,7 +265,7 @@ fn models_of_moments_shade_the_part_of_the_pixel_and_the_whole_base() {
     let ratio = FootprintRatio { moments: part(0.25), variances: part(0.5), ..FootprintRatio::WHOLE };
     let (s, base) = (100.0, 0.01);
     for (shading, kept) in [(Shading::Lean, 0.25), (Shading::Clean, 0.25), (Shading::Variance, 0.5)] {
-        let options = LobeOptions { specular_power: s, ..LobeOptions::default() };
+        let options = ShadingOptions { specular_power: s, ..ShadingOptions::default() };
         let found = shaded(shading, sigma, &ratio, Base::None, &options);
         assert!(close(found.xx, kept * 0.04 + base) && close(found.yy, kept * 0.04 + base), "{found:?}");
         let whole = shaded(shading, sigma, &FootprintRatio::WHOLE, Base::None, &options);

@@ -1,6 +1,8 @@
 //! Models that must agree where one is a special case, or the limit, of another.
 
-use roughcast::shading::{BaseLobe, FootprintRatio, Form, LobeOptions, Shading, Surface, base_covariance};
+use roughcast::shading::{
+    BaseFrame, FootprintRatio, Form, Shading, ShadingOptions, Surface, base_covariance,
+};
 use roughcast::texture::Packing;
 use roughcast::{Covariance, Moments, Slope};
 
@@ -9,8 +11,8 @@ use super::support::{Frame, Random, dot, narrow, surface_of_texels};
 /// Single floats: a few roundings of the moments, `2^-23` each, over the smallest variance compared, 1e-4.
 const ROUNDING: f32 = 3e-3;
 
-fn options(specular_power: f32) -> LobeOptions {
-    LobeOptions { specular_power, form: Form::Normalised, ..LobeOptions::default() }
+fn options(specular_power: f32) -> ShadingOptions {
+    ShadingOptions { specular_power, form: Form::Normalised, ..ShadingOptions::default() }
 }
 
 fn lean_texels(moments: Moments) -> [[f32; 4]; 2] {
@@ -20,7 +22,7 @@ fn lean_texels(moments: Moments) -> [[f32; 4]; 2] {
 
 /// The largest relative difference of two surfaces' lobes over directions about the slope, where they are above a
 /// thousandth of their peak.
-fn difference(one: Surface, other: Surface, about: Slope, width: f64, options: &LobeOptions) -> f32 {
+fn difference(one: Surface, other: Surface, about: Slope, width: f64, options: &ShadingOptions) -> f32 {
     let centre = [f64::from(about.x), f64::from(about.y)];
     let at = |x: f64, y: f64| {
         let h = narrow(Frame::SURFACE.direction([centre[0] + x * width, centre[1] + y * width]));
@@ -38,8 +40,8 @@ fn difference(one: Surface, other: Surface, about: Slope, width: f64, options: &
 fn lean_at_the_finest_level_is_off_centre_beckmann() {
     let mut random = Random(3);
     for s in [8.0_f32, 256.0, 10_000.0] {
-        for base in BaseLobe::ALL.iter().copied() {
-            let options = LobeOptions { base, ..options(s) };
+        for base in BaseFrame::ALL.iter().copied() {
+            let options = ShadingOptions { base_frame: base, ..options(s) };
             for _ in 0..20 {
                 let slope =
                     Slope { x: random.between(-1.0, 1.0) as f32, y: random.between(-1.0, 1.0) as f32 };
@@ -158,12 +160,12 @@ fn the_base_of_a_facet_is_a_rotated_round_lobe() {
         };
         let (u, v) = (column([STEP, 0.0]), column([0.0, STEP]));
         let found = [u[0] * u[0] + v[0] * v[0], u[1] * u[1] + v[1] * v[1], u[0] * u[1] + v[0] * v[1]];
-        let facet = LobeOptions { base: BaseLobe::Facet, ..options(1.0) };
+        let facet = ShadingOptions { base_frame: BaseFrame::Facet, ..options(1.0) };
         let base = base_covariance(Slope { x: slope[0] as f32, y: slope[1] as f32 }, &facet);
         for (found, base) in found.into_iter().zip([base.xx, base.yy, base.xy]) {
             assert!((found - f64::from(base)).abs() < 1e-4, "{slope:?}: {found} {base}");
         }
-        // The variances that the documentation of `BaseLobe` promises: (1 + B²)² along B, (1 + B²) across.
+        // The variances that the documentation of `BaseFrame` promises: (1 + B²)² along B, (1 + B²) across.
         let squared = slope[0] * slope[0] + slope[1] * slope[1];
         let (along, across) = base.eigenvalues();
         assert!((f64::from(along) / (1.0 + squared).powi(2) - 1.0).abs() < 1e-5);
@@ -173,8 +175,8 @@ fn the_base_of_a_facet_is_a_rotated_round_lobe() {
 
 /// The largest difference, within two standard deviations, between the densities over solid angle of an off-centre lobe and of
 /// Beckmann's about the bump, relative to the latter.
-fn against_the_bumps_own(base: BaseLobe, s: f32) -> f64 {
-    let options = LobeOptions { base, ..options(s) };
+fn against_the_bumps_own(base: BaseFrame, s: f32) -> f64 {
+    let options = ShadingOptions { base_frame: base, ..options(s) };
     let slope = Slope { x: 0.8, y: -0.4 };
     let normal = Frame::SURFACE.direction([0.8_f32.into(), (-0.4_f32).into()]);
     let frame = Frame::about(normal);
@@ -195,9 +197,9 @@ fn against_the_bumps_own(base: BaseLobe, s: f32) -> f64 {
 #[test]
 fn the_base_of_a_facet_converges_to_beckmann_about_the_bump() {
     // To first order: what is left falls as the lobe's width, 1 / sqrt(s).
-    let left = [100.0, 1600.0, 25_600.0].map(|s| against_the_bumps_own(BaseLobe::Facet, s));
+    let left = [100.0, 1600.0, 25_600.0].map(|s| against_the_bumps_own(BaseFrame::Facet, s));
     assert!(left[1] < 0.3 * left[0] && left[2] < 0.3 * left[1], "{left:?}");
     // LEAN's own base does not: at this slope of 0.9 it stays too narrow.
-    let plane = [100.0, 1600.0, 25_600.0].map(|s| against_the_bumps_own(BaseLobe::Plane, s));
+    let plane = [100.0, 1600.0, 25_600.0].map(|s| against_the_bumps_own(BaseFrame::Plane, s));
     assert!(plane.iter().all(|left| *left > 0.5), "{plane:?}");
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use roughcast::shading::{
-    FootprintModel, FootprintRatio, Form, LightSample, LobeOptions, Masking, Material, Shading, Surface,
+    FootprintModel, FootprintRatio, Form, LightSample, Masking, Material, Shading, ShadingOptions, Surface,
     reflect,
 };
 use roughcast::texture::{Base, Layout, Packing, Part, RoughnessStored, TextureInfo};
@@ -20,8 +20,8 @@ const ROUNDING: f64 = 2e-4;
 /// Models whose lobe is one of facets.
 const MODELS: [Shading; 4] = [Shading::BlinnPhong, Shading::Beckmann, Shading::OffCentre, Shading::Ggx];
 
-fn options(specular_power: f32) -> LobeOptions {
-    LobeOptions { specular_power, form: Form::Physical, ..LobeOptions::default() }
+fn options(specular_power: f32) -> ShadingOptions {
+    ShadingOptions { specular_power, form: Form::Physical, ..ShadingOptions::default() }
 }
 
 /// Λ of Gaussian slopes with this variance, by its definition: the slopes beyond the direction's own hide it.
@@ -69,7 +69,7 @@ fn expected(shading: Shading, slope: [f64; 2], s: f64, view: Vector, light: Vect
 }
 
 /// The largest relative difference of a model's lobe from its definition, near its peak.
-fn difference(shading: Shading, s: f32, options: &LobeOptions) -> f64 {
+fn difference(shading: Shading, s: f32, options: &ShadingOptions) -> f64 {
     let mut random = Random(5);
     let (mut counted, mut largest) = (0, 0.0_f64);
     let power = f64::from(s);
@@ -102,7 +102,7 @@ fn lobes_match_their_definitions_in_f64() {
             let found = difference(shading, s, &options(s));
             assert!(found < tolerance, "{shading}, s {s}: {found:e}");
             // Without masking, or with the terms of the older forms, they are not.
-            let normalised = LobeOptions { form: Form::Normalised, ..options(s) };
+            let normalised = ShadingOptions { form: Form::Normalised, ..options(s) };
             let found = difference(shading, s, &normalised);
             assert!(found > 10.0 * tolerance, "{shading}, s {s}: {found:e}");
         }
@@ -141,13 +141,13 @@ fn a_flat_map_matches_the_microfacet_brdf_at_any_angle() {
                 let sample = LightSample { direction: narrow(light), irradiance: [1.0; 3] };
                 let got = reflect(&surface, &material, narrow(view), &sample, &options(s)).specular[0];
                 let base =
-                    if shading == Shading::Toksvig { Shading::BlinnPhong } else { shading.base_lobe() };
+                    if shading == Shading::Toksvig { Shading::BlinnPhong } else { shading.reference() };
                 // F is one, and F D G2 / (4 n.v n.l) * n.l * E.
                 let expected = expected(base, [0.0; 2], f64::from(s), view, light) / 4.0;
                 let error = (f64::from(got) / expected - 1.0).abs();
                 assert!(error < FIT, "{shading}, {degrees} degrees: {got} {expected}");
                 if degrees == 60.0 && offset == 0.0 {
-                    let older = LobeOptions { form: Form::Normalised, ..options(s) };
+                    let older = ShadingOptions { form: Form::Normalised, ..options(s) };
                     let older = reflect(&surface, &material, narrow(view), &sample, &older).specular[0];
                     assert!(f64::from(older) < 0.3 * expected, "{shading}: {older} {expected}");
                 }
@@ -157,7 +157,7 @@ fn a_flat_map_matches_the_microfacet_brdf_at_any_angle() {
 }
 
 /// Light that a white surface sends towards a viewer when it gets a radiance of one from everywhere.
-fn white_furnace(surface: &Surface, degrees: f64, options: &LobeOptions) -> f64 {
+fn white_furnace(surface: &Surface, degrees: f64, options: &ShadingOptions) -> f64 {
     const STEPS: u32 = 300;
     let white = Material { albedo: [0.0; 3], ambient: [0.0; 3], specular: [1.0; 3] };
     let (sin, cos) = degrees.to_radians().sin_cos();
@@ -180,7 +180,7 @@ fn white_furnace(surface: &Surface, degrees: f64, options: &LobeOptions) -> f64 
 fn a_white_surface_reflects_no_more_than_it_receives() {
     /// Of the quadrature, for a lobe that is 10 cells wide, and of the fit.
     const ERROR: f64 = 0.01;
-    let furnace = |surface: &Surface, options: &LobeOptions, what: &str| {
+    let furnace = |surface: &Surface, options: &ShadingOptions, what: &str| {
         for degrees in [0.0, 45.0, 75.0, 88.0] {
             let albedo = white_furnace(surface, degrees, options);
             assert!(albedo < 1.0 + ERROR && albedo > 0.1, "{what}, {degrees} degrees: {albedo}");
@@ -195,14 +195,14 @@ fn a_white_surface_reflects_no_more_than_it_receives() {
     }
     // With bumps, where all of them mask.
     for sigma in [Covariance::isotropic(0.1), Covariance { xx: 0.4, yy: 0.01, xy: 0.03 }] {
-        let options = LobeOptions { masking: Masking::Full, ..options(200.0) };
+        let options = ShadingOptions { masking: Masking::Full, ..options(200.0) };
         let moments = Moments::from_mean_and_covariance(Slope::default(), sigma);
         let texels = [[0.0, 0.0, 1.0, moments.xy], [0.0, 0.0, moments.xx, moments.yy]];
         let surface =
             surface_of_texels(Shading::Lean, &texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options);
         furnace(&surface, &options, &format!("{sigma:?}"));
         // Masked by the base alone they shine at grazing angles, as bump mapping does.
-        let base = LobeOptions { masking: Masking::Base, ..options };
+        let base = ShadingOptions { masking: Masking::Base, ..options };
         assert!(white_furnace(&surface, 88.0, &base) > 1.0 + 10.0 * ERROR);
     }
 }
@@ -213,9 +213,9 @@ fn the_brdf_is_reciprocal() {
     let slope = Slope { x: 0.2, y: 0.05 };
     for shading in Shading::ALL.iter().copied() {
         for masking in Masking::ALL.iter().copied() {
-            let options = LobeOptions { masking, ..options(40.0) };
+            let options = ShadingOptions { masking, ..options(40.0) };
             let surface = shading.surface_of_slope(slope, &options);
-            let axis = match shading.base_lobe() {
+            let axis = match shading.reference() {
                 Shading::OffCentre => [0.0, 0.0, 1.0],
                 _ => Frame::SURFACE.direction([f64::from(slope.x), f64::from(slope.y)]),
             };
@@ -254,7 +254,7 @@ fn all_slopes_mask_more_than_the_base_does() {
     let moments = Moments::from_mean_and_covariance(Slope::default(), Covariance::isotropic(0.1));
     let texels = [[0.0, 0.0, 1.0, moments.xy], [0.0, 0.0, moments.xx, moments.yy]];
     let lobe = |masking, z: f64| {
-        let options = LobeOptions { masking, ..options(256.0) };
+        let options = ShadingOptions { masking, ..options(256.0) };
         let surface =
             surface_of_texels(Shading::Lean, &texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options);
         let x = (1.0 - z * z).sqrt();
@@ -276,7 +276,7 @@ fn phong_reflects_all_light_along_the_reflected_ray() {
 
 #[test]
 fn maps_bring_the_exponent_of_their_base() {
-    let default = LobeOptions::default();
+    let default = ShadingOptions::default();
     let baked = |layout, base_variance| TextureInfo {
         base: Base::Baked,
         base_variance,

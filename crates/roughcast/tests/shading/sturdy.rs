@@ -1,29 +1,29 @@
 //! No lobe is NaN, infinite or negative, whatever the texels, the options and the directions.
 
 use roughcast::shading::{
-    BaseLobe, FootprintModel, FootprintRatio, Form, LobeOptions, Masking, Repair, Shading,
+    BaseFrame, FootprintModel, FootprintRatio, Form, Masking, Repair, Shading, ShadingOptions,
     blinn_phong_surface, ggx_surface, ggx_visible_part,
 };
 use roughcast::texture::{Base, Packing, RoughnessStored, normal_moments};
-use roughcast::{Distribution, Lobe, Slope};
+use roughcast::{Anisotropy, Distribution, Slope};
 
 use super::support::{Frame, Random, narrow, surface_of_texels};
 
 const POWERS: [f32; 4] = [1.0, 100.0, 16_384.0, 1e5];
 
 /// All options, each with a packing of floats for every statement about the maps.
-fn all_options() -> Vec<(LobeOptions, Packing)> {
+fn all_options() -> Vec<(ShadingOptions, Packing)> {
     let mut all = Vec::new();
     for specular_power in POWERS {
         for form in Form::ALL.iter().copied() {
-            for base in BaseLobe::ALL.iter().copied() {
+            for base_frame in BaseFrame::ALL.iter().copied() {
                 for repair in Repair::ALL.iter().copied() {
                     for base_in_maps in Base::ALL.iter().copied() {
                         for roughness_stored in RoughnessStored::ALL.iter().copied() {
-                            let options = LobeOptions {
+                            let options = ShadingOptions {
                                 specular_power,
                                 form,
-                                base,
+                                base_frame,
                                 repair,
                                 masking: Masking::ALL[all.len() % 2],
                                 footprint: FootprintModel::Corrected,
@@ -48,7 +48,7 @@ fn directions() -> Vec<[f32; 3]> {
     all
 }
 
-fn check(shading: Shading, texels: &[[f32; 4]], packing: &Packing, options: &LobeOptions) {
+fn check(shading: Shading, texels: &[[f32; 4]], packing: &Packing, options: &ShadingOptions) {
     let surface = surface_of_texels(shading, texels, &FootprintRatio::WHOLE, packing, options);
     assert!(surface.normal.iter().all(|v| v.is_finite()), "{shading} {texels:?}: {surface:?}");
     let directions = directions();
@@ -78,7 +78,7 @@ fn extreme_texels_of_unsigned_textures() {
     let options = all_options();
     for shading in Shading::ALL.iter().copied() {
         for _ in 0..400 {
-            let reader = shading.layout().texel_reader(shading.wanted(), Lobe::Anisotropic);
+            let reader = shading.layout().texel_reader(shading.wanted(), Anisotropy::Anisotropic);
             let inputs = reader.expect("a model samples its layout").inputs.len();
             let pick = |random: &mut Random| {
                 if random.unit() < 0.7 { ends[(3.0 * random.unit()) as usize] } else { random.unit() as f32 }
@@ -96,10 +96,10 @@ fn the_roughest_lobe_is_finite_for_light_at_the_horizon() {
     // A stored exponent of 1e-3, the least that counts: its width is 45.
     let packing =
         Packing { base: Base::Baked, roughness_stored: RoughnessStored::SpecularPower, ..Packing::IDENTITY };
-    let options = LobeOptions::default();
+    let options = ShadingOptions::default();
     check(Shading::Ggx, &[[0.0, 0.0, 1.0, 1.0], [0.0; 4], [0.0; 4]], &packing, &options);
     let flat = Distribution::of_slope(Slope::default());
-    let surface = ggx_surface(&flat, &LobeOptions { specular_power: 1e-3, ..options });
+    let surface = ggx_surface(&flat, &ShadingOptions { specular_power: 1e-3, ..options });
     for cosine in [1.2e-18, 1e-15, 1e-6] {
         let light = [1.0, 0.0, cosine];
         let part = ggx_visible_part(&surface, [0.0, 0.6, 0.8], light);
@@ -124,7 +124,7 @@ fn a_mirror_with_its_base_baked_in_is_finite() {
     // Repaired it still shows a highlight, by the paper's rule it shows none.
     let h = narrow(Frame::SURFACE.direction([0.25, 0.0]));
     let lobe = |repair| {
-        let options = LobeOptions { repair, ..LobeOptions::default() };
+        let options = ShadingOptions { repair, ..ShadingOptions::default() };
         let packing = Packing { base: Base::Baked, ..Packing::IDENTITY };
         let texels = [[0.1, 0.0, 0.9, 0.0], [0.25, 0.0, 0.0625, 0.0]];
         surface_of_texels(Shading::Lean, &texels, &FootprintRatio::WHOLE, &packing, &options)
@@ -140,7 +140,7 @@ fn invalid_covariances_are_repaired_or_show_nothing() {
     let texels = [[0.1, 0.0, 0.9, 0.0], [0.25, 0.0, 0.0525, 0.01]];
     let h = narrow(Frame::SURFACE.direction([0.25, 0.0]));
     let lobe = |repair| {
-        let options = LobeOptions { repair, ..LobeOptions::default() };
+        let options = ShadingOptions { repair, ..ShadingOptions::default() };
         surface_of_texels(Shading::Lean, &texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
             .lobe(h, h, &options)
     };
@@ -153,7 +153,7 @@ fn the_repair_keeps_valid_covariances() {
     let texels = [[0.1, 0.0, 0.9, 0.03], [0.25, 0.1, 0.1, 0.05]];
     let h = narrow(Frame::SURFACE.direction([0.3, 0.05]));
     let lobe = |repair| {
-        let options = LobeOptions { repair, specular_power: 1e5, ..LobeOptions::default() };
+        let options = ShadingOptions { repair, specular_power: 1e5, ..ShadingOptions::default() };
         surface_of_texels(Shading::Lean, &texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
             .lobe(h, h, &options)
     };
@@ -177,7 +177,7 @@ fn steep_bumps_of_the_ground_truth_are_finite() {
 
 #[test]
 fn nothing_is_reflected_below_the_surface() {
-    let options = LobeOptions::default();
+    let options = ShadingOptions::default();
     let up = [0.0, 0.0, 1.0];
     for shading in Shading::ALL.iter().copied() {
         let surface = shading.surface_of_slope(Slope::default(), &options);
@@ -191,7 +191,7 @@ fn nothing_is_reflected_below_the_surface() {
 
 #[test]
 fn a_normal_without_direction_is_flat() {
-    let options = LobeOptions::default();
+    let options = ShadingOptions::default();
     let zero = normal_moments([0.0; 3]);
     assert_eq!(blinn_phong_surface(&zero, &options).normal, [0.0, 0.0, 1.0]);
     let ggx = ggx_surface(&zero, &options);
@@ -201,7 +201,7 @@ fn a_normal_without_direction_is_flat() {
 #[test]
 fn z_of_a_two_channel_normal_is_reconstructed() {
     let packing = Packing { unit: [2.0, -1.0], ..Packing::IDENTITY };
-    let options = LobeOptions::default();
+    let options = ShadingOptions::default();
     let normal = |texel| {
         surface_of_texels(Shading::Ggx, &[texel, [0.5; 4]], &FootprintRatio::WHOLE, &packing, &options).normal
     };

@@ -1,7 +1,7 @@
 //! Vectors in f64, random numbers, frames, and what a renderer makes of texels.
 
-use roughcast::Lobe;
-use roughcast::shading::{FootprintRatio, LobeOptions, Shading, Surface};
+use roughcast::Anisotropy;
+use roughcast::shading::{FootprintRatio, Shading, ShadingOptions, Surface};
 use roughcast::texture::Packing;
 
 /// The surface that a model makes of filtered texels of the layout that it is made for.
@@ -10,10 +10,11 @@ pub fn surface_of_texels(
     texels: &[[f32; 4]],
     ratio: &FootprintRatio,
     packing: &Packing,
-    options: &LobeOptions,
+    options: &ShadingOptions,
 ) -> Surface {
-    let lobe = if texels.len() == 3 { Lobe::Anisotropic } else { Lobe::Isotropic };
-    let reader = shading.layout().texel_reader(shading.wanted(), lobe).expect("a model samples its layout");
+    let anisotropy = if texels.len() == 3 { Anisotropy::Anisotropic } else { Anisotropy::Isotropic };
+    let reader =
+        shading.layout().texel_reader(shading.wanted(), anisotropy).expect("a model samples its layout");
     shading.surface_of(&reader.read_pixel(texels, ratio, packing, options), options)
 }
 

@@ -2,7 +2,7 @@
 
 struct Parameters {
     packing: Packing,
-    options: LobeOptions,
+    options: ShadingOptions,
     albedo: vec4f,
     ambient: vec4f,
     specular: vec4f,
@@ -15,4 +15,4 @@ struct Parameters {
 
 // What detail modules need of their host.
 var<private> packing: Packing;
-var<private> options: LobeOptions;
+var<private> options: ShadingOptions;

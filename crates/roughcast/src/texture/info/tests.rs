@@ -5,7 +5,7 @@ use super::*;
 fn odd() -> TextureInfo {
     TextureInfo {
         scale: 1.234_567_9,
-        variance_scale: 3.3e-5,
+        spread_scale: 3.3e-5,
         base: Base::Baked,
         base_variance: 1.0 / 13777.0,
         brdf: Brdf::BlinnPhong,

@@ -21,7 +21,7 @@ impl TextureInfo {
         words[1] = DDS_VERSION;
         words[2] = bits_of(self.layout) | bits_of(self.part) << 8;
         words[3] = self.scale.to_bits();
-        words[4] = self.variance_scale.to_bits();
+        words[4] = self.spread_scale.to_bits();
         words[5] = bits_of(self.base) | bits_of(self.brdf) << 8 | bits_of(self.roughness_stored) << 16;
         words[6] = self.base_variance.to_bits();
         (words[7], words[8]) = (self.set as u32, (self.set >> 32) as u32);
@@ -49,7 +49,7 @@ impl TextureInfo {
             layout: value_of(words[2], LAYOUT)?,
             part,
             scale: f32::from_bits(words[3]),
-            variance_scale: f32::from_bits(words[4]),
+            spread_scale: f32::from_bits(words[4]),
             base: value_of(words[5], BASE)?,
             brdf: value_of(words[5] >> 8, BRDF)?,
             roughness_stored: value_of(words[5] >> 16, ROUGHNESS_STORED)?,
@@ -171,7 +171,7 @@ mod tests {
     fn every_field_has_its_place_in_the_words() {
         let info = TextureInfo {
             scale: 2.0,
-            variance_scale: 0.5,
+            spread_scale: 0.5,
             base: Base::Baked,
             base_variance: 0.25,
             brdf: Brdf::BlinnPhong,

@@ -21,7 +21,7 @@ pub use variance::variance_moments;
 
 use super::{Packing, Part};
 use crate::distribution::Distribution;
-use crate::shading::{FootprintRatio, Gaussians, LobeOptions, PixelPart, reduce_to_pixel};
+use crate::shading::{FootprintRatio, Gaussians, PixelPart, ShadingOptions, reduce_to_pixel};
 
 /// A texture of a layout: which of its files, and which layer of that.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -57,7 +57,7 @@ pub struct TexelReader {
     pub filtered: Filtered,
     /// How many Gaussians the distributions have.
     pub gaussians: Gaussians,
-    read: fn(&[[f32; 4]], &Packing, &LobeOptions) -> Distribution,
+    read: fn(&[[f32; 4]], &Packing, &ShadingOptions) -> Distribution,
 }
 
 impl TexelReader {
@@ -66,7 +66,7 @@ impl TexelReader {
     /// # Panics
     /// If there are fewer texels than inputs.
     #[inline]
-    pub fn read(&self, texels: &[[f32; 4]], packing: &Packing, options: &LobeOptions) -> Distribution {
+    pub fn read(&self, texels: &[[f32; 4]], packing: &Packing, options: &ShadingOptions) -> Distribution {
         (self.read)(texels, packing, options)
     }
 
@@ -87,7 +87,7 @@ impl TexelReader {
         texels: &[[f32; 4]],
         ratio: &FootprintRatio,
         packing: &Packing,
-        options: &LobeOptions,
+        options: &ShadingOptions,
     ) -> Distribution {
         let mut distribution = self.read(texels, packing, options);
         if let Some(part) = self.pixel_part(ratio) {

@@ -6,7 +6,7 @@
 use super::{Filtered, Input, TexelReader};
 use crate::distribution::Distribution;
 use crate::moments::Covariance;
-use crate::shading::{Gaussians, LobeOptions};
+use crate::shading::{Gaussians, ShadingOptions};
 use crate::slope::{LEAST_NORMAL_Z, Normal, Slope};
 use crate::texture::packing::unpack;
 use crate::texture::{Packing, Part};
@@ -32,7 +32,7 @@ pub fn toksvig_normal(toksvig: [f32; 4], packing: &Packing) -> [f32; 3] {
 /// The distribution that a filtered texel of Toksvig's texture holds, given the exponent for which it was baked. The base roughness
 /// is not in it.
 #[inline]
-pub fn toksvig_moments(toksvig: [f32; 4], packing: &Packing, options: &LobeOptions) -> Distribution {
+pub fn toksvig_moments(toksvig: [f32; 4], packing: &Packing, options: &ShadingOptions) -> Distribution {
     let normal = toksvig_normal(toksvig, packing);
     let gloss = toksvig[3].clamp(LEAST_GLOSS, 1.0);
     let variance = (1.0 - gloss) / (gloss * options.specular_power);

@@ -9,7 +9,7 @@ fn toksvig_normal(toksvig: vec4f, packing: Packing) -> vec3f {
 }
 
 // The factor f makes f s of the exponent s for which it was baked: the variance is 1 / (f s) - 1 / s.
-fn toksvig_moments(toksvig: vec4f, packing: Packing, options: LobeOptions) -> Distribution {
+fn toksvig_moments(toksvig: vec4f, packing: Packing, options: ShadingOptions) -> Distribution {
     let normal = toksvig_normal(toksvig, packing);
     let gloss = clamp(toksvig.w, LEAST_GLOSS, 1.0);
     let variance = (1.0 - gloss) / (gloss * options.specular_power);
