@@ -73,7 +73,7 @@ function drawing(subject, view, changes = {}) {
 }
 
 // ShadingOptions by number, as in the export.
-const DEFAULT_OPTIONS = { form: 0, base: 0, repair: 0, masking: 0, footprint: 0, unused: [0, 0] };
+const DEFAULT_OPTIONS = { form: 0, base_frame: 0, repair: 0, masking: 0, footprint: 0, unused: [0, 0] };
 
 function shaderInputs(model, others) {
   const library = roughcast('shader', model, 'reflectance', '--lang', 'glsl-es300');

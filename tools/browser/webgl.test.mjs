@@ -112,7 +112,7 @@ void main() {
   rc_ShadingOptions options;
   options.specular_power = s;
   options.form = RC_FORM_PHYSICAL;
-  options.base = RC_BASE_PLANE;
+  options.base_frame = RC_BASE_PLANE;
   options.repair = RC_REPAIR_CLAMP;
   options.masking = RC_MASKING_BASE;
   options.footprint = RC_FOOTPRINT_CORRECTED;

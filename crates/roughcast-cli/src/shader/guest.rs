@@ -2,14 +2,14 @@
 //! be in one file and no constant is unused.
 //!
 //! In GLSL, HLSL and Metal's language each module has a guard. A constant that an export does not use is left out of it, so each
-//! has a guard of its own; those of `options` are for the caller, and always there.
+//! has a guard of its own; those for the caller are always there.
 
 use roughcast::wgsl::Module;
 
 use super::prefix::{CONSTRUCT, Prefix, global_names, is_constant};
 
-/// The module whose constants are the choices of `ShadingOptions`.
-const OPTIONS: &str = "options";
+/// The modules whose constants are for the caller: the choices of `ShadingOptions` and of `Packing`.
+const FOR_CALLERS: &[&str] = &["options", "packing"];
 
 /// A constant, struct or function of the generated code.
 struct Item<'a> {
@@ -34,7 +34,7 @@ pub fn with_guards(code: &str, modules: &[&Module], prefix: &Prefix) -> Result<S
         let own =
             || items.iter().zip(&owners).filter(|(_, owner)| **owner == module.name).map(|(item, _)| item);
         let (constants, rest): (Vec<_>, Vec<_>) = own().partition(|item| is_constant(item.name));
-        if module.name == OPTIONS {
+        if FOR_CALLERS.contains(&module.name) {
             guarded(&prefix.constant_guard(module.name), &constants, prefix, &mut out);
         } else {
             for constant in constants.into_iter().filter(|item| is_used(item, &items)) {
@@ -114,7 +114,7 @@ pub fn written(modules: &[&Module], prefix: &Prefix) -> String {
     };
     let mut sources = Vec::new();
     for module in modules {
-        let always = module.name == OPTIONS;
+        let always = FOR_CALLERS.contains(&module.name);
         let is_idle = |line: &str| {
             let name = line.strip_prefix("const ").and_then(|rest| rest.split(':').next());
             !always && name.is_some_and(|name| !uses(name))
