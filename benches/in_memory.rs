@@ -48,7 +48,7 @@ fn main() {
     let mut to = vec![0_u8; copied];
     let chunk = copied.div_ceil(threads);
     let source = SourceOptions::default();
-    let fixed = BakeOptions { scale: ScaleChoice::Fixed(1.0), ..BakeOptions::default() };
+    let fixed = BakeOptions::default().with_scale(ScaleChoice::Fixed(1.0));
     let auto = BakeOptions::default();
 
     let mut textures = Vec::new();

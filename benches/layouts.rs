@@ -26,7 +26,7 @@ fn hills(width: usize, height: usize) -> Image {
 }
 
 fn heights() -> SourceOptions {
-    SourceOptions { kind: Kind::Height, ..SourceOptions::default() }
+    SourceOptions::default().with_kind(Kind::Height)
 }
 
 fn options(layout: Layout) -> BakeOptions {
@@ -35,7 +35,7 @@ fn options(layout: Layout) -> BakeOptions {
         SampleType::F32 => SampleType::F16,
         suited => suited,
     };
-    BakeOptions { layout, sample_type: bits, ..BakeOptions::default() }
+    BakeOptions::default().with_layout(layout).with_sample_type(bits)
 }
 
 #[divan::bench(args = Layout::ALL)]
@@ -59,7 +59,7 @@ fn layout(bencher: Bencher, layout: &Layout) {
 #[divan::bench(args = PyramidFilter::ALL)]
 fn filter(bencher: Bencher, filter: &PyramidFilter) {
     let map = hills(SIDE, SIDE);
-    let options = BakeOptions { filter: *filter, ..BakeOptions::default() };
+    let options = BakeOptions::default().with_filter(*filter);
     bencher.counter(ItemsCount::new(SIDE * SIDE)).bench_local(|| {
         Bake::of(black_box(&map)).source(heights()).options(options).run().expect("a plain bake")
     });

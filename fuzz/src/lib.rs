@@ -91,7 +91,11 @@ pub fn tiff(data: &[u8]) {
     let read = |layer: Option<&str>, channels: &[&str]| {
         let layer = layer.map(str::to_owned);
         let channels = channels.iter().map(|&name| name.to_owned()).collect();
-        roughcast_io::read_image(data, Some("tif"), &ReadOptions { limits: LIMITS, layer, channels })
+        roughcast_io::read_image(
+            data,
+            Some("tif"),
+            &ReadOptions::default().with_limits(LIMITS).with_layer(layer).with_channels(channels),
+        )
     };
     check_image(read(None, &[]));
     check_image(read(Some("2"), &[]));

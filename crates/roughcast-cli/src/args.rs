@@ -215,7 +215,10 @@ impl SourceArgs {
 
     /// How the file is read.
     pub fn read_options(&self) -> ReadOptions {
-        ReadOptions { limits: self.limits(), layer: self.layer.clone(), channels: self.channels.clone() }
+        ReadOptions::default()
+            .with_limits(self.limits())
+            .with_layer(self.layer.clone())
+            .with_channels(self.channels.clone())
     }
 
     /// The library's options for reading the map.

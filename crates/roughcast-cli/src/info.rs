@@ -156,8 +156,7 @@ impl Findings {
             self.put("green_correlation", json!(correlation), format!("{correlation:.3}"));
         }
         warn_of(&args.file, &map);
-        let options =
-            BakeOptions { layout: Layout::Moments, sample_type: SampleType::F32, ..Default::default() };
+        let options = BakeOptions::default().with_layout(Layout::Moments).with_sample_type(SampleType::F32);
         let baked = Bake::of(&map.image).source(map.options).options(options).run()?;
         let repaired = baked.report.counts.total();
         self.put("repaired", json!(repaired), format!("{repaired} texels"));

@@ -279,9 +279,13 @@ impl Args {
         if let (Shading::Toksvig, Some(power)) = (shading, arrays[0].info.specular_power()) {
             options.specular_power = power;
         }
-        let sampler = Sampler { filter, level: self.level, mip_bias: self.mip_bias, wrap };
+        let sampler = Sampler::default()
+            .with_filter(filter)
+            .with_level(self.level)
+            .with_mip_bias(self.mip_bias)
+            .with_wrap(wrap);
         if self.gpu {
-            let draw_options = DrawOptions { sampler, shading_options: options, ..DrawOptions::default() };
+            let draw_options = DrawOptions::default().with_sampler(sampler).with_shading_options(options);
             let backend = GpuBackend::new(shading, &arrays, &draw_options, scene, size)?;
             return Ok(Backend::Gpu(Box::new(backend)));
         }

@@ -331,14 +331,13 @@ pub struct ShadingArgs {
 impl ShadingArgs {
     /// The library's options.
     pub fn shading_options(&self) -> ShadingOptions {
-        ShadingOptions {
-            specular_power: self.specular_power,
-            form: self.form,
-            base_frame: self.base_frame,
-            repair: self.repair,
-            masking: self.masking,
-            footprint: self.footprint,
-        }
+        ShadingOptions::default()
+            .with_specular_power(self.specular_power)
+            .with_form(self.form)
+            .with_base_frame(self.base_frame)
+            .with_repair(self.repair)
+            .with_masking(self.masking)
+            .with_footprint(self.footprint)
     }
 
     /// How the textures of a model are baked.

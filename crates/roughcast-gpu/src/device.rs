@@ -32,6 +32,7 @@ pub enum LimitChoice {
 
 /// How to create a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct GpuOptions {
     /// The APIs to choose from.
     pub backends: wgpu::Backends,
@@ -39,6 +40,26 @@ pub struct GpuOptions {
     pub adapter: AdapterChoice,
     /// Which limits are requested.
     pub limits: LimitChoice,
+}
+
+impl GpuOptions {
+    /// The same with these APIs.
+    #[must_use]
+    pub fn with_backends(self, backends: wgpu::Backends) -> Self {
+        Self { backends, ..self }
+    }
+
+    /// The same with these adapters.
+    #[must_use]
+    pub fn with_adapter(self, adapter: AdapterChoice) -> Self {
+        Self { adapter, ..self }
+    }
+
+    /// The same with these limits.
+    #[must_use]
+    pub fn with_limits(self, limits: LimitChoice) -> Self {
+        Self { limits, ..self }
+    }
 }
 
 impl Default for GpuOptions {

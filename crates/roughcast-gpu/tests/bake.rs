@@ -46,7 +46,7 @@ struct Case<'a> {
 
 impl<'a> Case<'a> {
     fn new(image: &'a Image, source: SourceOptions, layout: Layout, bits: SampleType) -> Self {
-        let options = BakeOptions { layout, sample_type: bits, ..Default::default() };
+        let options = BakeOptions::default().with_layout(layout).with_sample_type(bits);
         Self { image, source, roughness: None, options, path: BakePath::Compute }
     }
 
@@ -103,7 +103,7 @@ fn normal_source() -> SourceOptions {
 }
 
 fn height_source() -> SourceOptions {
-    SourceOptions { kind: Kind::Height, height_scale: 0.1, ..Default::default() }
+    SourceOptions::default().with_kind(Kind::Height).with_height_scale(0.1)
 }
 
 const PATHS: [BakePath; 2] = [BakePath::Compute, BakePath::Raster];
@@ -160,11 +160,11 @@ fn every_gradient_wrap_and_sense_matches_the_cpu() {
     let image = heights(44, 36, SampleType::U16);
     for gradient in Gradient::ALL {
         for wrap in Wrap::ALL {
-            let source = SourceOptions { gradient: *gradient, wrap: *wrap, ..height_source() };
+            let source = height_source().with_gradient(*gradient).with_wrap(*wrap);
             Case::new(&image, source, Layout::Lean, SampleType::F16).check(&gpu);
         }
     }
-    let source = SourceOptions { height_sense: HeightSense::WhiteDeep, ..height_source() };
+    let source = height_source().with_height_sense(HeightSense::WhiteDeep);
     Case::new(&image, source, Layout::Lean, SampleType::F16).check(&gpu);
 }
 
@@ -175,7 +175,7 @@ fn every_way_to_store_normals_matches_the_cpu() {
         for green in Green::ALL {
             for sample_type in [SampleType::U8, SampleType::U16, SampleType::F16, SampleType::F32] {
                 let image = normals(44, 36, 4, sample_type);
-                let source = SourceOptions { normal_channels: *order, green: *green, ..normal_source() };
+                let source = normal_source().with_normal_channels(*order).with_green(*green);
                 Case::new(&image, source, Layout::Lean, SampleType::F16).check(&gpu);
             }
         }
@@ -185,7 +185,8 @@ fn every_way_to_store_normals_matches_the_cpu() {
     for (red, normal_scale) in [(Red::Left, 1.0), (Red::Right, 0.5), (Red::Left, 1.25)] {
         for order in NormalChannels::ALL {
             let image = normals(44, 36, 4, SampleType::U8);
-            let source = SourceOptions { normal_channels: *order, red, normal_scale, ..normal_source() };
+            let source =
+                normal_source().with_normal_channels(*order).with_red(red).with_normal_scale(normal_scale);
             Case::new(&image, source, Layout::Lean, SampleType::F16).check(&gpu);
         }
     }
@@ -193,7 +194,7 @@ fn every_way_to_store_normals_matches_the_cpu() {
     let Samples::F32(values) = unsigned.samples() else { unreachable!("asked for") };
     let signed = values.iter().map(|v| 2.0 * v - 1.0).collect();
     let image = Image::new(44, 36, 3, Samples::F32(signed)).expect("as many");
-    let source = SourceOptions { range: NormalRange::Signed, ..normal_source() };
+    let source = normal_source().with_range(NormalRange::Signed);
     Case::new(&image, source, Layout::Lean, SampleType::F16).check(&gpu);
 }
 
@@ -204,19 +205,17 @@ fn bad_texels_are_repaired_and_counted_as_on_the_cpu() {
     let values: Vec<f32> = (0..16 * 16 * 3).map(|i| if i % 5 == 0 { bad[i / 5 % 7] } else { 0.7 }).collect();
     let image = Image::new(16, 16, 3, Samples::F32(values)).expect("as many");
     for wrap in Wrap::ALL {
-        let source = SourceOptions {
-            range: NormalRange::Signed,
-            max_slope: MaxSlope::Limit(4.0),
-            wrap: *wrap,
-            ..normal_source()
-        };
+        let source = normal_source()
+            .with_range(NormalRange::Signed)
+            .with_max_slope(MaxSlope::Limit(4.0))
+            .with_wrap(*wrap);
         for path in PATHS {
             Case { path, ..Case::new(&image, source, Layout::Lean, SampleType::F16) }.check(&gpu);
         }
     }
     // Two channels without any slopes.
     let image = Image::new(8, 8, 2, Samples::U8(vec![0; 128])).expect("as many");
-    let source = SourceOptions { normal_channels: NormalChannels::Xy, ..normal_source() };
+    let source = normal_source().with_normal_channels(NormalChannels::Xy);
     Case::new(&image, source, Layout::Lean, SampleType::F16).check(&gpu);
 }
 
@@ -233,7 +232,7 @@ fn few_steep(width: usize, height: usize, every: usize) -> Image {
 #[test]
 fn the_automatic_limit_of_slopes_matches_the_cpu() {
     let gpu = gpu();
-    let source = SourceOptions { range: NormalRange::Signed, ..normal_source() };
+    let source = normal_source().with_range(NormalRange::Signed);
     let mut limited = 0;
     for (size, every) in [((64, 64), 1500), ((64, 64), 500), ((127, 33), 1200), ((1400, 1100), 1700)] {
         let image = few_steep(size.0, size.1, every);
@@ -272,7 +271,7 @@ fn holes_in_heights_are_flat_and_counted_as_on_the_cpu() {
     let values = (0..32 * 32).map(|i| if i % 29 == 0 { holes[i % 3] } else { (i % 13) as f32 / 13.0 });
     let image = Image::new(32, 32, 1, Samples::F32(values.collect())).expect("as many");
     for gradient in [Gradient::Sobel, Gradient::Central, Gradient::Forward] {
-        let source = SourceOptions { gradient, ..height_source() };
+        let source = height_source().with_gradient(gradient);
         for path in PATHS {
             Case { path, ..Case::new(&image, source, Layout::Lean, SampleType::F16) }.check(&gpu);
         }
@@ -307,7 +306,7 @@ fn real_maps_match_the_cpu() {
     let gpu = gpu();
     for (path, kind) in roughcast_testdata::rows_with_files(REAL_MAPS, |row| row.0) {
         let image = real(path, 300, 252);
-        let source = SourceOptions { kind: *kind, ..Default::default() };
+        let source = SourceOptions::default().with_kind(*kind);
         for path in PATHS {
             Case { path, ..Case::new(&image, source, Layout::Lean, SampleType::U16) }.check(&gpu);
         }
@@ -332,7 +331,7 @@ fn the_webs_limits_take_more_dispatches_to_the_same_result() {
 fn moving_bumps_reuse_textures_and_follow_their_inputs() {
     let gpu = gpu();
     let frames = [normals(64, 32, 3, SampleType::U8), normals(64, 32, 3, SampleType::U8).flipped()];
-    let options = BakeOptions { sample_type: SampleType::U16, ..Default::default() };
+    let options = BakeOptions::default().with_sample_type(SampleType::U16);
     for path in PATHS {
         let first = &frames[0];
         let baker =
@@ -362,7 +361,7 @@ fn moving_bumps_reuse_textures_and_follow_their_inputs() {
 #[test]
 fn textures_already_on_the_gpu_match_the_cpu() {
     let gpu = gpu();
-    let options = BakeOptions { sample_type: SampleType::F16, ..Default::default() };
+    let options = BakeOptions::default().with_sample_type(SampleType::F16);
     let cases = [
         (normals(44, 36, 4, SampleType::U8), normal_source(), wgpu::TextureFormat::Rgba8Unorm),
         (normals(44, 36, 4, SampleType::U16), normal_source(), wgpu::TextureFormat::Rgba16Unorm),
@@ -404,7 +403,7 @@ fn a_device_without_16_bit_unorm_is_refused_by_name() {
     let gpu = gpu_without_features();
     let image = normals(8, 8, 3, SampleType::U16);
     let make = |bits| {
-        let options = BakeOptions { sample_type: bits, ..Default::default() };
+        let options = BakeOptions::default().with_sample_type(bits);
         block_on(GpuBaker::for_image(&gpu, &image, &normal_source(), None, &options, BakePath::Fastest))
     };
     let line = make(SampleType::U16).err().expect("a feature").to_string();
@@ -437,12 +436,12 @@ fn unsupported_requests_are_refused_with_a_reason() {
         assert!(line.contains(word) && !line.contains('\n'), "{line}");
     };
     refused(
-        BakeOptions { filter: PyramidFilter::Gaussian, sample_type: SampleType::F16, ..Default::default() },
+        BakeOptions::default().with_filter(PyramidFilter::Gaussian).with_sample_type(SampleType::F16),
         "gaussian",
     );
-    refused(BakeOptions { sample_type: SampleType::F32, ..Default::default() }, "half");
-    refused(BakeOptions { layout: Layout::Schilling, ..Default::default() }, "schilling");
-    refused(BakeOptions { base: Base::Baked, ..Default::default() }, "needs a roughness");
+    refused(BakeOptions::default().with_sample_type(SampleType::F32), "half");
+    refused(BakeOptions::default().with_layout(Layout::Schilling), "schilling");
+    refused(BakeOptions::default().with_base(Base::Baked), "needs a roughness");
     let narrow = normals(8, 8, 2, SampleType::U8);
     let error = block_on(GpuBaker::for_image(
         &gpu,

@@ -9,7 +9,7 @@ use roughcast::texture::TextureArray;
 use roughcast::{BakeOptions, SampleType, SamplesMut};
 
 fn baked(bits: SampleType) -> TextureArray {
-    let options = BakeOptions { sample_type: bits, ..Default::default() };
+    let options = BakeOptions::default().with_sample_type(bits);
     let image = normals(16, 8, 3, SampleType::U8);
     roughcast::Bake::of(&image).options(options).run().expect("baked").arrays.remove(0)
 }

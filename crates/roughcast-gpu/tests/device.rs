@@ -22,7 +22,7 @@ fn texture_of(width: u32, height: u32, format: wgpu::TextureFormat) -> wgpu::Tex
 
 #[test]
 fn without_an_adapter_the_error_names_the_package() {
-    let options = GpuOptions { backends: wgpu::Backends::empty(), ..Default::default() };
+    let options = GpuOptions::default().with_backends(wgpu::Backends::empty());
     let error = block_on(Gpu::new(&options)).expect_err("there are no adapters of no API");
     assert!(matches!(error, GpuError::NoAdapter { .. }), "{error:?}");
     let line = error.to_string();

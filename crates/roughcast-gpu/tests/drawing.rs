@@ -29,15 +29,9 @@ async fn drawing(renderer: &mut Renderer, scene: &Scene, options: &DrawOptions) 
 fn options_change_without_another_drawing() {
     let (gpu, scene) = (gpu(), plane());
     let plain = DrawOptions::default();
-    let other = DrawOptions {
-        sampler: Sampler { filter: Filter::Nearest, ..Sampler::default() },
-        shading_options: ShadingOptions {
-            specular_power: 20.0,
-            form: Form::Normalised,
-            ..ShadingOptions::default()
-        },
-        ..plain
-    };
+    let other = plain.with_sampler(Sampler::default().with_filter(Filter::Nearest)).with_shading_options(
+        ShadingOptions::default().with_specular_power(20.0).with_form(Form::Normalised),
+    );
     let [first, changed, back, fresh]: [Picture; 4] = block_on(async {
         let mut renderer = Renderer::new(&gpu, RenderTarget::Parts).await?;
         let mut changing = drawing(&mut renderer, &scene, &plain).await?;
@@ -47,7 +41,7 @@ fn options_change_without_another_drawing() {
         changing.set_options(&mut renderer, &plain).await?;
         let back = render(&renderer, &mut changing, &scene, SIZE).await?;
         // A filter that hardware does not have leaves the drawing as it was.
-        let ewa = DrawOptions { sampler: Sampler { filter: Filter::Ewa, ..Sampler::default() }, ..plain };
+        let ewa = plain.with_sampler(Sampler::default().with_filter(Filter::Ewa));
         assert!(changing.set_options(&mut renderer, &ewa).await.is_err());
         assert_eq!(render(&renderer, &mut changing, &scene, SIZE).await?, back);
         let mut fresh = drawing(&mut renderer, &scene, &other).await?;

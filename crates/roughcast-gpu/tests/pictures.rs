@@ -47,29 +47,28 @@ const FORMS: [(Form, BaseFrame); 3] = [
 ];
 
 fn shading_options(form: Form, base_frame: BaseFrame) -> ShadingOptions {
-    ShadingOptions { specular_power: SPECULAR_POWER, form, base_frame, ..ShadingOptions::default() }
+    ShadingOptions::default().with_specular_power(SPECULAR_POWER).with_form(form).with_base_frame(base_frame)
 }
 
 fn unfiltered() -> Sampler {
-    Sampler { filter: Filter::Nearest, level: Some(0.0), ..Sampler::default() }
+    Sampler::default().with_filter(Filter::Nearest).with_level(Some(0.0))
 }
 
 fn with_filter(filter: Filter) -> DrawOptions {
-    let sampler = Sampler { filter, ..Sampler::default() };
+    let sampler = Sampler::default().with_filter(filter);
     options(sampler, shading_options(Form::Physical, BaseFrame::Plane))
 }
 
 /// Every model with its maps; GGX also with an anisotropy texture and with packed roughness.
 fn models() -> Vec<(Shading, Vec<TextureArray>)> {
     let mut models: Vec<_> = Shading::ALL.iter().map(|s| (*s, maps(*s, SampleType::F16))).collect();
-    let pbr =
-        BakeOptions { layout: Shading::Ggx.layout(), sample_type: SampleType::U8, ..BakeOptions::default() };
+    let pbr = BakeOptions::default().with_layout(Shading::Ggx.layout()).with_sample_type(SampleType::U8);
     let plain = PbrOptions::default();
     for choices in [
-        PbrOptions { anisotropy: Some(AnisotropyOutput::Khr), ..plain },
-        PbrOptions { roughness_texture: RoughnessTexture::Packed, ..plain },
+        plain.with_anisotropy(Some(AnisotropyOutput::Khr)),
+        plain.with_roughness_texture(RoughnessTexture::Packed),
     ] {
-        models.push((Shading::Ggx, maps_with(BakeOptions { pbr: choices, ..pbr })));
+        models.push((Shading::Ggx, maps_with(pbr.with_pbr(choices))));
     }
     models
 }
@@ -112,7 +111,7 @@ fn resolved_bumps_are_those_of_the_cpu() {
     for (name, scene) in scenes(View::Mid) {
         let mut pictures = GpuPictures::new(&gpu, &scene, DETAIL);
         for shading in [Shading::Lean, Shading::Clean, Shading::BlinnPhong, Shading::Ggx] {
-            let resolved = DrawOptions { bumps: Bumps::Resolved, ..with_filter(Filter::Anisotropic) };
+            let resolved = with_filter(Filter::Anisotropic).with_bumps(Bumps::Resolved);
             let apart = both(&mut pictures, &scene, shading, &resolved);
             assert!(apart.mean < INTERPOLATED, "{name}, {shading}: {apart:?}");
             // And not those of the filter.
@@ -132,7 +131,7 @@ fn interpolated_pictures_agree_at_a_known_level() {
         let mut pictures = GpuPictures::new(&gpu, &scene, DETAIL);
         for level in [0.0, 1.5, 3.0] {
             for shading in [Shading::Lean, Shading::OffCentre, Shading::Ggx] {
-                let sampler = Sampler { filter: Filter::Trilinear, level: Some(level), ..Sampler::default() };
+                let sampler = Sampler::default().with_filter(Filter::Trilinear).with_level(Some(level));
                 let draw = options(sampler, shading_options(Form::Physical, BaseFrame::Plane));
                 let apart = both(&mut pictures, &scene, shading, &draw);
                 assert!(apart.mean < INTERPOLATED, "{name}, {shading}, level {level}: {apart:?}");
@@ -147,7 +146,7 @@ fn trilinear_pictures_agree_in_the_mean_with_and_without_a_bias() {
     for (name, scene) in scenes(View::Mid) {
         let mut pictures = GpuPictures::new(&gpu, &scene, DETAIL);
         for (shading, bias) in Shading::ALL.iter().zip([0.0, 0.0, 1.0].into_iter().cycle()) {
-            let sampler = Sampler { filter: Filter::Trilinear, mip_bias: bias, ..Sampler::default() };
+            let sampler = Sampler::default().with_filter(Filter::Trilinear).with_mip_bias(bias);
             let draw = options(sampler, shading_options(Form::Physical, BaseFrame::Plane));
             let apart = both(&mut pictures, &scene, *shading, &draw);
             assert!(apart.mean < OWN_LEVEL, "{name}, {shading}, bias {bias}: {apart:?}");
@@ -212,7 +211,8 @@ fn the_comparisons_fail_when_they_should() {
     }
     // The means, too, see another filter, another level, another wrap, and another model.
     let at = |level, wrap| {
-        let sampler = Sampler { filter: Filter::Trilinear, level: Some(level), wrap, ..Sampler::default() };
+        let sampler =
+            Sampler::default().with_filter(Filter::Trilinear).with_level(Some(level)).with_wrap(wrap);
         options(sampler, unfiltered.shading_options)
     };
     let interpolated = gpu(Shading::Lean, &at(1.0, Wrap::Repeat));
@@ -293,7 +293,7 @@ fn every_format_and_wrap_is_read_as_the_cpu_reads_it() {
     let mut pictures = GpuPictures::new(&gpu, &scene, 4);
     for bits in [SampleType::U8, SampleType::U16, SampleType::F16, SampleType::F32] {
         for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
-            let sampler = Sampler { wrap, ..unfiltered() };
+            let sampler = unfiltered().with_wrap(wrap);
             let draw = options(sampler, shading_options(Form::Physical, BaseFrame::Plane));
             let maps = maps(Shading::Lean, bits);
             let cpu = by_cpu(&scene, Shading::Lean, &maps, &draw, SIZE);

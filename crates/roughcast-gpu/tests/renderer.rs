@@ -42,7 +42,7 @@ fn every_shader_compiles_within_the_limits_of_the_web() {
             let textures = block_on(GpuTextures::new(&gpu, *shading, &maps(*shading, SampleType::F16)));
             let textures = textures.expect("half floats are everywhere");
             for filter in [Filter::Nearest, Filter::Anisotropic] {
-                let sampler = Sampler { filter, ..Sampler::default() };
+                let sampler = Sampler::default().with_filter(filter);
                 let draw = options(sampler, ShadingOptions::default());
                 block_on(renderer.prepare(&geometry, &textures, &draw)).expect("it compiles");
             }
@@ -168,7 +168,7 @@ fn invalid_renders_are_errors_of_one_line() {
     let clean = maps(Shading::Clean, SampleType::F16);
     let draw = DrawOptions::default();
     assert!(line(pictures.render(&scene, Shading::Lean, &clean, &draw, SIZE)).contains("lean1"));
-    let ewa = options(Sampler { filter: Filter::Ewa, ..Sampler::default() }, ShadingOptions::default());
+    let ewa = options(Sampler::default().with_filter(Filter::Ewa), ShadingOptions::default());
     assert!(line(pictures.render(&scene, Shading::Clean, &clean, &ewa, SIZE)).contains("ewa"));
 }
 
@@ -176,7 +176,7 @@ fn invalid_renders_are_errors_of_one_line() {
 fn formats_that_the_device_cannot_filter_are_named() {
     let device = plain_device();
     for (bits, format) in [(SampleType::U16, "Rgba16Unorm"), (SampleType::F32, "Rgba32Float")] {
-        let options = BakeOptions { layout: Layout::Clean, sample_type: bits, ..BakeOptions::default() };
+        let options = BakeOptions::default().with_layout(Layout::Clean).with_sample_type(bits);
         let error = block_on(GpuTextures::new(&device, Shading::Clean, &maps_with(options)));
         let line = error.expect_err("a plain device has no such format").to_string();
         assert!(line.contains(format) && line.contains("half"), "{line}");
@@ -200,7 +200,7 @@ fn textures_baked_on_the_gpu_are_drawn_without_a_copy() {
         (Shading::Clean, SampleType::F16),
         (Shading::Phong, SampleType::U8),
     ] {
-        let options = BakeOptions { layout: shading.layout(), sample_type: bits, ..BakeOptions::default() };
+        let options = BakeOptions::default().with_layout(shading.layout()).with_sample_type(bits);
         let source = bumps.source_options();
         let [here, back] = block_on(async {
             let path = BakePath::Fastest;

@@ -13,7 +13,7 @@ use roughcast_gpu::{GpuError, Timestamps};
 fn each_span_has_its_name_and_a_time() {
     let gpu = gpu();
     let image = normals(44, 36, 3, SampleType::U8);
-    let options = BakeOptions { sample_type: SampleType::F16, ..Default::default() };
+    let options = BakeOptions::default().with_sample_type(SampleType::F16);
     let source = SourceOptions::default();
     let mut timestamps = block_on(Timestamps::new(&gpu, 2)).expect("lavapipe and every GPU have them");
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -44,7 +44,7 @@ fn without_the_feature_there_is_an_error() {
 #[test]
 fn bandwidths_count_the_necessary_bytes() {
     let gpu = gpu();
-    let options = BakeOptions { sample_type: SampleType::F16, ..Default::default() };
+    let options = BakeOptions::default().with_sample_type(SampleType::F16);
     let baked = block_on(bake_bandwidth(&gpu, 4, &options, BakePath::Compute)).expect("measured");
     // 16 texels of 4 bytes in; 16 + 4 + 1 texels of 8 bytes in two textures out.
     assert_eq!(baked.bytes, 16 * 4 + 2 * 21 * 8);

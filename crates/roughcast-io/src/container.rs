@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn what_does_not_fit_is_named() {
-        let with = |layout, bits| BakeOptions { layout, sample_type: bits, ..BakeOptions::default() };
+        let with = |layout, bits| BakeOptions::default().with_layout(layout).with_sample_type(bits);
         let moments = with(Layout::Moments, SampleType::F32);
         assert_eq!(Container::Exr.check(&moments), Ok(()));
         assert_eq!(
@@ -137,7 +137,7 @@ mod tests {
             Container::Png.check(&with(Layout::Lean, SampleType::F16)),
             Err(ContainerError::FloatsInPng { sample_type: SampleType::F16 })
         );
-        let blocks = BakeOptions { blocks: Blocks::Bc, ..with(Layout::Pbr, SampleType::U8) };
+        let blocks = with(Layout::Pbr, SampleType::U8).with_blocks(Blocks::Bc);
         assert_eq!(Container::Png.check(&blocks), Err(ContainerError::Blocks { container: Container::Png }));
         assert_eq!(Container::Ktx2.check(&blocks), Ok(()));
     }

@@ -6,6 +6,7 @@ use roughcast::{Kind, NormalChannels};
 
 /// How an image is to be read.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ReadOptions {
     /// How much the reader may allocate.
     pub limits: Limits,
@@ -13,6 +14,26 @@ pub struct ReadOptions {
     pub layer: Option<String>,
     /// The channels to read, by name and in this order. If empty, the names in the file decide.
     pub channels: Vec<String>,
+}
+
+impl ReadOptions {
+    /// The same with these limits.
+    #[must_use]
+    pub fn with_limits(self, limits: Limits) -> Self {
+        Self { limits, ..self }
+    }
+
+    /// The same with this layer or part; `None` for the unambiguous one.
+    #[must_use]
+    pub fn with_layer(self, layer: Option<String>) -> Self {
+        Self { layer, ..self }
+    }
+
+    /// The same with these channels, in this order; none for those that the file's names decide.
+    #[must_use]
+    pub fn with_channels(self, channels: Vec<String>) -> Self {
+        Self { channels, ..self }
+    }
 }
 
 impl From<Limits> for ReadOptions {

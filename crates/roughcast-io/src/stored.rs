@@ -213,16 +213,11 @@ mod tests {
         let texels =
             (0..SIDE * SIDE).flat_map(|i| [(i * 37 % 200) as u8 + 28, (i * 91 % 200) as u8 + 28, 255]);
         let map = Image::new(SIDE, SIDE, 3, Samples::U8(texels.collect())).expect("whole rows");
-        let options = BakeOptions {
-            layout: Layout::Pbr,
-            sample_type: SampleType::U8,
-            blocks: Blocks::Bc,
-            pbr: PbrOptions {
-                roughness_texture: roughcast::RoughnessTexture::Alone,
-                ..PbrOptions::default()
-            },
-            ..BakeOptions::default()
-        };
+        let options = BakeOptions::default()
+            .with_layout(Layout::Pbr)
+            .with_sample_type(SampleType::U8)
+            .with_blocks(Blocks::Bc)
+            .with_pbr(PbrOptions::default().with_roughness_texture(roughcast::RoughnessTexture::Alone));
         Bake::of(&map).roughness(BaseRoughness::Variance(0.01)).options(options).run().expect("a map").arrays
     }
 

@@ -8,11 +8,9 @@ use roughcast_io::{Decoded, ReadError, ReadOptions, read_image, read_image_file}
 use roughcast_testdata::find;
 
 fn options(layer: Option<&str>, channels: &[&str]) -> ReadOptions {
-    ReadOptions {
-        layer: layer.map(str::to_owned),
-        channels: channels.iter().map(|&name| name.to_owned()).collect(),
-        ..ReadOptions::default()
-    }
+    ReadOptions::default()
+        .with_layer(layer.map(str::to_owned))
+        .with_channels(channels.iter().map(|&name| name.to_owned()).collect())
 }
 
 fn read(case: &str, options: &ReadOptions) -> std::result::Result<Decoded, ReadError> {

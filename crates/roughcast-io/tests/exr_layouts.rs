@@ -102,7 +102,7 @@ fn each_of_several_parts_is_read_by_its_name() {
     let second = layer(&["X", "Y", "Z"], Encoding::FAST_LOSSLESS);
     let file = write(vec![first, second], Vec2(3, -4));
     for (name, channels) in [("R-G", &["R", "G"][..]), ("X-Y-Z", &["X", "Y", "Z"])] {
-        let options = ReadOptions { layer: Some(name.to_owned()), ..ReadOptions::default() };
+        let options = ReadOptions::default().with_layer(Some(name.to_owned()));
         let decoded = read_image(&file, None, &options).unwrap();
         assert_eq!(decoded.info.channels, channels);
         assert_eq!(decoded.info.metadata["name"], name);

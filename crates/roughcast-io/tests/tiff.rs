@@ -132,13 +132,13 @@ fn channels_are_chosen_by_name() {
     }
     // What is named counts, also an alpha or a colour of a palette.
     for (name, wanted, called) in [("grey_alpha.tif", "a", "alpha"), ("palette_8bit.tif", "g", "G")] {
-        let options = ReadOptions { channels: vec![wanted.to_owned()], ..ReadOptions::default() };
+        let options = ReadOptions::default().with_channels(vec![wanted.to_owned()]);
         let Decoded { image, info } = read(name, &options).expect("a known channel");
         assert_eq!((image.channels(), info.channels), (1, vec![called.to_owned()]));
         let whole = must_read(name).image;
         assert!((0..WIDTH).all(|x| image.get(x, 0, 0) == whole.get(x, 0, 1)), "{name}");
     }
-    let options = ReadOptions { channels: vec!["Z".to_owned()], ..ReadOptions::default() };
+    let options = ReadOptions::default().with_channels(vec!["Z".to_owned()]);
     let error = read("grey_of_6_samples.tif", &options).unwrap_err();
     let ReadError::NoSuchChannel { wanted, contents, .. } = error else { panic!("{error}") };
     assert_eq!((wanted.as_str(), contents.as_str()), ("Z", "R, G, B, channel3, channel4, channel5"));
@@ -148,7 +148,7 @@ fn channels_are_chosen_by_name() {
 
 fn picture_of_samples(name: &str, channels: &[&str]) -> Image {
     let channels = channels.iter().map(|&name| name.to_owned()).collect();
-    read(name, &ReadOptions { channels, ..ReadOptions::default() }).expect("known channels").image
+    read(name, &ReadOptions::default().with_channels(channels)).expect("known channels").image
 }
 
 #[test]
@@ -158,7 +158,7 @@ fn another_image_of_the_file_is_chosen_by_its_number() {
         ["it has 2 images, of which the first is read; others are chosen by their number"]
     );
     let nth = |layer: &str| {
-        let options = ReadOptions { layer: Some(layer.to_owned()), ..ReadOptions::default() };
+        let options = ReadOptions::default().with_layer(Some(layer.to_owned()));
         read("two_images.tif", &options)
     };
     let (first, second) = (nth("1").expect("an image").image, nth("2").expect("an image").image);

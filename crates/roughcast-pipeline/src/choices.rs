@@ -141,21 +141,21 @@ impl BakeChoices {
             (None, Brdf::BlinnPhong) if bits.is_float() => RoughnessStored::SpecularPower,
             (None, _) => RoughnessStored::Perceptual,
         };
-        BakeOptions {
-            layout: self.layout,
-            sample_type: bits,
-            scale: self.scale,
-            base: self.base,
-            brdf: self.brdf,
-            pbr: PbrOptions {
-                roughness_stored: stored,
-                anisotropy: self.anisotropy,
-                roughness_texture: self.roughness_channels(container, roughness),
-                normal_range: self.normal_range.unwrap_or(NormalRange::Unorm),
-            },
-            blocks: self.blocks,
-            filter: self.filter,
-        }
+        BakeOptions::default()
+            .with_layout(self.layout)
+            .with_sample_type(bits)
+            .with_scale(self.scale)
+            .with_base(self.base)
+            .with_brdf(self.brdf)
+            .with_pbr(
+                PbrOptions::default()
+                    .with_roughness_stored(stored)
+                    .with_anisotropy(self.anisotropy)
+                    .with_roughness_texture(self.roughness_channels(container, roughness))
+                    .with_normal_range(self.normal_range.unwrap_or(NormalRange::Unorm)),
+            )
+            .with_blocks(self.blocks)
+            .with_filter(self.filter)
     }
 
     /// The channels of `pbr`'s roughness: glTF's, with the occlusion and metalness of the picture if it has them. Renderers

@@ -72,19 +72,18 @@ impl Default for MapOptions {
 impl MapOptions {
     /// The options of the bake, after the pixels have decided the open ones.
     fn source(&self, kind: Kind, range: NormalRange, channels: NormalChannels) -> SourceOptions {
-        SourceOptions {
-            kind,
-            green: self.green.or(self.green_by_name).unwrap_or(Green::Up),
-            red: self.red,
-            normal_scale: self.normal_scale.unwrap_or(1.0),
-            range,
-            normal_channels: channels,
-            height_scale: self.height_scale.unwrap_or(SourceOptions::DEFAULT_HEIGHT_SCALE),
-            height_sense: self.height_sense,
-            gradient: self.gradient,
-            wrap: self.wrap,
-            max_slope: self.max_slope,
-        }
+        SourceOptions::default()
+            .with_kind(kind)
+            .with_green(self.green.or(self.green_by_name).unwrap_or(Green::Up))
+            .with_red(self.red)
+            .with_normal_scale(self.normal_scale.unwrap_or(1.0))
+            .with_range(range)
+            .with_normal_channels(channels)
+            .with_height_scale(self.height_scale.unwrap_or(SourceOptions::DEFAULT_HEIGHT_SCALE))
+            .with_height_sense(self.height_sense)
+            .with_gradient(self.gradient)
+            .with_wrap(self.wrap)
+            .with_max_slope(self.max_slope)
     }
 }
 

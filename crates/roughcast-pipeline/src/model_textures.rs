@@ -29,12 +29,10 @@ pub fn bake_for<'a>(
     options: TextureOptions,
 ) -> Result<Vec<TextureArray>, BakeError> {
     let anisotropy = (options.anisotropy == Anisotropy::Anisotropic).then_some(AnisotropyOutput::Khr);
-    let bake_options = BakeOptions {
-        layout: shading.layout(),
-        sample_type: options.sample_type,
-        pbr: PbrOptions { anisotropy, ..PbrOptions::default() },
-        ..BakeOptions::default()
-    };
+    let bake_options = BakeOptions::default()
+        .with_layout(shading.layout())
+        .with_sample_type(options.sample_type)
+        .with_pbr(PbrOptions::default().with_anisotropy(anisotropy));
     let stores_base = shading.layout().base_role() != BaseRole::OnRequest;
     let base = stores_base.then_some(BaseRoughness::Variance(1.0 / options.specular_power));
     Ok(Bake::of(map).source(*source).roughness(base).options(bake_options).run()?.arrays)

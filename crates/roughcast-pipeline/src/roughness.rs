@@ -203,7 +203,7 @@ fn read(path: &Path, channel: Option<&str>, limits: &Limits) -> Result<Decoded, 
     match read_image_file(path, &whole) {
         Ok(decoded) if channel_of(&decoded.info, name).is_some() => Ok(decoded),
         Ok(_) | Err(ReadError::OpenChannels { .. }) => {
-            let named = ReadOptions { channels: vec![name.to_owned()], ..whole };
+            let named = whole.with_channels(vec![name.to_owned()]);
             read_image_file(path, &named)
                 .map_err(|source| RoughnessError::Channel { path: path.to_owned(), source })
         }

@@ -65,7 +65,7 @@ mod tests {
             let (towards, irradiance) = LIGHT.at(DVec3::new(0.0, 0.0, -distance));
             let direction = towards.as_vec3().to_array();
             for (shading, form) in Shading::ALL.iter().flat_map(|s| Form::ALL.iter().map(move |f| (s, f))) {
-                let options = ShadingOptions { form: *form, ..ShadingOptions::default() };
+                let options = ShadingOptions::default().with_form(*form);
                 let surface = shading.surface_of_slope(Slope::default(), &options);
                 let sample = LightSample { direction, irradiance };
                 let light = reflect(&surface, &Material::default(), [0.0, 0.0, 1.0], &sample, &options);

@@ -25,7 +25,7 @@ impl Pattern {
 
     /// How the heights become slopes: the defaults, with heights in units of the width.
     pub fn source_options(&self) -> SourceOptions {
-        SourceOptions { kind: Kind::Height, height_scale: 1.0, ..SourceOptions::default() }
+        SourceOptions::default().with_kind(Kind::Height).with_height_scale(1.0)
     }
 }
 
@@ -135,8 +135,7 @@ mod tests {
 
     /// The moments of the whole map, by the library.
     fn whole(pattern: &Pattern) -> Moments {
-        let options =
-            BakeOptions { layout: Layout::Moments, sample_type: SampleType::F32, ..BakeOptions::default() };
+        let options = BakeOptions::default().with_layout(Layout::Moments).with_sample_type(SampleType::F32);
         let baked = Bake::of(&pattern.heights)
             .source(pattern.source_options())
             .options(options)

@@ -20,6 +20,7 @@ roughcast::named_enum! {
 
 /// How textures are sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Sampler {
     /// The filter.
     pub filter: Filter,
@@ -31,6 +32,32 @@ pub struct Sampler {
     pub mip_bias: f64,
     /// What lies beyond the edges.
     pub wrap: Wrap,
+}
+
+impl Sampler {
+    /// The same with this filter.
+    #[must_use]
+    pub fn with_filter(self, filter: Filter) -> Self {
+        Self { filter, ..self }
+    }
+
+    /// The same at this level of detail; `None` for the footprint's.
+    #[must_use]
+    pub fn with_level(self, level: Option<f64>) -> Self {
+        Self { level, ..self }
+    }
+
+    /// The same with this added to the footprint's level of detail.
+    #[must_use]
+    pub fn with_mip_bias(self, mip_bias: f64) -> Self {
+        Self { mip_bias, ..self }
+    }
+
+    /// The same with this beyond the edges.
+    #[must_use]
+    pub fn with_wrap(self, wrap: Wrap) -> Self {
+        Self { wrap, ..self }
+    }
 }
 
 impl Default for Sampler {

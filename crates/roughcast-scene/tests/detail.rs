@@ -28,7 +28,7 @@ fn slopes() -> SlopeDetail {
 fn baked(layout: Layout) -> Vec<TextureArray> {
     let bumps = bumps();
     let bits = *layout.sample_types().last().expect("a layout has sample types");
-    let options = BakeOptions { layout, sample_type: bits, ..BakeOptions::default() };
+    let options = BakeOptions::default().with_layout(layout).with_sample_type(bits);
     let base = roughcast::BaseRoughness::Variance(1.0 / 64.0);
     let bake = Bake::of(&bumps.heights).source(bumps.source_options()).options(options).roughness(base);
     bake.run().expect("a map").arrays
@@ -72,7 +72,7 @@ fn lean_textures_answer_what_the_slopes_under_the_pixel_are() {
     const MEAN: f64 = 0.25;
     const VARIANCE: f64 = 0.15;
     let textures = BakedTextures::new(Wanted::Distribution, &baked(Layout::Lean)).expect("LEAN");
-    let sampler = Sampler { filter: Filter::Ewa, ..Sampler::default() };
+    let sampler = Sampler::default().with_filter(Filter::Ewa);
     for texels in [3.0, 6.0] {
         let [mean, variance] = errors(&slopes(), &textures.sampled(sampler), texels);
         assert!(mean < MEAN && variance < VARIANCE, "{texels} texels: {mean} and {variance}");
@@ -106,8 +106,8 @@ fn every_layout_that_a_sampler_reads_answers_both_questions() {
     for layout in Layout::ALL.iter().copied() {
         let Ok(textures) = BakedTextures::new(Wanted::Distribution, &baked(layout)) else { continue };
         layouts += 1;
-        let detail = textures.sampled(Sampler { filter: Filter::Trilinear, ..Sampler::default() });
-        let options = detail.options(ShadingOptions { specular_power: 64.0, ..ShadingOptions::default() });
+        let detail = textures.sampled(Sampler::default().with_filter(Filter::Trilinear));
+        let options = detail.options(ShadingOptions::default().with_specular_power(64.0));
         let (mut near, mut trace) = (0.0_f32, 0.0_f32);
         for (ray, right, below) in &rays {
             let hit = shape.hit(ray).expect("the plane");
@@ -150,7 +150,7 @@ fn any_model_shades_any_layout() {
     for layout in [Layout::Lean, Layout::Clean, Layout::Schilling, Layout::Pbr] {
         let textures = BakedTextures::new(Wanted::Distribution, &baked(layout)).expect("its own textures");
         let detail = textures.sampled(Sampler::default());
-        let options = detail.options(ShadingOptions { specular_power: 20.0, ..ShadingOptions::default() });
+        let options = detail.options(ShadingOptions::default().with_specular_power(20.0));
         for model in Shading::ALL {
             let lobe = model.surface_of(&detail.distribution(&at, &options), &options).lobe(up, up, &options);
             assert!(lobe.is_finite() && lobe > 0.0, "{model} on {layout}: {lobe}");
@@ -175,7 +175,7 @@ fn plane_scene() -> Scene {
 #[test]
 fn resolved_detail_rendered_once_a_pixel_is_ground_truth_with_one_sample() {
     let detail = slopes();
-    let options = ShadingOptions { specular_power: 60.0, ..ShadingOptions::default() };
+    let options = ShadingOptions::default().with_specular_power(60.0);
     let (scene, size) = (plane_scene(), (48, 32));
     let method = Method { shading: Shading::Lean, detail: &Resolved(&detail), options };
     let once = method.render(&scene, size, &unwatched).expect("a picture");

@@ -37,7 +37,7 @@ struct Seen {
 impl Seen {
     fn new(name: &str, green: Green, view: View) -> Self {
         let image = picture(name).image;
-        let source = SourceOptions { green, ..SourceOptions::default() };
+        let source = SourceOptions::default().with_green(green);
         let plane = Arc::new(Shape::Plane(Plane::default()));
         let scene = view.scene(plane, (image.width(), image.height()), SIZE, Material::default());
         let slopes = SlopeMap::of(&image, &source).expect("a map");
@@ -45,7 +45,7 @@ impl Seen {
     }
 
     fn maps(&self, shading: Shading) -> Vec<TextureArray> {
-        let options = BakeOptions { layout: shading.layout(), ..BakeOptions::default() };
+        let options = BakeOptions::default().with_layout(shading.layout());
         Bake::of(&self.image).source(self.source).options(options).run().expect("a map").arrays
     }
 
@@ -62,9 +62,9 @@ impl Seen {
     /// Root mean square errors of a model with a filter, corrected and as published.
     fn errors(&self, shading: Shading, filter: Filter, truth: &Picture) -> [f64; 2] {
         let textures = BakedTextures::of_model(shading, &self.maps(shading)).expect("the model's maps");
-        let sampler = Sampler { filter, ..Sampler::default() };
+        let sampler = Sampler::default().with_filter(filter);
         [FootprintModel::Corrected, FootprintModel::Published].map(|footprint| {
-            let options = ShadingOptions { footprint, ..ShadingOptions::default() };
+            let options = ShadingOptions::default().with_footprint(footprint);
             let method = Method { shading, detail: &textures.sampled(sampler), options };
             let picture = method.render(&self.scene, SIZE, &unwatched).expect("a picture");
             rmse(&picture, truth).expect("pictures of one size")

@@ -24,12 +24,12 @@ fn map(name: &str) -> Image {
 }
 
 fn picture(map: &Image, bits: SampleType, view: View) -> Picture {
-    let options = BakeOptions { sample_type: bits, ..BakeOptions::default() };
+    let options = BakeOptions::default().with_sample_type(bits);
     let baked = Bake::of(map).options(options).run().expect("a map");
     let textures = BakedTextures::of_model(Shading::Lean, &baked.arrays).expect("LEAN's textures");
     let plane = Arc::new(Shape::Plane(Plane::default()));
     let scene = view.scene(plane, (map.width(), map.height()), SIZE, Material::default());
-    let options = ShadingOptions { specular_power: SPECULAR_POWER, ..ShadingOptions::default() };
+    let options = ShadingOptions::default().with_specular_power(SPECULAR_POWER);
     let method = Method { shading: Shading::Lean, detail: &textures.sampled(Sampler::default()), options };
     method.render(&scene, SIZE, &unwatched).expect("a picture")
 }

@@ -32,8 +32,7 @@ fn lean_has_smaller_errors_on_real_maps() {
         let slopes = SlopeMap::of(&map, &source).unwrap();
         let plane = Arc::new(Shape::Plane(Plane::default()));
         let scene = View::Far.scene(plane, (map.width(), map.height()), SIZE, Material::default());
-        let options =
-            ShadingOptions { specular_power: 256.0, form: Form::Normalised, ..ShadingOptions::default() };
+        let options = ShadingOptions::default().with_specular_power(256.0).with_form(Form::Normalised);
         let errors = |shading: Shading, reconstruction| {
             let truth = Truth {
                 shading,
@@ -43,7 +42,7 @@ fn lean_has_smaller_errors_on_real_maps() {
             };
             let truth = truth.render(&scene, SIZE, &unwatched).unwrap();
             let textures = BakedTextures::of_model(shading, &arrays).unwrap();
-            let sampler = Sampler { filter: Filter::Trilinear, ..Sampler::default() };
+            let sampler = Sampler::default().with_filter(Filter::Trilinear);
             let picture = Method { shading, detail: &textures.sampled(sampler), options }
                 .render(&scene, SIZE, &unwatched)
                 .unwrap();

@@ -31,10 +31,9 @@ impl Map {
     }
 
     fn baked(&self, shading: Shading, specular_power: f32) -> Vec<TextureArray> {
-        let options =
-            BakeOptions { layout: shading.layout(), sample_type: SampleType::F32, ..BakeOptions::default() };
+        let options = BakeOptions::default().with_layout(shading.layout()).with_sample_type(SampleType::F32);
         let options = match shading {
-            Shading::Ggx | Shading::Toksvig => BakeOptions { sample_type: SampleType::U16, ..options },
+            Shading::Ggx | Shading::Toksvig => options.with_sample_type(SampleType::U16),
             _ => options,
         };
         let roughness = Some(BaseRoughness::Variance(1.0 / specular_power));
@@ -61,7 +60,7 @@ impl Map {
     ) -> Picture {
         let textures =
             BakedTextures::of_model(shading, &self.baked(shading, options.specular_power)).unwrap();
-        let sampler = Sampler { filter, ..Sampler::default() };
+        let sampler = Sampler::default().with_filter(filter);
         Method { shading, detail: &textures.sampled(sampler), options }
             .render(scene, size, &unwatched)
             .unwrap()
@@ -73,7 +72,7 @@ impl Map {
 }
 
 fn power(specular_power: f32, form: Form) -> ShadingOptions {
-    ShadingOptions { specular_power, form, ..ShadingOptions::default() }
+    ShadingOptions::default().with_specular_power(specular_power).with_form(form)
 }
 
 /// A plane from above, a highlight in its middle, with this many texels of a map of 256 a pixel.
@@ -285,8 +284,8 @@ fn packed_roughness_shades_as_roughness_alone() {
     let map = Map::new(pattern::random_bumps(64, 0.3, 7));
     let (scene, options) = (plane(4.0), power(64.0, Form::Normalised));
     let picture = |roughness_texture| {
-        let pbr = PbrOptions { roughness_texture, ..PbrOptions::default() };
-        let bake_options = BakeOptions { layout: Shading::Ggx.layout(), pbr, ..BakeOptions::default() };
+        let pbr = PbrOptions::default().with_roughness_texture(roughness_texture);
+        let bake_options = BakeOptions::default().with_layout(Shading::Ggx.layout()).with_pbr(pbr);
         let base = Some(BaseRoughness::Variance(1.0 / 64.0));
         let baked = Bake::of(&map.pattern.heights)
             .source(map.pattern.source_options())

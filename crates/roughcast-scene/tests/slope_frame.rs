@@ -361,11 +361,8 @@ fn a_mirrored_quad_matches_the_reflected_one() {
 fn picture(quad: Quad, mirror: fn(DVec3) -> DVec3) -> Picture {
     const SIZE: (u32, u32) = (96, 64);
     let bumps = pattern::random_bumps(64, 0.15, 5);
-    let options = BakeOptions {
-        layout: Shading::Lean.layout(),
-        sample_type: SampleType::F32,
-        ..BakeOptions::default()
-    };
+    let options =
+        BakeOptions::default().with_layout(Shading::Lean.layout()).with_sample_type(SampleType::F32);
     let maps = Bake::of(&bumps.heights).source(bumps.source_options()).options(options).run().unwrap().arrays;
     let textures = BakedTextures::of_model(Shading::Lean, &maps).unwrap();
     let middle = quad.point(DVec2::splat(0.5));
@@ -381,7 +378,7 @@ fn picture(quad: Quad, mirror: fn(DVec3) -> DVec3) -> Picture {
         repeats: 2.0,
         background: [0.0; 3],
     };
-    let sampler = Sampler { filter: Filter::Anisotropic, ..Sampler::default() };
+    let sampler = Sampler::default().with_filter(Filter::Anisotropic);
     let detail = textures.sampled(sampler);
     let method = Method { shading: Shading::Lean, detail: &detail, options: ShadingOptions::default() };
     method.render(&scene, SIZE, &unwatched).unwrap()

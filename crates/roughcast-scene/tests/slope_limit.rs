@@ -44,7 +44,10 @@ impl Far {
             samples[at..at + 3].copy_from_slice(texel);
         }
         let normal_channels = guess_channels(&image, &decoded.info.channels, range);
-        let source = SourceOptions { green, range, normal_channels, ..SourceOptions::default() };
+        let source = SourceOptions::default()
+            .with_green(green)
+            .with_range(range)
+            .with_normal_channels(normal_channels);
         let plane = Arc::new(Shape::Plane(Plane::default()));
         let scene = View::Far.scene(plane, (image.width(), image.height()), SIZE, Material::default());
         let slopes = SlopeMap::of(&image, &source).expect("a map");
@@ -62,8 +65,8 @@ impl Far {
 
     /// The root mean square error of a model with maps baked by the default options, except for the maximum slope.
     fn error(&self, model: usize, max_slope: MaxSlope) -> (f64, BakeReport) {
-        let options = BakeOptions { layout: MODELS[model].layout(), ..BakeOptions::default() };
-        let source = SourceOptions { max_slope, ..self.source };
+        let options = BakeOptions::default().with_layout(MODELS[model].layout());
+        let source = self.source.with_max_slope(max_slope);
         let baked = Bake::of(&self.image).source(source).options(options).run().expect("a map");
         let textures = BakedTextures::of_model(MODELS[model], &baked.arrays).expect("the model's maps");
         let method = Method {

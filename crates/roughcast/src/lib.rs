@@ -101,6 +101,7 @@ mod progress;
 mod pyramid;
 mod roughness;
 mod row;
+mod setters;
 pub mod shading;
 mod slope;
 mod source;

@@ -4,6 +4,7 @@ use crate::SampleType;
 use crate::convention::{Green, HeightSense, Kind, NormalChannels, NormalRange, Red, Wrap};
 use crate::named::named_enum;
 use crate::roughness::{Base, Brdf};
+use crate::setters::setters;
 use crate::texture::{Blocks, Layout, PbrOptions};
 
 named_enum! {
@@ -34,13 +35,14 @@ named_enum! {
     }
 }
 
-/// How a map is turned into slopes. Write `..Default::default()` at the end: a minor version may add a field.
+/// How a map is turned into slopes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
+#[non_exhaustive]
 pub struct SourceOptions {
     /// What the pixels are.
     pub kind: Kind,
@@ -66,6 +68,20 @@ pub struct SourceOptions {
     /// Largest length of a slope; steeper ones are scaled back to it, direction kept, and counted.
     pub max_slope: MaxSlope,
 }
+
+setters!(SourceOptions {
+    with_kind(kind: Kind),
+    with_green(green: Green),
+    with_red(red: Red),
+    with_normal_scale(normal_scale: f32),
+    with_range(range: NormalRange),
+    with_normal_channels(normal_channels: NormalChannels),
+    with_height_scale(height_scale: f32),
+    with_height_sense(height_sense: HeightSense),
+    with_gradient(gradient: Gradient),
+    with_wrap(wrap: Wrap),
+    with_max_slope(max_slope: MaxSlope),
+});
 
 /// The largest length that a slope may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -141,13 +157,14 @@ pub enum ScaleChoice {
     Fixed(f32),
 }
 
-/// What to bake from a map. Write `..Default::default()` at the end: a minor version may add a field.
+/// What to bake from a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
+#[non_exhaustive]
 pub struct BakeOptions {
     /// The layout.
     pub layout: Layout,
@@ -166,6 +183,17 @@ pub struct BakeOptions {
     /// The kernel of the pyramid.
     pub filter: PyramidFilter,
 }
+
+setters!(BakeOptions {
+    with_layout(layout: Layout),
+    with_sample_type(sample_type: SampleType),
+    with_scale(scale: ScaleChoice),
+    with_base(base: Base),
+    with_brdf(brdf: Brdf),
+    with_pbr(pbr: PbrOptions),
+    with_blocks(blocks: Blocks),
+    with_filter(filter: PyramidFilter),
+});
 
 impl Default for BakeOptions {
     /// LEAN in 16 bits with the smallest safe scale, without base roughness, box filter. `pbr` is as glTF reads it.

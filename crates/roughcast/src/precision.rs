@@ -18,7 +18,7 @@ use crate::{ImageView, Moments, SampleType, parallel};
 /// assert!((95.0..105.0).contains(&unorm_specular_power(SampleType::U8, 1.0)));
 ///
 /// let flat = Image::zeros(8, 8, 1, SampleType::U8);
-/// let measured = measure(&flat, &SourceOptions { kind: Kind::Height, ..SourceOptions::default() })?;
+/// let measured = measure(&flat, &SourceOptions::default().with_kind(Kind::Height))?;
 /// assert_eq!(measured.len(), SampleType::ALL.len());
 /// assert_eq!(recommend(&measured, 50.0), Some(SampleType::U8));
 /// # Ok::<(), roughcast::BakeError>(())

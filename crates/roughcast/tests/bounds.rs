@@ -38,7 +38,7 @@ fn maps() -> Vec<Map> {
     let grooves: Vec<[f64; 2]> = (0..48 * 48).map(|i| groove(i % 48)).collect();
     let (grooves, grooves_source) = maps::slope_map(48, 48, &grooves);
     let (one, one_source) = maps::slope_map(1, 1, &[[0.4, -0.9]]);
-    let heights = SourceOptions { kind: Kind::Height, ..SourceOptions::default() };
+    let heights = SourceOptions::default().with_kind(Kind::Height);
     let real = |name, path, source| Map { name, image: real_files::read_part(path, 150), source };
     vec![
         Map { name: "wavy", image: wavy, source: wavy_source },
@@ -78,14 +78,14 @@ fn cases() -> Vec<Case> {
                 Layout::Toksvig => cases.push(Case { options, base: Some(0.01) }),
                 Layout::Pbr => cases.extend(material_cases(options)),
                 _ => {
-                    let baked = BakeOptions { base: Base::Baked, ..options };
+                    let baked = options.with_base(Base::Baked);
                     cases.extend([Case { options, base: None }, Case { options: baked, base: Some(0.01) }]);
                 }
             }
         }
     }
     for layout in [Layout::Variance, Layout::Toksvig, Layout::Pbr] {
-        let options = BakeOptions { blocks: Blocks::Bc, ..options(layout, SampleType::U8) };
+        let options = options(layout, SampleType::U8).with_blocks(Blocks::Bc);
         cases.push(Case { options, base: (layout != Layout::Variance).then_some(0.01) });
     }
     cases
@@ -99,14 +99,14 @@ fn material_cases(options: BakeOptions) -> Vec<Case> {
         }
         for anisotropy in [None, Some(AnisotropyOutput::Khr)] {
             for base in [None, Some(0.01)] {
-                let pbr = PbrOptions { roughness_stored: *stored, anisotropy, ..PbrOptions::default() };
-                let options = BakeOptions { pbr, ..options };
+                let pbr = PbrOptions::default().with_roughness_stored(*stored).with_anisotropy(anisotropy);
+                let options = options.with_pbr(pbr);
                 cases.push(Case { options, base });
             }
         }
     }
-    let pbr = PbrOptions { roughness_texture: RoughnessTexture::Packed, ..PbrOptions::default() };
-    let packed = BakeOptions { pbr, ..options };
+    let pbr = PbrOptions::default().with_roughness_texture(RoughnessTexture::Packed);
+    let packed = options.with_pbr(pbr);
     cases.push(Case { options: packed, base: None });
     cases
 }

@@ -64,7 +64,7 @@ fn broken_texels_of_a_constant_slope_get_that_slope() {
     const ROUNDING: f32 = 4.0 * f32::EPSILON;
     let (width, height) = (9, 6);
     let good = [0.25_f32, -0.5, 1.0];
-    let source = SourceOptions { range: NormalRange::Signed, ..Default::default() };
+    let source = SourceOptions::default().with_range(NormalRange::Signed);
     for bad in [[0.3, 0.1, -1.0], [f32::NAN, 0.0, 1.0], [0.0; 3], [0.2, 0.0, f32::INFINITY]] {
         // Corners, edges, neighbours of each other, the middle.
         for broken in [vec![0], vec![8, 45, 53], vec![3, 4, 12], vec![30], vec![0, 1, 9]] {
@@ -72,11 +72,8 @@ fn broken_texels_of_a_constant_slope_get_that_slope() {
                 let texel = |i: usize| if broken.contains(&i) { bad } else { good };
                 let samples = (0..width * height).flat_map(texel).collect();
                 let image = Image::new(width, height, 3, Samples::F32(samples)).expect("as many");
-                let baked = baked(
-                    &image,
-                    &SourceOptions { wrap: *wrap, ..source },
-                    &options(Layout::Moments, SampleType::F32),
-                );
+                let baked =
+                    baked(&image, &source.with_wrap(*wrap), &options(Layout::Moments, SampleType::F32));
                 assert_eq!(baked.report.counts.broken(), broken.len() as u64);
                 for moments in &decode(&baked.arrays).expect("moments")[0].moments {
                     let off = (moments.mean.x - 0.25).abs().max((moments.mean.y + 0.5).abs());
@@ -95,7 +92,7 @@ fn neighbours_come_from_other_tiles_and_from_beyond_the_edge() {
     let (width, height) = (1024, 128);
     let slopes = common::maps::slopes(width, height, 71);
     for wrap in Wrap::ALL {
-        let source = SourceOptions { range: NormalRange::Signed, wrap: *wrap, ..Default::default() };
+        let source = SourceOptions::default().with_range(NormalRange::Signed).with_wrap(*wrap);
         let mut image = common::maps::normal_map((width, height), &slopes, SampleType::F32, &source, 3);
         let Samples::F32(mut samples) = image.samples().clone() else { panic!("asked for floats") };
         let broken = [(0, 0), (1023, 127), (511, 64), (512, 63), (511, 63), (0, 70), (700, 127)];

@@ -7,7 +7,7 @@ use common::compare::{
 };
 use common::level::{Level, NAMES, Plane, raw_moments};
 use common::{baked, float_moments, maps, pyramid_oracle, slope_oracle};
-use roughcast::{PyramidFilter, SourceOptions, Wrap};
+use roughcast::{PyramidFilter, Wrap};
 
 fn levels() -> Vec<Level> {
     let (image, source) = maps::slope_map(24, 20, &maps::slopes(24, 20, 71));
@@ -84,7 +84,7 @@ fn a_wrong_baked_texel_is_detected() {
         Wrap::Repeat,
     );
     assert!(compare_rounded(&got, &other, rounding).is_err());
-    let turned = SourceOptions { green: roughcast::Green::Down, ..source };
+    let turned = source.with_green(roughcast::Green::Down);
     let other = slope_oracle::slopes(&image, &turned);
     let other = pyramid_oracle::bump_moments(&other, PyramidFilter::Box, Wrap::Repeat);
     assert!(compare_rounded(&got, &other, rounding).is_err());

@@ -7,9 +7,7 @@ use common::level::{Level, Plane, Texel, channel_of, combined, decoded, layer, p
 use common::maps::{self, gentle_map, material_map, variances};
 use common::{baked, baked_with, float_moments, options, oracle_of, pyramid_oracle, slope_oracle};
 use roughcast::texture::{Base, Layout, RoughnessStored};
-use roughcast::{
-    BakeOptions, BaseRoughness, Image, PyramidFilter, RoughnessMap, SampleType, Samples, SourceOptions,
-};
+use roughcast::{BaseRoughness, Image, PyramidFilter, RoughnessMap, SampleType, Samples, SourceOptions};
 
 /// Averaging alone: some four roundings a level.
 const AVERAGING: Rounding = Rounding { count: 24.0, floor: 0.0 };
@@ -23,7 +21,7 @@ fn a_uniform_base_adds_its_variance_to_every_second_moment() {
         let (image, source) = gentle_map(width, height);
         for power in [13_777.0, 64.0, 3.0_f32] {
             let base = Some(BaseRoughness::Variance(1.0 / power));
-            let folded = BakeOptions { base: Base::Baked, ..float_moments(PyramidFilter::Box) };
+            let folded = float_moments(PyramidFilter::Box).with_base(Base::Baked);
             let with = baked_with(&image, &source, base, &folded);
             let without = baked(&image, &source, &float_moments(PyramidFilter::Box));
             let added = |t: Texel| Texel {
@@ -63,7 +61,7 @@ fn a_mapped_base_adds_the_mean_of_its_variance() {
         ] {
             let wanted = oracle_of(&image, &source, &variances(map, channel, stored));
             let base = Some(BaseRoughness::Map(RoughnessMap { image: map.view(), channel, stored }));
-            let folded = BakeOptions { base: Base::Baked, ..float_moments(PyramidFilter::Box) };
+            let folded = float_moments(PyramidFilter::Box).with_base(Base::Baked);
             let got = baked_with(&image, &source, base, &folded);
             // Gloss is one minus a roughness: that difference's rounding, four times over.
             let rounding = Rounding { floor: 0.1, ..AVERAGING };
@@ -198,7 +196,7 @@ fn bump_slopes_are_derivatives_with_t_downwards() {
     // A ramp that rises to the right and falls downwards, away from its edges.
     let values = (0..64).map(|i| ((i % 8) as f32) - 2.0 * ((i / 8) as f32)).collect();
     let image = maps::image(8, 8, 1, Samples::F32(values));
-    let source = SourceOptions { height_scale: 1.0 / 8.0, ..height_source };
+    let source = height_source.with_height_scale(1.0 / 8.0);
     let bumps = baked(&image, &source, &options(Layout::BumpSlopes, SampleType::F32));
     let texture = layer(&bumps.arrays[0], "bump-slopes");
     for (channel, wanted) in [("b1_dhds", 1.0), ("b2_dhdt", -2.0), ("b5_dh2dsdt", -2.0)] {

@@ -31,7 +31,7 @@ fn the_number_of_threads_makes_no_difference() {
         let (normals, normal_source) = maps::plain_normal_map(width, height, 61);
         let (heights, height_source) = maps::height_map(width, height, SampleType::U16, 62);
         for filter in PyramidFilter::ALL {
-            let moments = BakeOptions { filter: *filter, ..options(Layout::Moments, SampleType::F32) };
+            let moments = options(Layout::Moments, SampleType::F32).with_filter(*filter);
             check(&normals, &normal_source, &moments);
             check(&heights, &height_source, &moments);
         }
@@ -61,7 +61,7 @@ fn threads_make_no_difference_to_any_layout() {
         } else {
             SampleType::U16
         };
-        check(&normals, &source, &BakeOptions { base: Base::Baked, ..options(*layout, bits) });
+        check(&normals, &source, &options(*layout, bits).with_base(Base::Baked));
     }
 }
 
@@ -71,7 +71,7 @@ fn borrowed_memory_gives_the_same_as_images() {
     let (width, height) = (48, 33);
     let (normals, source) = maps::plain_normal_map(width, height, 65);
     let roughness: Vec<f32> = (0..width * height).map(|i| (i % 97) as f32 / 97.0).collect();
-    let options = BakeOptions { base: Base::Baked, ..options(Layout::Moments, SampleType::F32) };
+    let options = options(Layout::Moments, SampleType::F32).with_base(Base::Baked);
     let (channel, stored) = (0, RoughnessStored::Alpha);
     let bake_with = |map: ImageView<'_>, image: ImageView<'_>| {
         let base = BaseRoughness::Map(RoughnessMap { image, channel, stored });

@@ -14,7 +14,7 @@ const SIDE: usize = 1024;
 
 /// Maps are read as the test reads any: three channels with scale and bias.
 fn options(green: Green) -> SourceOptions {
-    SourceOptions { green, ..SourceOptions::default() }
+    SourceOptions::default().with_green(green)
 }
 
 /// Red, green and blue of a map in 8 bits.

@@ -27,14 +27,11 @@ fn plane_with(hole: f32) -> Image {
 }
 
 fn source(gradient: Gradient) -> SourceOptions {
-    SourceOptions {
-        kind: Kind::Height,
-        gradient,
-        wrap: Wrap::Clamp,
-        // A value is a texel.
-        height_scale: 1.0 / SIZE as f32,
-        ..SourceOptions::default()
-    }
+    SourceOptions::default()
+        .with_kind(Kind::Height)
+        .with_gradient(gradient)
+        .with_wrap(Wrap::Clamp)
+        .with_height_scale(1.0 / SIZE as f32)
 }
 
 fn slope(array: &TextureArray, x: usize, y: usize) -> [f32; 2] {

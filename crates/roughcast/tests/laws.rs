@@ -21,7 +21,7 @@ fn means_of_all_moments_are_the_same_on_every_level() {
         let (image, options) = maps::slope_map(width, height, &maps::slopes(width, height, 21));
         for filter in PyramidFilter::ALL {
             for wrap in Wrap::ALL {
-                let options = SourceOptions { wrap: *wrap, ..options };
+                let options = options.with_wrap(*wrap);
                 let levels = raw_moments(&baked(&image, &options, &float_moments(*filter)));
                 let whole = levels[levels.len() - 1].texel(0);
                 let tolerance = (AVERAGING.slope(whole), AVERAGING.second(whole));
@@ -40,7 +40,7 @@ fn a_constant_slope_stays_exactly_constant() {
             let (x, y) = (slope[0] as f32, slope[1] as f32);
             for filter in PyramidFilter::ALL {
                 for wrap in Wrap::ALL {
-                    let options = SourceOptions { wrap: *wrap, ..options };
+                    let options = options.with_wrap(*wrap);
                     let arrays = baked(&image, &options, &float_moments(*filter)).arrays;
                     for level in &arrays[0].layers[0].levels {
                         let Samples::F32(samples) = level.samples() else { panic!("floats were asked for") };
@@ -68,9 +68,8 @@ fn the_roughness_pyramid_holds_the_covariance_of_the_whole_footprint() {
         let (image, source) = maps::slope_map(width, height, &slopes);
         for filter in PyramidFilter::ALL {
             for wrap in Wrap::ALL {
-                let source = SourceOptions { wrap: *wrap, ..source };
-                let bake_options =
-                    roughcast::BakeOptions { filter: *filter, ..options(Layout::Schilling, SampleType::F32) };
+                let source = source.with_wrap(*wrap);
+                let bake_options = options(Layout::Schilling, SampleType::F32).with_filter(*filter);
                 let got = schilling_levels(&baked(&image, &source, &bake_options));
                 let level_0 = slope_oracle::slopes(&image, &source);
                 let wanted = footprints(&level_0, got.len(), *filter, *wrap);
@@ -231,7 +230,8 @@ fn turning_a_height_map_turns_its_moments() {
                 let bake_heights = |heights: &[f64], width: usize, height: usize, height_scale: f32| {
                     let image = maps::image(width, height, 1, maps::samples(heights, SampleType::U16));
                     let (_, options) = maps::height_map(1, 1, SampleType::U8, 0);
-                    let options = SourceOptions { gradient, wrap: *wrap, height_scale, ..options };
+                    let options =
+                        options.with_gradient(gradient).with_wrap(*wrap).with_height_scale(height_scale);
                     raw_moments(&baked(&image, &options, &float_moments(PyramidFilter::Box)))
                 };
                 let scale = 0.05_f32;
@@ -281,8 +281,8 @@ fn green_up_and_green_down_are_the_same_map() {
         (SampleType::U16, NormalRange::Unorm),
         (SampleType::F32, NormalRange::Signed),
     ] {
-        let up = SourceOptions { range, ..Default::default() };
-        let down = SourceOptions { green: Green::Down, ..up };
+        let up = SourceOptions::default().with_range(range);
+        let down = up.with_green(Green::Down);
         let image = maps::normal_map((96, 40), &maps::slopes(96, 40, 25), sample_type, &up, 3);
         let turned = with_green_turned(&image, range);
         for layout in [Layout::Lean, Layout::Pbr, Layout::Schilling] {
@@ -309,7 +309,7 @@ fn scaled_heights_have_scaled_slopes() {
                 Level::from_texels(level.width, level.height, texels)
             })
             .collect();
-        let source = SourceOptions { height_scale: source.height_scale * k as f32, ..source };
+        let source = source.with_height_scale(source.height_scale * k as f32);
         let got = raw_moments(&baked(&image, &source, &float_moments(PyramidFilter::Box)));
         if exact {
             // Powers of two leave every digit alone.
@@ -324,7 +324,7 @@ fn scaled_heights_have_scaled_slopes() {
 #[test]
 fn the_sense_of_heights_turns_slopes_and_leaves_second_moments() {
     let (image, up) = maps::height_map(64, 64, SampleType::U8, 27);
-    let down = SourceOptions { height_sense: roughcast::HeightSense::WhiteDeep, ..up };
+    let down = up.with_height_sense(roughcast::HeightSense::WhiteDeep);
     let levels =
         |source: &SourceOptions| raw_moments(&baked(&image, source, &float_moments(PyramidFilter::Box)));
     for (up, down) in levels(&up).iter().zip(&levels(&down)) {

@@ -22,23 +22,21 @@ const SIZES: [(usize, usize); 3] = [(64, 64), (53, 37), (96, 40)];
 fn floats() -> BakeOptions {
     with_choices(
         SampleType::F32,
-        PbrOptions {
-            roughness_texture: RoughnessTexture::Alone,
-            normal_range: NormalRange::Signed,
-            ..PbrOptions::default()
-        },
+        PbrOptions::default()
+            .with_roughness_texture(RoughnessTexture::Alone)
+            .with_normal_range(NormalRange::Signed),
     )
 }
 
 /// The layout `pbr` with these choices.
 fn with_choices(bits: SampleType, pbr: PbrOptions) -> BakeOptions {
-    BakeOptions { pbr, ..options(Layout::Pbr, bits) }
+    options(Layout::Pbr, bits).with_pbr(pbr)
 }
 
 /// [`floats`] with direction and strength of the anisotropy.
 fn anisotropic_floats() -> BakeOptions {
     let plain = floats();
-    BakeOptions { pbr: PbrOptions { anisotropy: Some(AnisotropyOutput::Khr), ..plain.pbr }, ..plain }
+    plain.with_pbr(plain.pbr.with_anisotropy(Some(AnisotropyOutput::Khr)))
 }
 
 fn part(arrays: &[TextureArray], part: Part) -> &TextureArray {
@@ -63,8 +61,8 @@ fn the_roughness_of_a_material_includes_base_and_bumps() {
             let wanted =
                 planes(&oracle_of(&image, &source, &variance), |t| t.covariance()[0] + t.covariance()[1]);
             for form in RoughnessStored::ALL {
-                let pbr = PbrOptions { roughness_stored: *form, ..floats().pbr };
-                let bake_options = BakeOptions { pbr, ..floats() };
+                let pbr = floats().pbr.with_roughness_stored(*form);
+                let bake_options = floats().with_pbr(pbr);
                 let arrays = baked_with(&image, &source, base, &bake_options).arrays;
                 let file = part(&arrays, Part::Roughness);
                 let alpha_squared = combined([stored(&file.layers[0], "Y")], |[r]| match form {
@@ -108,8 +106,8 @@ fn an_anisotropic_material_gives_both_eigenvalues_and_the_direction_back() {
         let (image, source) = gentle_map(width, height);
         let base = f64::from(0.01_f32);
         let wanted = oracle_of(&image, &source, &vec![base; width * height]);
-        let pbr = PbrOptions { roughness_stored: RoughnessStored::Alpha, ..anisotropic_floats().pbr };
-        let bake_options = BakeOptions { pbr, ..floats() };
+        let pbr = anisotropic_floats().pbr.with_roughness_stored(RoughnessStored::Alpha);
+        let bake_options = floats().with_pbr(pbr);
         let roughness = Some(BaseRoughness::Variance(base as f32));
         let arrays = baked_with(&image, &source, roughness, &bake_options).arrays;
         let across = stored(&part(&arrays, Part::Roughness).layers[0], "Y");
@@ -161,10 +159,7 @@ fn grooves_point_their_direction_across_themselves() {
 fn a_packed_texture_keeps_occlusion_and_metalness() {
     let (image, source) = gentle_map(53, 37);
     let material = material_map(53, 37);
-    let packed = with_choices(
-        SampleType::F32,
-        PbrOptions { roughness_texture: RoughnessTexture::Packed, ..floats().pbr },
-    );
+    let packed = with_choices(SampleType::F32, floats().pbr.with_roughness_texture(RoughnessTexture::Packed));
     let map = |image, channel| {
         BaseRoughness::Map(RoughnessMap { image, channel, stored: RoughnessStored::Perceptual })
     };
@@ -198,7 +193,7 @@ fn roughness_is_in_the_channel_of_its_layout() {
     let (image, source) = gentle_map(16, 16);
     for bits in [SampleType::U8, SampleType::U16, SampleType::F16] {
         let baked = |roughness_texture| {
-            let options = with_choices(bits, PbrOptions { roughness_texture, ..PbrOptions::default() });
+            let options = with_choices(bits, PbrOptions::default().with_roughness_texture(roughness_texture));
             baked_with(&image, &source, Some(BaseRoughness::Variance(0.01)), &options).arrays
         };
         let alone = baked(RoughnessTexture::Alone);
@@ -229,7 +224,7 @@ fn floats_store_normals_in_the_range_of_their_metadata() {
     for bits in [SampleType::F16, SampleType::F32] {
         let baked = |normal_range| {
             let anisotropy = Some(AnisotropyOutput::Khr);
-            let pbr = PbrOptions { normal_range, anisotropy, ..PbrOptions::default() };
+            let pbr = PbrOptions::default().with_normal_range(normal_range).with_anisotropy(anisotropy);
             baked_with(&image, &source, None, &with_choices(bits, pbr)).arrays
         };
         let (unorm, signed) = (baked(NormalRange::Unorm), baked(NormalRange::Signed));
@@ -263,8 +258,8 @@ fn floats_store_normals_in_the_range_of_their_metadata() {
 fn widths_along_the_axes_match_the_variances() {
     let (image, source) = gentle_map(32, 32);
     let base = 0.01_f32;
-    let pbr = PbrOptions { anisotropy: Some(AnisotropyOutput::Alpha), ..floats().pbr };
-    let bake_options = BakeOptions { pbr, ..floats() };
+    let pbr = floats().pbr.with_anisotropy(Some(AnisotropyOutput::Alpha));
+    let bake_options = floats().with_pbr(pbr);
     let arrays = baked_with(&image, &source, Some(BaseRoughness::Variance(base)), &bake_options).arrays;
     let wanted = oracle_of(&image, &source, &vec![f64::from(base); 32 * 32]);
     for (axis, name) in [Part::AlphaX, Part::AlphaY].into_iter().enumerate() {
@@ -322,7 +317,7 @@ fn directions_of_a_brushed_disc_survive_filtering() {
     let (image, source) = maps::slope_map(SIDE, SIDE, &slopes);
     for bits in [SampleType::U8, SampleType::U16, SampleType::F16] {
         let anisotropy = Some(AnisotropyOutput::Khr);
-        let bake_options = with_choices(bits, PbrOptions { anisotropy, ..PbrOptions::default() });
+        let bake_options = with_choices(bits, PbrOptions::default().with_anisotropy(anisotropy));
         let arrays = baked_with(&image, &source, Some(BaseRoughness::Variance(0.001)), &bake_options).arrays;
         let levels = &part(&arrays, Part::Anisotropy).layers[0].levels;
         let mut looked_up = 0;
@@ -369,7 +364,7 @@ fn the_variance_of_toksvig_is_decoded_from_its_parts_for_any_base() {
     for base in [BaseRoughness::Variance(1.0 / 64.0), varies] {
         let bits = SampleType::U8;
         let whole = baked_with(&image, &source, Some(base), &options(Layout::Toksvig, bits));
-        let shaped = BakeOptions { blocks: Blocks::Bc, ..options(Layout::Toksvig, bits) };
+        let shaped = options(Layout::Toksvig, bits).with_blocks(Blocks::Bc);
         let parts = baked_with(&image, &source, Some(base), &shaped);
         assert_eq!(whole.arrays[0].info.base, Base::Baked, "the factor holds the base");
         let power = matches!(base, BaseRoughness::Variance(_)).then_some(64.0);

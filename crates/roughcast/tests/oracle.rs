@@ -53,10 +53,12 @@ fn normal_options(sample_type: SampleType) -> Vec<(SourceOptions, usize)> {
     for (normal_channels, count) in channels {
         for range in ranges {
             for green in Green::ALL {
-                let options =
-                    SourceOptions { normal_channels, range: *range, green: *green, ..Default::default() };
+                let options = SourceOptions::default()
+                    .with_normal_channels(normal_channels)
+                    .with_range(*range)
+                    .with_green(*green);
                 all.push((options, count));
-                let turned = SourceOptions { red: Red::Left, normal_scale: 0.75, ..options };
+                let turned = options.with_red(Red::Left).with_normal_scale(0.75);
                 all.push((turned, count));
             }
         }
@@ -70,11 +72,8 @@ fn normals_of_every_type_range_and_choice_of_channels() {
     let slopes = maps::slopes(size.0, size.1, 1);
     for sample_type in TYPES {
         for (options, channels) in normal_options(sample_type) {
-            let stored_as = if sample_type.is_float() {
-                options
-            } else {
-                SourceOptions { range: NormalRange::Unorm, ..options }
-            };
+            let stored_as =
+                if sample_type.is_float() { options } else { options.with_range(NormalRange::Unorm) };
             let image = maps::normal_map(size, &slopes, sample_type, &stored_as, channels);
             let (_, report) = check(&image, &options, NORMALS);
             assert_eq!(report.counts, SourceCounts::default());
@@ -105,7 +104,7 @@ fn random_pixels_are_repaired_and_counted_by_the_rules() {
     let mut total = SourceCounts::default();
     for sample_type in TYPES {
         for (options, channels) in normal_options(sample_type) {
-            let options = SourceOptions { max_slope: MaxSlope::Limit(8.0), ..options };
+            let options = options.with_max_slope(MaxSlope::Limit(8.0));
             let values: Vec<f64> = (0..61 * 43 * channels).map(|_| random.unit()).collect();
             let image = maps::image(61, 43, channels, maps::samples(&values, sample_type));
             let (_, report) = check(&image, &options, NEAR_THE_RIM);
@@ -136,7 +135,7 @@ fn each_bad_texel_is_counted_once_in_its_category() {
             let values: Vec<f64> = texels.flatten().collect();
             for sample_type in [SampleType::F16, SampleType::F32] {
                 let image = maps::image(7, 5, 3, maps::samples(&values, sample_type));
-                let options = SourceOptions { range: NormalRange::Signed, ..Default::default() };
+                let options = SourceOptions::default().with_range(NormalRange::Signed);
                 let (_, report) = check(&image, &options, NORMALS);
                 assert_eq!(report.counts, counts, "{bad:?} in {sample_type:?}");
             }
@@ -158,11 +157,8 @@ fn invalid_two_channel_normals_are_counted() {
         let mut values = vec![0.1_f32; 2 * 12];
         values[10..12].copy_from_slice(&normal);
         let image = maps::image(4, 3, 2, Samples::F32(values));
-        let options = SourceOptions {
-            range: NormalRange::Signed,
-            normal_channels: NormalChannels::Xy,
-            ..Default::default()
-        };
+        let options =
+            SourceOptions::default().with_range(NormalRange::Signed).with_normal_channels(NormalChannels::Xy);
         assert_eq!(check(&image, &options, NORMALS).1.counts, counts, "{normal:?}");
     }
 }
@@ -177,13 +173,11 @@ fn heights_by_every_gradient_wrap_sense_and_scale() {
                         [(HeightSense::WhiteHigh, 0.02), (HeightSense::WhiteDeep, 0.11)]
                     {
                         let (image, options) = maps::height_map(size.0, size.1, sample_type, 4);
-                        let options = SourceOptions {
-                            gradient: *gradient,
-                            wrap: *wrap,
-                            height_sense,
-                            height_scale,
-                            ..options
-                        };
+                        let options = options
+                            .with_gradient(*gradient)
+                            .with_wrap(*wrap)
+                            .with_height_sense(height_sense)
+                            .with_height_scale(height_scale);
                         let floor = f64::from(height_scale) * size.0 as f64;
                         check(&image, &options, Rounding { count: ROUNDINGS, floor });
                     }
@@ -202,7 +196,7 @@ fn heights_across_tiles_and_beside_other_channels() {
     let image = maps::image(width, height, 3, maps::samples(&values, SampleType::U16));
     for gradient in Gradient::ALL {
         let (_, options) = maps::height_map(1, 1, SampleType::U8, 0);
-        let options = SourceOptions { gradient: *gradient, ..options };
+        let options = options.with_gradient(*gradient);
         let floor = f64::from(options.height_scale) * width as f64;
         check(&image, &options, Rounding { count: ROUNDINGS, floor });
     }
@@ -221,13 +215,13 @@ fn holes_and_spikes_in_heights_are_repaired_and_counted() {
         values[5 * width + 7] = bad;
         let image = maps::image(width, height, 1, Samples::F32(values));
         let (_, options) = maps::height_map(1, 1, SampleType::U8, 0);
-        let options = SourceOptions { gradient, ..options };
+        let options = options.with_gradient(gradient);
         let floor = f64::from(options.height_scale) * width as f64;
         let (_, report) = check(&image, &options, Rounding { count: ROUNDINGS, floor });
         assert_eq!(report.counts, SourceCounts { non_finite: touched, ..Default::default() }, "{gradient}");
     }
     let (image, options) = maps::height_map(width, height, SampleType::F32, 6);
-    let options = SourceOptions { height_scale: 2.0, max_slope: MaxSlope::Limit(3.0), ..options };
+    let options = options.with_height_scale(2.0).with_max_slope(MaxSlope::Limit(3.0));
     let (_, report) = check(&image, &options, Rounding { count: ROUNDINGS, floor: 2.0 * width as f64 });
     assert!(
         report.counts.clamped > 0 && report.counts.clamped == report.counts.total(),

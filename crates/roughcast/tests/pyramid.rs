@@ -5,7 +5,7 @@ mod common;
 use common::compare::{Rounding, compare_rounded, expect};
 use common::maps::{self, SIZES};
 use common::{baked, float_moments, level, pyramid_oracle, slope_oracle};
-use roughcast::{PyramidFilter, SampleType, SourceOptions, Wrap, level_sizes};
+use roughcast::{PyramidFilter, SampleType, Wrap, level_sizes};
 
 /// Slopes are given as they are here, so only averaging rounds: some four times a level, eleven levels.
 const AVERAGING: Rounding = Rounding { count: 24.0, floor: 0.0 };
@@ -56,7 +56,7 @@ fn every_level_of_every_size_by_every_filter_and_wrap() {
         let (image, options) = maps::slope_map(width, height, &slopes);
         for filter in PyramidFilter::ALL {
             for wrap in Wrap::ALL {
-                let options = SourceOptions { wrap: *wrap, ..options };
+                let options = options.with_wrap(*wrap);
                 let oracle = slope_oracle::slopes(&image, &options);
                 let wanted = pyramid_oracle::bump_moments(&oracle, *filter, *wrap);
                 let got = level::raw_moments(&baked(&image, &options, &float_moments(*filter)));
@@ -76,7 +76,7 @@ fn heights_by_every_filter_and_wrap() {
         let (image, options) = maps::height_map(width, height, SampleType::U16, 12);
         for filter in PyramidFilter::ALL {
             for wrap in Wrap::ALL {
-                let options = SourceOptions { wrap: *wrap, ..options };
+                let options = options.with_wrap(*wrap);
                 let oracle = slope_oracle::slopes(&image, &options);
                 let wanted = pyramid_oracle::bump_moments(&oracle, *filter, *wrap);
                 let got = level::raw_moments(&baked(&image, &options, &float_moments(*filter)));

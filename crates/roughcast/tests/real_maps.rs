@@ -28,7 +28,7 @@ const SEMIDEFINITE: f64 = 4.0;
 /// Every law that a real map has to keep.
 fn check(name: &str, image: &Image, source: &SourceOptions) -> SourceCounts {
     // The rules by which slopes are read, to which a limit that follows from all of them does not belong.
-    let source = &SourceOptions { max_slope: MaxSlope::Limit(MaxSlope::OF_ANY_MAP), ..*source };
+    let source = &(*source).with_max_slope(MaxSlope::Limit(MaxSlope::OF_ANY_MAP));
     let moments = baked(image, source, &float_moments(PyramidFilter::Box));
     let lean = baked(image, source, &options(Layout::Lean, SampleType::U16));
     assert_eq!(lean.report.counts, moments.report.counts, "{name}");
@@ -61,7 +61,7 @@ fn normal_maps() {
     assert!(entries.len() >= NORMAL_MAPS, "only {} normal maps", entries.len());
     let mut repaired = 0;
     for entry in &entries {
-        let source = SourceOptions { green: green_of(entry), ..Default::default() };
+        let source = SourceOptions::default().with_green(green_of(entry));
         let image = real_files::read_part(&entry.path, LARGEST_SIDE);
         let counts = check(&entry.path, &image, &source);
         let texels = (image.width() * image.height()) as u64;
@@ -78,7 +78,7 @@ fn height_maps() {
     assert!(entries.len() >= HEIGHT_MAPS, "only {} height maps", entries.len());
     for entry in &entries {
         let image = real_files::read_part(&entry.path, LARGEST_SIDE);
-        let source = SourceOptions { kind: Kind::Height, ..Default::default() };
+        let source = SourceOptions::default().with_kind(Kind::Height);
         assert_eq!(check(&entry.path, &image, &source), SourceCounts::default());
     }
 }
@@ -101,7 +101,7 @@ fn rms_slopes_match_the_manifest() {
             .collect();
         let raised = maps::image(image.width(), image.height(), 3, Samples::F32(normals));
         let max_slope = MaxSlope::Limit(MaxSlope::OF_ANY_MAP);
-        let source = SourceOptions { range: NormalRange::Signed, max_slope, ..Default::default() };
+        let source = SourceOptions::default().with_range(NormalRange::Signed).with_max_slope(max_slope);
         let got = baked(&raised, &source, &options(Layout::Clean, SampleType::U16)).report.rms_slope;
         assert!((got - wanted).abs() <= DECIMALS, "{}: {got} instead of {wanted}", entry.path);
         compared += 1;
@@ -125,7 +125,7 @@ fn both_conventions_of_green_give_the_same_textures() {
         }
         assert_eq!(up.channels(), 3);
         let options = options(Layout::Lean, SampleType::U16);
-        let turned = SourceOptions { green: Green::Down, ..Default::default() };
+        let turned = SourceOptions::default().with_green(Green::Down);
         let one = baked(&up, &SourceOptions::default(), &options);
         assert!(one == baked(&down, &turned, &options), "{path}");
         assert!(one != baked(&up, &turned, &options), "{path}");

@@ -59,7 +59,7 @@ fn the_chosen_scale_is_the_smallest_that_holds_every_texel() {
             let needs = needs(image, source, f64::from(variance));
             for bits in UNSIGNED {
                 let report = |layout| {
-                    let options = BakeOptions { base: folded, ..options(layout, bits) };
+                    let options = options(layout, bits).with_base(folded);
                     baked_with(image, source, Some(BaseRoughness::Variance(variance)), &options).report
                 };
                 // Level 0 has the largest of all, so what the scale needs is what a texel reaches.
@@ -155,16 +155,13 @@ fn a_fixed_scale_clamps_slopes_and_counts_them() {
             // The base takes its part of the range of the second moments.
             let room =
                 if holds_squares { f64::from(scale).powi(2) - largest } else { f64::from(scale).powi(2) };
-            let limited = SourceOptions { max_slope: MaxSlope::Limit(room.sqrt() as f32), ..source };
+            let limited = source.with_max_slope(MaxSlope::Limit(room.sqrt() as f32));
             let slopes = slope_oracle::slopes(&image, &limited);
             assert!(slopes.counts.clamped > 100);
             let wanted = pyramid_oracle::moments(&slopes, &variances, PyramidFilter::Box, source.wrap);
             let folded = if base.is_some() { Base::Baked } else { Base::None };
-            let options = BakeOptions {
-                scale: ScaleChoice::Fixed(scale),
-                base: folded,
-                ..options(layout, SampleType::U16)
-            };
+            let options =
+                options(layout, SampleType::U16).with_scale(ScaleChoice::Fixed(scale)).with_base(folded);
             let got = baked_with(&image, &source, base, &options);
             assert_eq!(got.report.scale, scale);
             assert_eq!(got.report.counts, slopes.counts, "{layout}, base up to {largest}");
@@ -203,11 +200,11 @@ fn advice_is_given_if_few_steep_texels_cost_much_and_it_is_correct() {
     for layout in [Layout::Lean, Layout::Clean] {
         for bits in UNSIGNED {
             let (image, source) = with_steep_texels(0.5, [9.0, 0.0]);
-            let source = SourceOptions { max_slope: MaxSlope::Limit(MaxSlope::OF_ANY_MAP), ..source };
+            let source = source.with_max_slope(MaxSlope::Limit(MaxSlope::OF_ANY_MAP));
             let before = baked(&image, &source, &options(layout, bits)).report;
             let advice = before.advice.unwrap_or_else(|| panic!("{layout} {bits}: no advice"));
             assert!(advice.factor > 4.0 && advice.max_slope < 0.2, "{advice:?}");
-            let followed = SourceOptions { max_slope: MaxSlope::Limit(advice.max_slope), ..source };
+            let followed = source.with_max_slope(MaxSlope::Limit(advice.max_slope));
             let after = baked(&image, &followed, &options(layout, bits)).report;
             let factor = after.bounds.usable_specular_power() / before.bounds.usable_specular_power();
             assert!(
@@ -223,14 +220,13 @@ fn advice_is_given_if_few_steep_texels_cost_much_and_it_is_correct() {
 #[test]
 fn few_steep_texels_do_not_hide_the_range_of_half_floats() {
     let (image, source) = with_steep_texels(0.5, [120.0, 0.0]);
-    let options =
-        BakeOptions { layout: Layout::Lean, sample_type: SampleType::F16, ..BakeOptions::default() };
+    let options = BakeOptions::default().with_layout(Layout::Lean).with_sample_type(SampleType::F16);
     let report = baked(&image, &source, &options).report;
     let (worst, most) =
         (report.bounds.usable_specular_power(), report.bounds_of_most.usable_specular_power());
     assert!(worst < 1.0 && most > 1000.0, "{worst} {most}");
     let advice = report.advice.expect("half floats are coarse on steep slopes");
-    let followed = SourceOptions { max_slope: MaxSlope::Limit(advice.max_slope), ..source };
+    let followed = source.with_max_slope(MaxSlope::Limit(advice.max_slope));
     let kept = baked(&image, &followed, &options).report.bounds.usable_specular_power();
     assert!((kept / (advice.factor * worst) - 1.0).abs() < 0.05, "{kept} {advice:?} {worst}");
 }
@@ -239,7 +235,7 @@ fn few_steep_texels_do_not_hide_the_range_of_half_floats() {
 fn no_advice_is_given_if_it_would_not_help() {
     let advised = |thousandths, direction, bits, scale| {
         let (image, source) = with_steep_texels(thousandths, direction);
-        let options = BakeOptions { scale, ..options(Layout::Lean, bits) };
+        let options = options(Layout::Lean, bits).with_scale(scale);
         baked(&image, &source, &options).report.advice.is_some()
     };
     let steep = [9.0, 0.0];
@@ -281,7 +277,7 @@ fn the_automatic_limit_is_the_slope_that_few_exceed_with_the_stated_gain() {
             assert!(found >= exceeded && found <= BIN * exceeded, "{layout} {bits}: {found}, not {exceeded}");
             assert_eq!(got.report.max_slope, limit.max_slope);
             // The result is that of the limit named by hand, but for the scale, which holds a slope as long in any direction.
-            let by_hand = SourceOptions { max_slope: MaxSlope::Limit(limit.max_slope), ..source };
+            let by_hand = source.with_max_slope(MaxSlope::Limit(limit.max_slope));
             let wanted = slope_oracle::slopes(&image, &by_hand);
             assert_eq!((got.report.counts, limit.texels), (wanted.counts, wanted.counts.clamped));
             let whole = baked(&image, &by_hand, &options(layout, bits)).report;
@@ -291,8 +287,7 @@ fn the_automatic_limit_is_the_slope_that_few_exceed_with_the_stated_gain() {
                 "{:?}",
                 got.report
             );
-            let before =
-                baked(&image, &SourceOptions { max_slope: UNLIMITED, ..source }, &options(layout, bits));
+            let before = baked(&image, &source.with_max_slope(UNLIMITED), &options(layout, bits));
             let power = |report: &roughcast::BakeReport| report.bounds.usable_specular_power();
             let factor = power(&got.report) / power(&before.report);
             assert!((factor / limit.factor - 1.0).abs() < WITHIN, "{layout} {bits}: {factor} for {limit:?}");
@@ -338,10 +333,9 @@ fn slopes_are_limited_only_if_a_range_requires_it() {
     for bits in UNSIGNED {
         assert_eq!(limit_of(0.5, steep, auto, options(Layout::Pbr, bits)), any, "normals have no range");
     }
-    let fixed = BakeOptions { scale: ScaleChoice::Fixed(50.0), ..lean };
+    let fixed = lean.with_scale(ScaleChoice::Fixed(50.0));
     assert_eq!(limit_of(0.5, steep, auto, fixed), (false, 50.0), "the range was chosen by hand");
-    let by_hand: fn(SourceOptions) -> SourceOptions =
-        |source| SourceOptions { max_slope: MaxSlope::Limit(60.0), ..source };
+    let by_hand: fn(SourceOptions) -> SourceOptions = |source| source.with_max_slope(MaxSlope::Limit(60.0));
     assert_eq!(limit_of(0.5, steep, by_hand, lean), (false, 60.0), "the limit was chosen by hand");
 }
 
@@ -357,12 +351,12 @@ fn contradictory_options_are_refused() {
     let base = Some(BaseRoughness::Variance(0.01));
     let with = |layout, bits| options(layout, bits);
     let plain = BakeOptions::default();
-    let fixed = |scale| BakeOptions { scale: ScaleChoice::Fixed(scale), ..plain };
-    let blocks = |layout, bits| BakeOptions { blocks: Blocks::Bc, ..with(layout, bits) };
-    let folded = BakeOptions { base: Base::Baked, ..plain };
-    let powers = PbrOptions { roughness_stored: RoughnessStored::SpecularPower, ..PbrOptions::default() };
-    let power = BakeOptions { pbr: powers, ..with(Layout::Pbr, SampleType::U8) };
-    let limited = |limit| SourceOptions { max_slope: MaxSlope::Limit(limit), ..source };
+    let fixed = |scale| plain.with_scale(ScaleChoice::Fixed(scale));
+    let blocks = |layout, bits| with(layout, bits).with_blocks(Blocks::Bc);
+    let folded = plain.with_base(Base::Baked);
+    let powers = PbrOptions::default().with_roughness_stored(RoughnessStored::SpecularPower);
+    let power = with(Layout::Pbr, SampleType::U8).with_pbr(powers);
+    let limited = |limit| source.with_max_slope(MaxSlope::Limit(limit));
     let steep = limited(300.0);
     type Case<'a> = (&'a str, &'a Image, SourceOptions, Option<BaseRoughness<'a>>, BakeOptions);
     let cases: Vec<Case<'_>> = vec![
@@ -371,13 +365,7 @@ fn contradictory_options_are_refused() {
         ("needs a roughness", &image, source, None, folded),
         ("depends on the base roughness", &image, source, None, with(Layout::Toksvig, SampleType::U8)),
         ("specular powers", &image, source, None, power),
-        (
-            "no scale to choose",
-            &image,
-            source,
-            None,
-            BakeOptions { sample_type: SampleType::F32, ..fixed(1.0) },
-        ),
+        ("no scale to choose", &image, source, None, fixed(1.0).with_sample_type(SampleType::F32)),
         ("above zero", &image, source, None, fixed(0.0)),
         ("above zero", &image, source, None, fixed(-1.0)),
         ("above zero", &image, source, None, fixed(f32::NAN)),
@@ -388,25 +376,13 @@ fn contradictory_options_are_refused() {
         ("cannot be block-compressed", &image, source, None, blocks(Layout::Schilling, SampleType::U8)),
         ("half float", &image, steep, None, with(Layout::Lean, SampleType::F16)),
         ("half float", &image, steep, None, with(Layout::Moments, SampleType::F16)),
-        ("larger scale", &image, source, base, BakeOptions { base: Base::Baked, ..fixed(0.09) }),
-        (
-            "larger scale",
-            &image,
-            source,
-            map(three_channels.view(), 1),
-            BakeOptions { base: Base::Baked, ..fixed(0.02) },
-        ),
+        ("larger scale", &image, source, base, fixed(0.09).with_base(Base::Baked)),
+        ("larger scale", &image, source, map(three_channels.view(), 1), fixed(0.02).with_base(Base::Baked)),
         ("finite and not negative", &image, source, Some(BaseRoughness::Variance(-1.0)), plain),
         ("finite and not negative", &image, source, Some(BaseRoughness::Variance(f32::NAN)), plain),
         ("4 channels or more", &image, source, map(three_channels.view(), 3), plain),
         ("3 channels or more", &two_channels, source, None, plain),
-        (
-            "4 channels or more",
-            &three_channels,
-            SourceOptions { normal_channels: NormalChannels::Ag, ..source },
-            None,
-            plain,
-        ),
+        ("4 channels or more", &three_channels, source.with_normal_channels(NormalChannels::Ag), None, plain),
         ("largest slope", &image, limited(0.0), None, plain),
         ("largest slope", &image, limited(f32::INFINITY), None, plain),
         ("largest slope", &image, limited(f32::NAN), None, plain),
@@ -415,7 +391,7 @@ fn contradictory_options_are_refused() {
         ("largest slope", &image, limited(1.001e9), None, plain),
         // Its square is no number, so that infinite slopes would pass.
         ("at most 1e9", &image, limited(2e19), None, plain),
-        ("height scale", &image, SourceOptions { height_scale: f32::NAN, ..source }, None, plain),
+        ("height scale", &image, source.with_height_scale(f32::NAN), None, plain),
     ];
     for (word, image, source, base, options) in cases {
         let error = Bake::of(image)
@@ -437,7 +413,7 @@ fn contradictory_options_are_refused() {
 #[test]
 fn half_floats_represent_the_largest_slope_that_they_allow() {
     let (image, source) = maps::slope_map(2, 2, &[[255.0, 0.0], [0.0, 255.0], [-255.0, 0.0], [0.0, -300.0]]);
-    let source = SourceOptions { max_slope: MaxSlope::Limit(255.0), ..source };
+    let source = source.with_max_slope(MaxSlope::Limit(255.0));
     let half: Baked = baked(&image, &source, &options(Layout::Moments, SampleType::F16));
     let float = baked(&image, &source, &options(Layout::Moments, SampleType::F32));
     assert_eq!(half.report.counts.clamped, 1);

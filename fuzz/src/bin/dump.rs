@@ -58,7 +58,7 @@ fn read(line: &str) -> Result<Decoded, ReadError> {
     let layer = fields.next().filter(|layer| !layer.is_empty()).map(str::to_owned);
     let channels = fields.next().unwrap_or_default();
     let channels = channels.split(',').filter(|name| !name.is_empty()).map(str::to_owned).collect();
-    read_image_file(Path::new(path), &ReadOptions { layer, channels, ..ReadOptions::default() })
+    read_image_file(Path::new(path), &ReadOptions::default().with_layer(layer).with_channels(channels))
 }
 
 fn description(decoded: &Decoded) -> String {

@@ -64,7 +64,7 @@ const WARM_UP: u32 = 3;
 
 /// Half floats, which every device can filter, store to and render to; no base, which the model adds when shading.
 pub fn bake_options(shading: Shading) -> BakeOptions {
-    BakeOptions { layout: shading.layout(), sample_type: SampleType::F16, ..BakeOptions::default() }
+    BakeOptions::default().with_layout(shading.layout()).with_sample_type(SampleType::F16)
 }
 
 /// Draws `frames` frames of each method in pictures of `size` pixels.

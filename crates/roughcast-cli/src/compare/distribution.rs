@@ -32,8 +32,7 @@ impl Distribution {
     /// # Errors
     /// [`BakeError`] if the map cannot be read.
     pub fn of(map: &Image, source: &SourceOptions, specular_power: f32) -> Result<Self, BakeError> {
-        let options =
-            BakeOptions { layout: Layout::Moments, sample_type: SampleType::F32, ..BakeOptions::default() };
+        let options = BakeOptions::default().with_layout(Layout::Moments).with_sample_type(SampleType::F32);
         let baked = Bake::of(map).source(*source).options(options).run()?;
         let levels = decode(&baked.arrays).expect("a bake of this layout is complete");
         let whole = levels.last().expect("there is a level").moments[0];

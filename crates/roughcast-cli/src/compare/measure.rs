@@ -110,8 +110,7 @@ impl Settings<'_> {
             for shading in models {
                 let textures = BakedTextures::of_model(*shading, &arrays)?;
                 for filter in &self.filters {
-                    let sampler =
-                        Sampler { filter: *filter, wrap: subject.options.wrap, ..Sampler::default() };
+                    let sampler = Sampler::default().with_filter(*filter).with_wrap(subject.options.wrap);
                     let method = Method {
                         shading: *shading,
                         detail: &textures.sampled(sampler),

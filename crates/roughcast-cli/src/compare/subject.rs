@@ -48,7 +48,7 @@ impl Subject {
 fn v_groove() -> Subject {
     let pattern = v_grooves(GROOVED_TEXELS, GROOVES, GROOVE_SLOPE);
     // Differences between neighbours keep the grooves sharp; wider filters round their edges.
-    let options = SourceOptions { gradient: Gradient::Forward, ..pattern.source_options() };
+    let options = pattern.source_options().with_gradient(Gradient::Forward);
     Subject {
         name: "v-groove".to_owned(),
         image: pattern.heights,
@@ -68,11 +68,7 @@ fn wool() -> Result<Subject> {
     Ok(Subject {
         name: "wool".to_owned(),
         image,
-        options: SourceOptions {
-            kind: Kind::Height,
-            height_sense: HeightSense::WhiteDeep,
-            ..SourceOptions::default()
-        },
+        options: SourceOptions::default().with_kind(Kind::Height).with_height_sense(HeightSense::WhiteDeep),
         views: LIMIT_VIEWS.to_vec(),
         about: format!(
             "a woven cloth, height map of {width}x{height} texels in 8 bits, from Godot's demonstration projects (MIT licence): \
@@ -91,8 +87,7 @@ mod tests {
     #[test]
     fn the_grooves_have_two_slopes_and_little_between() {
         let subject = v_groove();
-        let options =
-            BakeOptions { layout: Layout::Moments, sample_type: SampleType::F32, ..BakeOptions::default() };
+        let options = BakeOptions::default().with_layout(Layout::Moments).with_sample_type(SampleType::F32);
         let baked = Bake::of(&subject.image).source(subject.options).options(options).run().expect("a map");
         let finest = &decode(&baked.arrays).expect("moments")[0];
         let slopes = finest.moments.iter().map(|moments| f64::from(moments.mean.x));

@@ -116,7 +116,7 @@ fn flickers() -> Result<Vec<f64>> {
     let scenes = slow_move(&stage.scene, FRAMES);
     let truth = stage.truth_frames(Shading::OffCentre, SAMPLES, &scenes)?;
     let flicker_of = |(_, shading, filter): (&str, Shading, Filter)| {
-        let sampler = Sampler { filter, ..Sampler::default() };
+        let sampler = Sampler::default().with_filter(filter);
         Ok(flicker(&stage.sampled_frames(shading, sampler, &scenes)?, &truth)?)
     };
     METHODS.into_iter().map(flicker_of).collect()

@@ -69,7 +69,7 @@ impl Parts {
         let expected = expected(&map)?;
         let mut stage = stage(map);
         let last = f64::from((TEXELS as u32).ilog2());
-        let at = |level| Sampler { filter: Filter::Trilinear, level: Some(level), ..Sampler::default() };
+        let at = |level| Sampler::default().with_filter(Filter::Trilinear).with_level(Some(level));
 
         let finest = stage.sampled(Shading::BlinnPhong, at(0.0))?;
         let ordinary = stage.sampled(Shading::BlinnPhong, at(last))?;
@@ -115,8 +115,7 @@ impl Parts {
 
 /// The aspect ratio that the whole map's covariance and the base roughness predict.
 fn expected(map: &Pattern) -> Result<f64> {
-    let options =
-        BakeOptions { layout: Layout::Moments, sample_type: SampleType::F32, ..BakeOptions::default() };
+    let options = BakeOptions::default().with_layout(Layout::Moments).with_sample_type(SampleType::F32);
     let levels = decode(&Bake::of(&map.heights).source(map.source_options()).options(options).run()?.arrays)?;
     let covariance = levels.last().expect("there is a level").moments[0].covariance();
     let base = 1.0 / SPECULAR_POWER;

@@ -31,7 +31,7 @@ const MODELS: [(&str, Shading); 4] = [
 pub fn make() -> Result<Figure> {
     let stage = stage();
     // Every pixel reads one texel of the finest level: nothing is filtered.
-    let sampler = Sampler { filter: Filter::Nearest, level: Some(0.0), ..Sampler::default() };
+    let sampler = Sampler::default().with_filter(Filter::Nearest).with_level(Some(0.0));
     let pictures = MODELS.map(|(_, shading)| stage.sampled(shading, sampler));
     let pictures = pictures.into_iter().collect::<Result<Vec<Picture>>>()?;
     let exposure = exposure_of(&pictures[0]);

@@ -42,7 +42,7 @@ pub fn scene(shape: Shape, repeats: f64, camera: Camera, towards_light: DVec3) -
 impl Stage {
     /// A picture by a model whose textures are sampled with a filter.
     pub fn method(&self, shading: Shading, filter: Filter) -> Result<Picture> {
-        self.sampled(shading, Sampler { filter, ..Sampler::default() })
+        self.sampled(shading, Sampler::default().with_filter(filter))
     }
 
     /// A picture by a model and a sampler.

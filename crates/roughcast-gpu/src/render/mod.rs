@@ -74,22 +74,49 @@ impl RenderTarget {
 }
 
 /// How a model is drawn.
+///
+/// ```
+/// use roughcast::shading::ShadingOptions;
+/// use roughcast_gpu::render::{Bumps, DrawOptions};
+///
+/// let shiny = ShadingOptions::default().with_specular_power(10_000.0);
+/// let options = DrawOptions::default().with_shading_options(shiny).with_bumps(Bumps::Resolved);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct DrawOptions {
     /// The texture filter. Hardware has three of them: nearest, trilinear and anisotropic with up to 16 taps.
     pub sampler: Sampler,
-    /// The lobe. Properties stored with the textures take precedence.
+    /// How the lobe is evaluated. Properties stored with the textures take precedence.
     pub shading_options: ShadingOptions,
     /// What is shaded: filtered bumps, or resolved ones as ground truth has them.
     pub bumps: Bumps,
 }
 
 impl DrawOptions {
+    /// The same with this texture filter.
+    #[must_use]
+    pub fn with_sampler(self, sampler: Sampler) -> Self {
+        Self { sampler, ..self }
+    }
+
+    /// The same with these options of the lobe.
+    #[must_use]
+    pub fn with_shading_options(self, shading_options: ShadingOptions) -> Self {
+        Self { shading_options, ..self }
+    }
+
+    /// The same with filtered or resolved bumps.
+    #[must_use]
+    pub fn with_bumps(self, bumps: Bumps) -> Self {
+        Self { bumps, ..self }
+    }
+
     /// The sampler: of resolved bumps one of the finest level without anisotropy, which hardware may apply even where a level is given.
     fn sampler(&self) -> Sampler {
         match self.bumps {
             Bumps::Filtered => self.sampler,
-            Bumps::Resolved => Sampler { filter: Filter::Trilinear, level: Some(0.0), ..self.sampler },
+            Bumps::Resolved => self.sampler.with_filter(Filter::Trilinear).with_level(Some(0.0)),
         }
     }
 }

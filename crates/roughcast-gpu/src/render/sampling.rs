@@ -29,7 +29,7 @@ pub(super) struct Sampling {
 
 impl Sampling {
     pub fn new(sampler: &Sampler) -> Result<Self, GpuError> {
-        let Sampler { filter, level, mip_bias, wrap } = *sampler;
+        let Sampler { filter, level, mip_bias, wrap, .. } = *sampler;
         let level = match filter {
             // As on the CPU, without a footprint: level 0, or the level nearest to the given one.
             Filter::Nearest => Some(level.unwrap_or(0.0).round()),
@@ -89,14 +89,14 @@ mod tests {
     use super::*;
 
     fn sampling(filter: Filter, level: Option<f64>, mip_bias: f64) -> Sampling {
-        let sampler = Sampler { filter, level, mip_bias, ..Sampler::default() };
+        let sampler = Sampler::default().with_filter(filter).with_level(level).with_mip_bias(mip_bias);
         Sampling::new(&sampler).expect("the hardware has it")
     }
 
     #[test]
     fn filters_of_the_cpu_are_refused_by_name() {
         for filter in [Filter::Ewa, Filter::SummedArea] {
-            let sampler = Sampler { filter, ..Sampler::default() };
+            let sampler = Sampler::default().with_filter(filter);
             let line = Sampling::new(&sampler).expect_err("no hardware has it").to_string();
             assert!(line.contains(filter.name()) && line.contains("CPU"), "{line}");
         }

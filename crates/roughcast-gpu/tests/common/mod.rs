@@ -16,7 +16,7 @@ pub fn gpu() -> Gpu {
 
 /// A device with WebGPU's default limits.
 pub fn gpu_of_the_web() -> Gpu {
-    gpu_with(&GpuOptions { limits: LimitChoice::WebGpu, ..Default::default() })
+    gpu_with(&GpuOptions::default().with_limits(LimitChoice::WebGpu))
 }
 
 fn gpu_with(options: &GpuOptions) -> Gpu {

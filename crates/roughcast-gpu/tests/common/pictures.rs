@@ -18,7 +18,7 @@ pub fn by_cpu(
     size: (u32, u32),
 ) -> Picture {
     let textures = BakedTextures::of_model(shading, maps).expect("the maps are the model's");
-    let DrawOptions { sampler, shading_options, bumps } = *options;
+    let DrawOptions { sampler, shading_options, bumps, .. } = *options;
     let detail = textures.sampled(sampler);
     let resolved = Resolved(&detail);
     let detail: &dyn Detail = match bumps {
@@ -59,7 +59,7 @@ impl GpuPictures {
 }
 
 pub fn options(sampler: Sampler, shading_options: ShadingOptions) -> DrawOptions {
-    DrawOptions { sampler, shading_options, ..DrawOptions::default() }
+    DrawOptions::default().with_sampler(sampler).with_shading_options(shading_options)
 }
 
 /// The difference of two pictures.

@@ -60,13 +60,13 @@ pub const SPECULAR_POWER: f32 = 64.0;
 
 /// Random bumps in the layout of a model.
 pub fn maps(shading: Shading, bits: SampleType) -> Vec<TextureArray> {
-    maps_with(BakeOptions { layout: shading.layout(), sample_type: bits, ..BakeOptions::default() })
+    maps_with(BakeOptions::default().with_layout(shading.layout()).with_sample_type(bits))
 }
 
 pub fn maps_with(options: BakeOptions) -> Vec<TextureArray> {
     let bumps = pattern::random_bumps(SIDE, 0.3, 5);
     let base = BaseRoughness::Variance(1.0 / SPECULAR_POWER);
-    let options = BakeOptions { base: Base::None, scale: ScaleChoice::Auto, ..options };
+    let options = options.with_base(Base::None).with_scale(ScaleChoice::Auto);
     Bake::of(&bumps.heights)
         .source(bumps.source_options())
         .roughness(base)

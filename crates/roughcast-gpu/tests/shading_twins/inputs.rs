@@ -38,14 +38,13 @@ impl Inputs {
             0 => [1.0, 2.0, 13.0, 13_777.0, 16_384.0][self.below(5)],
             _ => 2.0_f32.powf(self.between(0.0, 14.0)),
         };
-        self.options = ShadingOptions {
-            specular_power: power,
-            form: Form::ALL[self.below(3)],
-            base_frame: BaseFrame::ALL[self.below(2)],
-            repair: Repair::ALL[self.below(2)],
-            masking: Masking::ALL[self.below(2)],
-            footprint: FootprintModel::ALL[usize::from(self.below(8) == 0)],
-        };
+        self.options = ShadingOptions::default()
+            .with_specular_power(power)
+            .with_form(Form::ALL[self.below(3)])
+            .with_base_frame(BaseFrame::ALL[self.below(2)])
+            .with_repair(Repair::ALL[self.below(2)])
+            .with_masking(Masking::ALL[self.below(2)])
+            .with_footprint(FootprintModel::ALL[usize::from(self.below(8) == 0)]);
         self.packing = Packing {
             base: self.base(),
             roughness_stored: RoughnessStored::ALL[self.below(RoughnessStored::ALL.len())],

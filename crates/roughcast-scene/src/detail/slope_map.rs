@@ -31,8 +31,7 @@ impl SlopeMap {
     /// # Errors
     /// [`BakeError`] where the map cannot be read.
     pub fn of(map: &Image, options: &SourceOptions) -> Result<Self, BakeError> {
-        let floats =
-            BakeOptions { layout: Layout::Moments, sample_type: SampleType::F32, ..BakeOptions::default() };
+        let floats = BakeOptions::default().with_layout(Layout::Moments).with_sample_type(SampleType::F32);
         let baked = Bake::of(map).source(*options).options(floats).run()?;
         let levels = decode(&baked.arrays).expect("a bake of this layout is complete");
         Ok(Self::of_level(&levels[0]))

@@ -111,11 +111,11 @@ pub struct Baked {
 /// use roughcast::{Bake, BakeOptions, BaseRoughness, Image, Kind, SampleType, SourceOptions};
 ///
 /// let heights = Image::zeros(64, 32, 1, SampleType::U16);
-/// let source = SourceOptions { kind: Kind::Height, ..SourceOptions::default() };
+/// let source = SourceOptions::default().with_kind(Kind::Height);
 /// let baked = Bake::of(&heights)
 ///     .source(source)
 ///     .roughness(BaseRoughness::Variance(0.01))
-///     .options(BakeOptions { layout: Layout::Variance, ..BakeOptions::default() })
+///     .options(BakeOptions::default().with_layout(Layout::Variance))
 ///     .run()?;
 /// assert_eq!(baked.arrays[0].size(), (64, 32));
 /// assert_eq!(baked.report.maximum_slope, 0.0);

@@ -23,7 +23,7 @@
 //!
 //! // Bumps with a standard deviation of 0.1 along x hide under the pixel; the material's own exponent is 200.
 //! let bumps = Distribution::gaussian(Slope::default(), Covariance { xx: 0.01, yy: 0.0, xy: 0.0 });
-//! let options = ShadingOptions { specular_power: 200.0, ..ShadingOptions::default() };
+//! let options = ShadingOptions::default().with_specular_power(200.0);
 //! let surface = Shading::Lean.surface_of(&bumps, &options);
 //! let from = |x: f32, y: f32| [x, y, (1.0 - x * x - y * y).sqrt()];
 //! // The highlight is wider along x than along y.
@@ -84,6 +84,7 @@ pub use vector::LEAST_HEIGHT;
 #[cfg(doc)]
 use crate::Distribution;
 use crate::named::named_enum;
+use crate::setters::setters;
 
 named_enum! {
     /// A shading model.
@@ -187,6 +188,7 @@ pub enum Wanted {
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
+#[non_exhaustive]
 pub struct ShadingOptions {
     /// Blinn-Phong exponent `s` of the base roughness; its slope variance is `1 / s`.
     pub specular_power: f32,
@@ -201,6 +203,15 @@ pub struct ShadingOptions {
     /// Which variance counts as roughness.
     pub footprint: FootprintModel,
 }
+
+setters!(ShadingOptions {
+    with_specular_power(specular_power: f32),
+    with_form(form: Form),
+    with_base_frame(base_frame: BaseFrame),
+    with_repair(repair: Repair),
+    with_masking(masking: Masking),
+    with_footprint(footprint: FootprintModel),
+});
 
 impl Default for ShadingOptions {
     fn default() -> Self {

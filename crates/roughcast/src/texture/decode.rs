@@ -75,8 +75,8 @@ pub enum DecodeError {
 /// // Normals that all lean to the left at 45 degrees.
 /// let normals = Samples::F32([-0.5, 0.0, 0.5].repeat(16));
 /// let map = Image::new(4, 4, 3, normals)?;
-/// let source = roughcast::SourceOptions { range: roughcast::NormalRange::Signed, ..Default::default() };
-/// let options = BakeOptions { layout: Layout::Clean, ..BakeOptions::default() };
+/// let source = roughcast::SourceOptions::default().with_range(roughcast::NormalRange::Signed);
+/// let options = BakeOptions::default().with_layout(Layout::Clean);
 /// let levels = decode(&Bake::of(&map).source(source).options(options).run()?.arrays)?;
 /// assert_eq!((levels.len(), levels[0].width, levels[0].moments.len()), (3, 4, 16));
 /// let whole = levels[2].moments[0];

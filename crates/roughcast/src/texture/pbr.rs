@@ -33,6 +33,7 @@ use crate::named::named_enum;
 use crate::roughness::Anisotropy;
 use crate::roughness::{RoughnessStored, RoughnessTexture, stored_from_variance, variance_from_stored};
 use crate::row::{Extra, RowView};
+use crate::setters::setters;
 use crate::shading::Wanted;
 use crate::slope::{LEAST_NORMAL_Z, Normal, Slope, normal_from_slope, slope_from_normal};
 
@@ -54,6 +55,7 @@ named_enum! {
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
+#[non_exhaustive]
 pub struct PbrOptions {
     /// How roughness is stored.
     pub roughness_stored: RoughnessStored,
@@ -64,6 +66,13 @@ pub struct PbrOptions {
     /// How floats hold the components of unit vectors; unsigned types always hold `v / 2 + 1/2`.
     pub normal_range: NormalRange,
 }
+
+setters!(PbrOptions {
+    with_roughness_stored(roughness_stored: RoughnessStored),
+    with_anisotropy(anisotropy: Option<AnisotropyOutput>),
+    with_roughness_texture(roughness_texture: RoughnessTexture),
+    with_normal_range(normal_range: NormalRange),
+});
 
 impl Default for PbrOptions {
     /// As glTF reads it: one perceptual roughness, in green.

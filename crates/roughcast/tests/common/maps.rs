@@ -94,15 +94,14 @@ pub fn image(width: usize, height: usize, channels: usize, samples: Samples) -> 
 /// A height map with its options.
 pub fn height_map(width: usize, height: usize, sample_type: SampleType, seed: u64) -> (Image, SourceOptions) {
     let values = heights(width, height, seed);
-    let options =
-        SourceOptions { kind: Kind::Height, height_sense: HeightSense::WhiteHigh, ..Default::default() };
+    let options = SourceOptions::default().with_kind(Kind::Height).with_height_sense(HeightSense::WhiteHigh);
     (image(width, height, 1, samples(&values, sample_type)), options)
 }
 
 /// Slopes stored as the vectors (b.x, b.y, 1) in signed singles: level 0 reads them back to the last bit.
 pub fn slope_map(width: usize, height: usize, slopes: &[[f64; 2]]) -> (Image, SourceOptions) {
     let values: Vec<f64> = slopes.iter().flat_map(|[x, y]| [*x, *y, 1.0]).collect();
-    let options = SourceOptions { range: NormalRange::Signed, ..Default::default() };
+    let options = SourceOptions::default().with_range(NormalRange::Signed);
     (image(width, height, 3, samples(&values, SampleType::F32)), options)
 }
 

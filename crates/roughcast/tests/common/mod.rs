@@ -36,12 +36,12 @@ pub fn baked_with(
 
 /// Options for a layout and a sample type, everything else as by default.
 pub fn options(layout: roughcast::texture::Layout, bits: SampleType) -> BakeOptions {
-    BakeOptions { layout, sample_type: bits, ..BakeOptions::default() }
+    BakeOptions::default().with_layout(layout).with_sample_type(bits)
 }
 
 /// Options for the moments themselves in single floats.
 pub fn float_moments(filter: PyramidFilter) -> BakeOptions {
-    BakeOptions { filter, ..options(roughcast::texture::Layout::Moments, SampleType::F32) }
+    options(roughcast::texture::Layout::Moments, SampleType::F32).with_filter(filter)
 }
 
 /// The oracle's levels of a map; `base` is the slope variance of each texel's base roughness.

@@ -35,7 +35,7 @@ fn draw_slope(random: &mut Random) -> Slope {
 }
 
 fn options(specular_power: f32, form: Form) -> ShadingOptions {
-    ShadingOptions { specular_power, form, ..ShadingOptions::default() }
+    ShadingOptions::default().with_specular_power(specular_power).with_form(form)
 }
 
 /// The largest relative difference over many draws, where the lobe is not far below its peak. At least a hundred draws
@@ -110,7 +110,7 @@ fn base_lobes() {
 #[test]
 fn the_facets_base() {
     for s in POWERS {
-        let options = ShadingOptions { base_frame: BaseFrame::Facet, ..options(s, Form::Normalised) };
+        let options = options(s, Form::Normalised).with_base_frame(BaseFrame::Facet);
         let s = f64::from(s);
         let difference = difference_of(Shading::OffCentre, options, |[x, y], h| {
             let across = (1.0 + x * x + y * y) / s;

@@ -62,7 +62,7 @@ fn flat() -> Distribution {
 }
 
 fn options(specular_power: f32, form: Form) -> ShadingOptions {
-    ShadingOptions { specular_power, form, ..ShadingOptions::default() }
+    ShadingOptions::default().with_specular_power(specular_power).with_form(form)
 }
 
 fn is_one(integral: f64) -> bool {
@@ -105,7 +105,7 @@ fn off_centre_lobes_of_both_bases() {
     for base in BaseFrame::ALL {
         for slope in slopes() {
             for s in POWERS {
-                let options = ShadingOptions { base_frame: *base, ..options(s, Form::Normalised) };
+                let options = options(s, Form::Normalised).with_base_frame(*base);
                 let surface = mixture_surface(&Distribution::of_slope(slope), &options);
                 let centre = [f64::from(slope.x), f64::from(slope.y)];
                 let covariance = surface.gaussians().next().expect("at least one").1.covariance;

@@ -165,8 +165,7 @@ fn a_ramp_keeps_the_variance_of_the_pixel() {
             let wanted = squared * f64::from(0.5 * texels).powi(2);
             let found = corrected_trace_of_a_ramp(gradient, texels, &ShadingOptions::default());
             assert!((found / wanted - 1.0).abs() < 1e-3, "{texels}: {found} {wanted}");
-            let published =
-                ShadingOptions { footprint: FootprintModel::Published, ..ShadingOptions::default() };
+            let published = ShadingOptions::default().with_footprint(FootprintModel::Published);
             let found = corrected_trace_of_a_ramp(gradient, texels, &published);
             assert!((found / (squared / 6.0) - 1.0).abs() < 1e-3 && found > 2.0 * wanted, "{found} {wanted}");
         }
@@ -265,7 +264,7 @@ fn models_of_moments_shade_the_part_of_the_pixel_and_the_whole_base() {
     let ratio = FootprintRatio { moments: part(0.25), variances: part(0.5), ..FootprintRatio::WHOLE };
     let (s, base) = (100.0, 0.01);
     for (shading, kept) in [(Shading::Lean, 0.25), (Shading::Clean, 0.25), (Shading::Variance, 0.5)] {
-        let options = ShadingOptions { specular_power: s, ..ShadingOptions::default() };
+        let options = ShadingOptions::default().with_specular_power(s);
         let found = shaded(shading, sigma, &ratio, Base::None, &options);
         assert!(close(found.xx, kept * 0.04 + base) && close(found.yy, kept * 0.04 + base), "{found:?}");
         let whole = shaded(shading, sigma, &FootprintRatio::WHOLE, Base::None, &options);

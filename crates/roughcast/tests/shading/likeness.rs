@@ -12,7 +12,7 @@ use super::support::{Frame, Random, dot, narrow, surface_of_texels};
 const ROUNDING: f32 = 3e-3;
 
 fn options(specular_power: f32) -> ShadingOptions {
-    ShadingOptions { specular_power, form: Form::Normalised, ..ShadingOptions::default() }
+    ShadingOptions::default().with_specular_power(specular_power).with_form(Form::Normalised)
 }
 
 fn lean_texels(moments: Moments) -> [[f32; 4]; 2] {
@@ -41,7 +41,7 @@ fn lean_at_the_finest_level_is_off_centre_beckmann() {
     let mut random = Random(3);
     for s in [8.0_f32, 256.0, 10_000.0] {
         for base in BaseFrame::ALL.iter().copied() {
-            let options = ShadingOptions { base_frame: base, ..options(s) };
+            let options = options(s).with_base_frame(base);
             for _ in 0..20 {
                 let slope =
                     Slope { x: random.between(-1.0, 1.0) as f32, y: random.between(-1.0, 1.0) as f32 };
@@ -160,7 +160,7 @@ fn the_base_of_a_facet_is_a_rotated_round_lobe() {
         };
         let (u, v) = (column([STEP, 0.0]), column([0.0, STEP]));
         let found = [u[0] * u[0] + v[0] * v[0], u[1] * u[1] + v[1] * v[1], u[0] * u[1] + v[0] * v[1]];
-        let facet = ShadingOptions { base_frame: BaseFrame::Facet, ..options(1.0) };
+        let facet = options(1.0).with_base_frame(BaseFrame::Facet);
         let base = base_covariance(Slope { x: slope[0] as f32, y: slope[1] as f32 }, &facet);
         for (found, base) in found.into_iter().zip([base.xx, base.yy, base.xy]) {
             assert!((found - f64::from(base)).abs() < 1e-4, "{slope:?}: {found} {base}");
@@ -176,7 +176,7 @@ fn the_base_of_a_facet_is_a_rotated_round_lobe() {
 /// The largest difference, within two standard deviations, between the densities over solid angle of an off-centre lobe and of
 /// Beckmann's about the bump, relative to the latter.
 fn against_the_bumps_own(base: BaseFrame, s: f32) -> f64 {
-    let options = ShadingOptions { base_frame: base, ..options(s) };
+    let options = options(s).with_base_frame(base);
     let slope = Slope { x: 0.8, y: -0.4 };
     let normal = Frame::SURFACE.direction([0.8_f32.into(), (-0.4_f32).into()]);
     let frame = Frame::about(normal);

@@ -21,7 +21,7 @@ const ROUNDING: f64 = 2e-4;
 const MODELS: [Shading; 4] = [Shading::BlinnPhong, Shading::Beckmann, Shading::OffCentre, Shading::Ggx];
 
 fn options(specular_power: f32) -> ShadingOptions {
-    ShadingOptions { specular_power, form: Form::Physical, ..ShadingOptions::default() }
+    ShadingOptions::default().with_specular_power(specular_power).with_form(Form::Physical)
 }
 
 /// Λ of Gaussian slopes with this variance, by its definition: the slopes beyond the direction's own hide it.
@@ -102,7 +102,7 @@ fn lobes_match_their_definitions_in_f64() {
             let found = difference(shading, s, &options(s));
             assert!(found < tolerance, "{shading}, s {s}: {found:e}");
             // Without masking, or with the terms of the older forms, they are not.
-            let normalised = ShadingOptions { form: Form::Normalised, ..options(s) };
+            let normalised = options(s).with_form(Form::Normalised);
             let found = difference(shading, s, &normalised);
             assert!(found > 10.0 * tolerance, "{shading}, s {s}: {found:e}");
         }
@@ -147,7 +147,7 @@ fn a_flat_map_matches_the_microfacet_brdf_at_any_angle() {
                 let error = (f64::from(got) / expected - 1.0).abs();
                 assert!(error < FIT, "{shading}, {degrees} degrees: {got} {expected}");
                 if degrees == 60.0 && offset == 0.0 {
-                    let older = ShadingOptions { form: Form::Normalised, ..options(s) };
+                    let older = options(s).with_form(Form::Normalised);
                     let older = reflect(&surface, &material, narrow(view), &sample, &older).specular[0];
                     assert!(f64::from(older) < 0.3 * expected, "{shading}: {older} {expected}");
                 }
@@ -195,14 +195,14 @@ fn a_white_surface_reflects_no_more_than_it_receives() {
     }
     // With bumps, where all of them mask.
     for sigma in [Covariance::isotropic(0.1), Covariance { xx: 0.4, yy: 0.01, xy: 0.03 }] {
-        let options = ShadingOptions { masking: Masking::Full, ..options(200.0) };
+        let options = options(200.0).with_masking(Masking::Full);
         let moments = Moments::from_mean_and_covariance(Slope::default(), sigma);
         let texels = [[0.0, 0.0, 1.0, moments.xy], [0.0, 0.0, moments.xx, moments.yy]];
         let surface =
             surface_of_texels(Shading::Lean, &texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options);
         furnace(&surface, &options, &format!("{sigma:?}"));
         // Masked by the base alone they shine at grazing angles, as bump mapping does.
-        let base = ShadingOptions { masking: Masking::Base, ..options };
+        let base = options.with_masking(Masking::Base);
         assert!(white_furnace(&surface, 88.0, &base) > 1.0 + 10.0 * ERROR);
     }
 }
@@ -213,7 +213,7 @@ fn the_brdf_is_reciprocal() {
     let slope = Slope { x: 0.2, y: 0.05 };
     for shading in Shading::ALL.iter().copied() {
         for masking in Masking::ALL.iter().copied() {
-            let options = ShadingOptions { masking, ..options(40.0) };
+            let options = options(40.0).with_masking(masking);
             let surface = shading.surface_of_slope(slope, &options);
             let axis = match shading.reference() {
                 Shading::OffCentre => [0.0, 0.0, 1.0],
@@ -254,7 +254,7 @@ fn all_slopes_mask_more_than_the_base_does() {
     let moments = Moments::from_mean_and_covariance(Slope::default(), Covariance::isotropic(0.1));
     let texels = [[0.0, 0.0, 1.0, moments.xy], [0.0, 0.0, moments.xx, moments.yy]];
     let lobe = |masking, z: f64| {
-        let options = ShadingOptions { masking, ..options(256.0) };
+        let options = options(256.0).with_masking(masking);
         let surface =
             surface_of_texels(Shading::Lean, &texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options);
         let x = (1.0 - z * z).sqrt();

@@ -49,7 +49,7 @@ fn the_forms_agree_where_eye_light_and_normal_meet() {
     let light = LightSample { direction: UP, irradiance: [1.0, 2.0, 3.0] };
     for shading in [Shading::Beckmann, Shading::OffCentre, Shading::Ggx] {
         let specular = |form| {
-            let options = ShadingOptions { form, specular_power: 500.0, ..ShadingOptions::default() };
+            let options = ShadingOptions::default().with_form(form).with_specular_power(500.0);
             let surface = shading.surface_of_slope(Slope::default(), &options);
             reflect(&surface, &material(), UP, &light, &options).specular
         };
@@ -66,8 +66,7 @@ fn the_forms_agree_where_eye_light_and_normal_meet() {
 #[test]
 fn specular_light_is_cook_and_torrances_without_masking() {
     let (view, direction) = ([0.6, 0.0, 0.8], [-0.28, 0.0, 0.96]);
-    let options =
-        ShadingOptions { form: Form::Normalised, specular_power: 20.0, ..ShadingOptions::default() };
+    let options = ShadingOptions::default().with_form(Form::Normalised).with_specular_power(20.0);
     let surface = Shading::Beckmann.surface_of_slope(Slope { x: 0.1, y: 0.0 }, &options);
     let lobe = surface.lobe(view, direction, &options);
     let light = LightSample { direction, irradiance: [1.0, 2.0, 3.0] };
@@ -92,8 +91,7 @@ fn a_white_surface_reflects_no_more_than_it_receives() {
     const STEPS: u32 = 400;
     let white = Material { albedo: [0.0; 3], ambient: [0.0; 3], specular: [1.0; 3] };
     let view = [0.6, 0.0, 0.8];
-    let options =
-        ShadingOptions { form: Form::Normalised, specular_power: 200.0, ..ShadingOptions::default() };
+    let options = ShadingOptions::default().with_form(Form::Normalised).with_specular_power(200.0);
     for shading in [Shading::Beckmann, Shading::OffCentre, Shading::BlinnPhong, Shading::Ggx] {
         let surface = shading.surface_of_slope(Slope::default(), &options);
         let mut total = 0.0_f64;

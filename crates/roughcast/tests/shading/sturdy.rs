@@ -20,14 +20,13 @@ fn all_options() -> Vec<(ShadingOptions, Packing)> {
                 for repair in Repair::ALL.iter().copied() {
                     for base_in_maps in Base::ALL.iter().copied() {
                         for roughness_stored in RoughnessStored::ALL.iter().copied() {
-                            let options = ShadingOptions {
-                                specular_power,
-                                form,
-                                base_frame,
-                                repair,
-                                masking: Masking::ALL[all.len() % 2],
-                                footprint: FootprintModel::Corrected,
-                            };
+                            let options = ShadingOptions::default()
+                                .with_specular_power(specular_power)
+                                .with_form(form)
+                                .with_base_frame(base_frame)
+                                .with_repair(repair)
+                                .with_masking(Masking::ALL[all.len() % 2])
+                                .with_footprint(FootprintModel::Corrected);
                             let packing =
                                 Packing { base: base_in_maps, roughness_stored, ..Packing::IDENTITY };
                             all.push((options, packing));
@@ -99,7 +98,7 @@ fn the_roughest_lobe_is_finite_for_light_at_the_horizon() {
     let options = ShadingOptions::default();
     check(Shading::Ggx, &[[0.0, 0.0, 1.0, 1.0], [0.0; 4], [0.0; 4]], &packing, &options);
     let flat = Distribution::of_slope(Slope::default());
-    let surface = ggx_surface(&flat, &ShadingOptions { specular_power: 1e-3, ..options });
+    let surface = ggx_surface(&flat, &options.with_specular_power(1e-3));
     for cosine in [1.2e-18, 1e-15, 1e-6] {
         let light = [1.0, 0.0, cosine];
         let part = ggx_visible_part(&surface, [0.0, 0.6, 0.8], light);
@@ -124,7 +123,7 @@ fn a_mirror_with_its_base_baked_in_is_finite() {
     // Repaired it still shows a highlight, by the paper's rule it shows none.
     let h = narrow(Frame::SURFACE.direction([0.25, 0.0]));
     let lobe = |repair| {
-        let options = ShadingOptions { repair, ..ShadingOptions::default() };
+        let options = ShadingOptions::default().with_repair(repair);
         let packing = Packing { base: Base::Baked, ..Packing::IDENTITY };
         let texels = [[0.1, 0.0, 0.9, 0.0], [0.25, 0.0, 0.0625, 0.0]];
         surface_of_texels(Shading::Lean, &texels, &FootprintRatio::WHOLE, &packing, &options)
@@ -140,7 +139,7 @@ fn invalid_covariances_are_repaired_or_show_nothing() {
     let texels = [[0.1, 0.0, 0.9, 0.0], [0.25, 0.0, 0.0525, 0.01]];
     let h = narrow(Frame::SURFACE.direction([0.25, 0.0]));
     let lobe = |repair| {
-        let options = ShadingOptions { repair, ..ShadingOptions::default() };
+        let options = ShadingOptions::default().with_repair(repair);
         surface_of_texels(Shading::Lean, &texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
             .lobe(h, h, &options)
     };
@@ -153,7 +152,7 @@ fn the_repair_keeps_valid_covariances() {
     let texels = [[0.1, 0.0, 0.9, 0.03], [0.25, 0.1, 0.1, 0.05]];
     let h = narrow(Frame::SURFACE.direction([0.3, 0.05]));
     let lobe = |repair| {
-        let options = ShadingOptions { repair, specular_power: 1e5, ..ShadingOptions::default() };
+        let options = ShadingOptions::default().with_repair(repair).with_specular_power(1e5);
         surface_of_texels(Shading::Lean, &texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options)
             .lobe(h, h, &options)
     };
