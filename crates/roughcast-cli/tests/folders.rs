@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use common::{Outcome, bake, data, names, run, scratch, text, textures};
 
-/// A folder of maps of several kinds, some of one name, one bad and one that is none.
+/// A folder of maps of several kinds, some with equal names, one broken and one that is not a map.
 fn maps(folder: &Path) -> PathBuf {
     let maps = folder.join("maps");
     fs::create_dir(&maps).expect("space");

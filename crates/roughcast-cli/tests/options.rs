@@ -60,7 +60,7 @@ fn the_report_states_the_cost_of_block_compression() {
             let stated = report["compression"]["sigma_error_max"].as_f64().expect("a number");
             assert!(stated > 0.0, "{layout}: blocks are lossy");
             if layout == "toksvig" {
-                // Its plain form holds the normal in three channels, of which the blocks' is no compression.
+                // Its plain form holds the normal in three channels; blocks would not compress it.
                 continue;
             }
             let plain_first =

@@ -271,7 +271,7 @@ fn library_names() -> Vec<&'static str> {
 
 /// A shader of a host that has macros of the library's names, with two exports in it.
 fn as_guests(exports: [&str; 2], language: &str, prefix: &[&str]) -> String {
-    // Members of structs are the library's own affair: a macro of their name would be nobody's.
+    // Members of structs belong to the library: no caller defines a macro of their name.
     let is_member = |name: &str| ["covariance", "variance", "lobe"].contains(&name);
     let macros = library_names().into_iter().filter(|name| !is_member(name));
     let macros: Vec<_> = macros.map(|name| format!("#define {name} ) not a name (\n")).collect();

@@ -90,7 +90,7 @@ pub fn write_compact_png(picture: &Srgb8Picture, out: impl Write) -> Result<(), 
         encoder.set_color(png::ColorType::Indexed);
         encoder.set_depth(depth);
         encoder.set_palette(palette.as_flattened().to_vec());
-        // Whole bytes count colours from dark to bright, of which neighbours differ little.
+        // Whole bytes order colours from dark to bright; neighbours differ little.
         encoder.set_filter(if bits == 8 { png::Filter::Adaptive } else { png::Filter::NoFilter });
     };
     encode(picture, out, configure, &packed(&indices, picture.width as usize, bits))
@@ -278,7 +278,7 @@ mod tests {
 
     #[test]
     fn a_jpeg_is_close_to_the_picture_and_grey_if_that_is() {
-        // A smooth picture, of which quality 90 loses next to nothing.
+        // A smooth picture: quality 90 loses almost nothing.
         let smooth = |tint: usize| {
             let pixels = (0..48 * 32).flat_map(|i| [i % 48 * 4, i % 48 * 4 + tint, i / 48 * 7]);
             Srgb8Picture { width: 48, height: 32, pixels: pixels.map(|c| c as u8).collect() }

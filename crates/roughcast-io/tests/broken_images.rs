@@ -20,7 +20,7 @@ const READABLE: [(&str, &str); 9] = [
     ("oiio_exif-deep-ifds.png", "EXIF that a parser of EXIF would choke on"),
     ("oiio_rowsperstrip-zero.exr", "an attribute that only TIFF would use"),
 ];
-/// The same, of which the data has two more that differ in the ending only.
+/// The same; the data has two more copies that differ only in their extension.
 const READABLE_XMP: [&str; 2] = ["oiio_xmp-deep-nesting.png", "oiio_xmp-many-attribs.png"];
 
 /// Reasons that the errors of some files must give.

@@ -162,7 +162,7 @@ fn the_components_of_rxgb_are_back_in_their_places() {
         let (_, mean) = difference(|x, y| a.get(x, y, channel), |x, y| b.get(x, y, channel), (64, 48));
         assert!(mean < BC3_MEAN, "channel {channel}: {mean}");
     }
-    // The same picture, compressed by NVIDIA's tools, and by texconv as BC5, of which OpenImageIO made the reference.
+    // The same picture, compressed by NVIDIA's tools, and by texconv as BC5, which OpenImageIO decoded for the reference.
     let nvidia = read("cases/missing-dds-legacy-normal-formats/nvtt_BC3n_AGBR.dds");
     let reference = read("cases/dds-ati2-x-first/texconv_DX9_BC5_UNORM.reference.png").image;
     for channel in [0, 1] {

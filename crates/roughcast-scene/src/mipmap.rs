@@ -161,10 +161,9 @@ pub(crate) fn square_at((x, y): (i64, i64), (width, height): (usize, usize), wra
     [top + left, top + right, bottom + left, bottom + right]
 }
 
-/// The largest whole number that is not larger, and what is left, in 0 ..= 1. Infinite coordinates and those that are no number
-/// get a place, too. Faster than `floor`, which is a call where the compiler may not assume SSE 4.1.
+/// The floor of a coordinate and the remainder, in 0 ..= 1. Infinite coordinates and NaN give a valid place too. Faster than `floor`, which is a call where the compiler may not assume SSE 4.1.
 #[inline]
-#[expect(clippy::manual_clamp, reason = "of what is no number the maximum makes zero; clamp keeps it")]
+#[expect(clippy::manual_clamp, reason = "max turns NaN into zero; clamp would keep it")]
 pub(crate) fn whole_and_rest(x: f64) -> (i64, f64) {
     let towards_zero = x as i64;
     let whole = towards_zero.saturating_sub(i64::from(towards_zero as f64 > x));

@@ -240,7 +240,7 @@ fn repeated_triangles_are_dropped_and_backs_are_kept() {
 
 #[test]
 fn triangles_in_one_place_take_no_more_time() {
-    // Different triangles with equal boxes, of which a hierarchy makes bad choices: minutes, if it went wrong.
+    // Different triangles with equal boxes, which a hierarchy splits badly: a faulty one would take minutes.
     let count = 50_000_u32;
     let aside = |i: u32| i as f32 / count as f32;
     let mut positions = vec![[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]];

@@ -136,7 +136,7 @@ pub fn files_in(folder: &str) -> Vec<String> {
     files_in_each(&[folder])
 }
 
-/// The same of several folders, of which some may be in the extended corpus only.
+/// The same for several folders; some may exist only in the extended corpus.
 ///
 /// # Panics
 /// If no corpus has any of them.

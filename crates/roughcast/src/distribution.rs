@@ -14,11 +14,11 @@ pub const MAX_GAUSSIANS: usize = 4;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WeightedGaussian {
-    /// Its part of the whole, 0 to 1.
+    /// Its weight, 0 to 1.
     pub weight: f32,
     /// Mean slope.
     pub mean: Slope,
-    /// Covariance. As a texture stores it: rounding may have made it one of no distribution.
+    /// Covariance, as a texture stores it: rounding may have made it invalid.
     pub covariance: Covariance,
 }
 

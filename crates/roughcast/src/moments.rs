@@ -54,8 +54,7 @@ impl Moments {
         self.covariance_as_stored().positive_semidefinite()
     }
 
-    /// The covariance as it comes out of the subtraction: rounding of stored moments may have made it one of no
-    /// distribution.
+    /// The covariance as it comes out of the subtraction: rounding of stored moments may have made it invalid.
     pub fn covariance_as_stored(self) -> Covariance {
         // The products are exact in f64, so that only the rounding of the stored numbers themselves is left.
         let (x, y) = (f64::from(self.mean.x), f64::from(self.mean.y));
@@ -73,7 +72,7 @@ impl Covariance {
         Self { xx: variance, yy: variance, xy: 0.0 }
     }
 
-    /// The nearest by rule: a variance below zero becomes zero, `|xy|` is cut to `sqrt(xx yy)`. NaN becomes zero.
+    /// The repaired covariance: a negative variance becomes zero, `|xy|` is clamped to `sqrt(xx yy)`. NaN becomes zero.
     #[inline]
     pub fn positive_semidefinite(self) -> Self {
         let (xx, yy) = (self.xx.max(0.0), self.yy.max(0.0));
@@ -82,7 +81,7 @@ impl Covariance {
         if f64::from(self.xy) * f64::from(self.xy) <= product {
             return Self { xx, yy, xy: self.xy };
         }
-        // NaN stands for infinity times zero: nothing may be mixed along an axis without variance.
+        // Infinity times zero is NaN: an axis without variance has no correlation.
         let mut limit = product.sqrt().max(0.0) as f32;
         // The root may have been rounded up, and then the determinant would be below zero after all.
         if f64::from(limit) * f64::from(limit) > product {

@@ -80,7 +80,7 @@ pub fn measure<'a>(
     Ok(measured)
 }
 
-/// The pyramid's own covariance, of which nothing has been subtracted: a standard deviation's square is exact to f32.
+/// The pyramid's own covariance, before any subtraction: the square of a standard deviation is exact to f32.
 fn reference(
     image: ImageView<'_>,
     source: &SourceOptions,

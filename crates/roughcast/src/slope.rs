@@ -101,7 +101,7 @@ pub fn normal_from_slope(slope: Slope) -> Normal {
     Normal { x: slope.x * z, y: slope.y * z, z }
 }
 
-/// What was repaired while slopes were read: one bad texel must not poison the chain, and none is repaired silently.
+/// The repairs made while slopes were read: a bad texel must not spread through the levels, and every repair is counted.
 ///
 /// A broken normal is made *neutral*: it gets the mean slope of those of its eight neighbours that are not broken, or a flat
 /// one where all of them are. Beyond an edge lie the texels that the wrap mode specifies; where the map does not repeat, those of
@@ -121,7 +121,7 @@ pub struct SourceCounts {
 }
 
 impl SourceCounts {
-    /// Texels that say nothing of the surface.
+    /// Texels that contain no information about the surface.
     pub fn broken(self) -> u64 {
         self.behind + self.invalid + self.non_finite
     }
@@ -158,7 +158,7 @@ impl Sum for SourceCounts {
 }
 
 /// The slope of a vector that may be no usable normal, scaled back to `max_slope` where it is longer, direction kept; `None`
-/// where the vector points into the surface or is no number. Counts what was wrong.
+/// where the vector points into the surface or is not finite. Counts the faults.
 pub fn repaired_slope(x: f32, y: f32, z: f32, max_slope: f32, counts: &mut SourceCounts) -> Option<Slope> {
     if !(x.is_finite() && y.is_finite() && z.is_finite()) {
         counts.non_finite += 1;

@@ -1,4 +1,4 @@
-//! Loops compiled for several instruction sets, of which the best that the processor has is taken when they are called.
+//! Loops compiled for several instruction sets; each call uses the best that the processor supports.
 //!
 //! The results are the same bits for all of them: Rust never fuses or reorders floating point by itself.
 

@@ -389,7 +389,7 @@ fn contradictory_options_are_refused() {
         ("largest slope", &image, limited(f32::NAN), None, fixed(1.0)),
         ("largest slope", &image, limited(-1.0), None, plain),
         ("largest slope", &image, limited(1.001e9), None, plain),
-        // Its square is no number, so that infinite slopes would pass.
+        // Its square overflows, so that infinite slopes would pass.
         ("at most 1e9", &image, limited(2e19), None, plain),
         ("height scale", &image, source.with_height_scale(f32::NAN), None, plain),
     ];

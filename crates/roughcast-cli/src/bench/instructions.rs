@@ -71,7 +71,7 @@ struct Function {
 impl Program {
     fn of(words: &[u32]) -> Self {
         let mut program = Self::default();
-        // Before the first function only types and constants are declared, of which none is counted.
+        // Before the first function there are only types and constants, which are not counted.
         let mut current = 0;
         for (opcode, operands) in instructions(words) {
             match (opcode, operands) {

@@ -136,7 +136,7 @@ impl Inputs {
         }
     }
 
-    /// A slope: mostly below one, some up to 128, the steepest that there are, some zero.
+    /// A slope: mostly below one, some up to 128, the maximum, some zero.
     pub fn slope(&mut self) -> [f32; 2] {
         match self.below(10) {
             0 => [0.0; 2],
@@ -304,7 +304,7 @@ pub fn weighted_words(gaussian: &WeightedGaussian) -> [f32; 6] {
     [mean.x, mean.y, covariance.xx, covariance.yy, covariance.xy, weight]
 }
 
-/// The filtered normal, the base as a number, and four Gaussians, of which those beyond the distribution's are zero.
+/// The filtered normal, the base as a number, and four Gaussians; those beyond the distribution's count are zero.
 pub fn distribution_words(distribution: &Distribution) -> Vec<f32> {
     let parts = distribution.gaussians();
     let part = |place: usize| parts.get(place).copied().unwrap_or_default();

@@ -88,7 +88,7 @@ fn folder_of(destination: &Path) -> &Path {
 fn unnamed(folder: &Path) -> Option<File> {
     use rustix::fs::{Mode, OFlags, open};
     let flags = OFlags::TMPFILE | OFlags::RDWR | OFlags::CLOEXEC;
-    // As for any new file, of which the umask takes its part.
+    // As for any new file: the umask removes its bits.
     let file = File::from(open(folder, flags, Mode::from_raw_mode(0o666)).ok()?);
     // Giving it a name goes by way of this folder, which a container may lack.
     Path::new(&by_descriptor(&file)).exists().then_some(file)
@@ -133,7 +133,7 @@ fn named(destination: &Path) -> io::Result<NamedTempFile> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // As for any new file, of which the umask takes its part; temporary files are else for their owner alone.
+        // As for any new file: the umask removes its bits. Otherwise temporary files are readable by their owner only.
         builder.permissions(Permissions::from_mode(0o666));
     }
     builder.tempfile_in(folder_of(destination))

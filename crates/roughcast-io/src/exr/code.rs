@@ -49,7 +49,7 @@ pub(super) const LENGTH_OF_RUN: [usize; MOST_RUN_WORDS] = {
     table
 };
 
-/// The code of one block: for literals and lengths as counted, and for distances, of which only one is used.
+/// The code of one block: for literals and lengths as counted, and for distances; only one distance is used.
 pub(super) struct Code {
     lengths: [u8; MAX_SYMBOLS],
     codes: [u16; MAX_SYMBOLS],

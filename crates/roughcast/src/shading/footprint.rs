@@ -156,7 +156,7 @@ pub struct FootprintRatio {
     pub variances: PixelPart,
     /// The covariance that the linear change of the mean slope has under the pixel.
     pub linear_covariance: Covariance,
-    /// How far that change is all that there is, 0 to 1: a magnified level 0 has nothing between its texels.
+    /// How much of the variance is that change alone, 0 to 1: a magnified level 0 has no detail between its texels.
     pub magnified: f32,
 }
 

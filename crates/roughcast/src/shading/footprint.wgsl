@@ -37,7 +37,7 @@ struct FootprintRatio {
     moments: PixelPart,     // of filtered moments
     variances: PixelPart,   // of a filtered variance
     linear_covariance: vec3f,   // the covariance (xx, yy, xy) of the linear change of the mean slope under the pixel
-    magnified: f32,         // how far that change is all that there is, 0 to 1
+    magnified: f32,         // how much of the variance is that change alone, 0 to 1
 }
 
 // The axes of a footprint, given how the position in the texture, in texels of level 0, changes to the next pixel to the

@@ -29,14 +29,14 @@ pub struct SlopeGaussian {
     pub determinant: f32,
 }
 
-/// The Gaussian with this mean and covariance, which has its base roughness in it. [`Repair::Clamp`] sees to it that the
-/// variance is at least [`LEAST_VARIANCE`] along every direction; [`Repair::Published`] leaves it as it is.
+/// The Gaussian with this mean and covariance, base roughness included. [`Repair::Clamp`] raises the variance to at least
+/// [`LEAST_VARIANCE`] along every direction; [`Repair::Published`] leaves it unchanged.
 pub fn slope_gaussian(mean: Slope, covariance: Covariance, options: &ShadingOptions) -> SlopeGaussian {
     let Covariance { xx, yy, xy } = covariance;
     // The products are exact in f64: narrow lobes leave little of their difference.
     let determinant = (f64::from(xx) * f64::from(yy) - f64::from(xy) * f64::from(xy)) as f32;
     let trace = xx + yy;
-    // Of two negative variances, too, the determinant is positive, and the lobe would grow with the distance.
+    // Two negative variances also have a positive determinant, and their lobe would grow with the distance.
     let determinant = if trace > 0.0 { determinant } else { 0.0 };
     match options.repair {
         Repair::Published => SlopeGaussian { mean, covariance, determinant },
@@ -62,7 +62,7 @@ pub fn gaussian_lobe(surface: &SlopeGaussian, view: Vector, light: Vector, optio
     let (x, y) = (half[0] - mean.x * half[2], half[1] - mean.y * half[2]);
     let squared_distance = squared_deviations(covariance, determinant, [x, y]);
     let scale = 2.0 * half[2] * half[2];
-    // Also false where a number is none.
+    // Also false for NaN.
     if !(determinant > 0.0 && scale > 0.0 && squared_distance < LARGEST_EXPONENT * scale) {
         return 0.0;
     }
@@ -141,7 +141,7 @@ mod tests {
         for (covariance, [x, y]) in ellipses() {
             let [xx, yy, xy] = [covariance.xx, covariance.yy, covariance.xy].map(f64::from);
             let determinant = xx * yy - xy * xy;
-            // Rounded to single floats some have become so thin that they are nobody's.
+            // Rounding to single floats has made some of them degenerate.
             if determinant < 0.1 / CONDITION * (xx + yy) * (xx + yy) {
                 continue;
             }

@@ -124,6 +124,6 @@ pub fn ggx_lambda(surface: &GgxSurface, direction: Vector, cosine: f32) -> f32 {
     let x = dot(surface.tangent, direction) * surface.alpha_along;
     let y = dot(cross(surface.normal, surface.tangent), direction) * surface.alpha_across;
     let squared = x * x + y * y;
-    // Without the difference, of which narrow lobes leave no digits, and without a quotient that may overflow.
+    // Avoids a difference that cancels for narrow lobes, and a quotient that may overflow.
     0.5 * squared / (cosine * ((cosine * cosine + squared).sqrt() + cosine))
 }

@@ -57,7 +57,7 @@ fn ggx_lambda(surface: GgxSurface, direction: vec3f, cosine: f32) -> f32 {
     let x = dot(surface.tangent, direction) * surface.alpha_along;
     let y = dot(cross(surface.normal, surface.tangent), direction) * surface.alpha_across;
     let squared = x * x + y * y;
-    // Without the difference, of which narrow lobes leave no digits, and without a quotient that may overflow.
+    // Avoids a difference that cancels for narrow lobes, and a quotient that may overflow.
     return 0.5 * squared / (cosine * (sqrt(cosine * cosine + squared) + cosine));
 }
 

@@ -128,7 +128,8 @@ named_enum! {
 }
 
 named_enum! {
-    /// Whose slopes mask in [`Form::Physical`], for models that can tell base from bumps. Phong's and GGX's cannot.
+    /// Which slopes cause shadowing and masking in [`Form::Physical`], for models that separate base roughness from bumps. Phong and
+    /// GGX do not.
     #[non_exhaustive]
     pub enum Masking: "masking" {
         /// Those of the base roughness: what bump mapping shows from near, where each bump is lit on its own.
@@ -162,7 +163,7 @@ named_enum! {
 }
 
 named_enum! {
-    /// What becomes of a covariance that rounding has made impossible.
+    /// How a covariance that rounding has made invalid is repaired.
     #[non_exhaustive]
     pub enum Repair: "repair" {
         /// Made positive semidefinite: negative variances become zero, the mixed term is cut.
@@ -198,7 +199,7 @@ pub struct ShadingOptions {
     pub base_frame: BaseFrame,
     /// What to do with invalid covariances.
     pub repair: Repair,
-    /// Whose slopes mask, in the physical form.
+    /// Which slopes cause shadowing and masking, in the physical form.
     pub masking: Masking,
     /// Which variance counts as roughness.
     pub footprint: FootprintModel,

@@ -48,7 +48,7 @@ pub(super) fn fill(
     repair(bx, by, *max_slope, Slope::default(), |i| Some([raw_x[i], raw_y[i], 1.0]))
 }
 
-/// The mean of all heights that are finite: what stands for the others where heights are stored. 0 where none is.
+/// The mean of all finite heights, which replaces the others where heights are stored. 0 if there are none.
 pub(super) fn mean_height(image: ImageView<'_>) -> f32 {
     let mut row = vec![0.0; image.width()];
     let (mut sum, mut count) = (0.0, 0u64);

@@ -151,7 +151,7 @@ impl TextureInfo {
         (self.base_variance > 0.0).then(|| 1.0 / self.base_variance)
     }
 
-    /// The meaning of the whole part, of which this may be a single layer.
+    /// The meaning of the whole part; this may be one of its layers.
     #[must_use]
     pub fn of_whole_part(&self) -> Self {
         Self { layer: None, ..*self }

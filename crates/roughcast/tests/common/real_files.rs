@@ -49,7 +49,7 @@ pub fn read(path: &str) -> Image {
     Image::new(width, height, channels, samples).expect("the decoder gives what it says")
 }
 
-/// Reads a file of the test data, of which at most so many columns and rows from the top left are kept.
+/// Reads a file of the test data and keeps at most this many columns and rows from the top left.
 pub fn read_part(path: &str, largest_side: usize) -> Image {
     let image = read(path);
     let (width, height) = (image.width().min(largest_side), image.height().min(largest_side));

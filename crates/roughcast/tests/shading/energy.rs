@@ -275,7 +275,7 @@ fn every_reader_samples_textures_of_its_layout() {
     }
 }
 
-/// Gaussians of which the first few, weighted anew, make a mixture.
+/// Gaussians; the first few of them, with new weights, make a mixture.
 fn parts(count: usize) -> Vec<WeightedGaussian> {
     let all = [
         (0.5, [0.1, -0.2], [0.02, 0.01, 0.005]),
