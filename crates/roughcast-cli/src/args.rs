@@ -8,7 +8,7 @@ use roughcast::{
 use roughcast_io::{Limits, ReadOptions};
 use roughcast_pipeline::{MapOptions, SPECULAR_POWERS};
 
-/// Words from other tools, and this program's words for them.
+/// Words from other tools, and this program's equivalents.
 const OTHER_WORDS: &[(&str, &str)] = &[
     ("float16", "half"),
     ("half-float", "half"),
@@ -44,7 +44,7 @@ pub fn one_of<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T> {
     one_of_or_advice(OTHER_WORDS)
 }
 
-/// A parser for the names of an enum's variants that advises about other words, see [`WordParser`].
+/// A parser for the names of an enum's variants that gives advice on other words, see [`WordParser`].
 pub fn one_of_or_advice<T: Named + Send + Sync>(
     others: &'static [(&'static str, &'static str)],
 ) -> impl TypedValueParser<Value = T> {
@@ -55,12 +55,12 @@ pub fn one_of_or_advice<T: Named + Send + Sync>(
     })
 }
 
-/// Accepts some words, and suggests the right one for others.
+/// Accepts certain words, and suggests the right one for others.
 #[derive(Clone)]
 pub struct WordParser {
-    /// The words.
+    /// The accepted words.
     pub words: Vec<&'static str>,
-    /// Other words, each with the right one, or with a sentence that explains why there is none.
+    /// Other words, each with the right one, or with a sentence that explains why there is no equivalent.
     pub others: &'static [(&'static str, &'static str)],
 }
 
@@ -90,7 +90,7 @@ impl TypedValueParser for WordParser {
 }
 
 impl WordParser {
-    /// The word that this program uses for another tool's, as advice.
+    /// Advice that names this program's word for another tool's.
     fn hint(&self, text: &str) -> Option<String> {
         let lower = text.to_ascii_lowercase();
         let (_, meant) = self

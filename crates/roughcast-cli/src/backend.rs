@@ -1,4 +1,4 @@
-//! The renderers of `render`: textures sampled on the processor, the ground truth, or the graphics card.
+//! The renderers of `render`: textures sampled on the CPU, the ground truth, or the GPU.
 
 use std::ops::ControlFlow;
 
@@ -20,7 +20,7 @@ pub enum Backend {
 }
 
 impl Backend {
-    /// A picture of the scene, which has the shape that the renderer was made for.
+    /// A picture of the scene, whose shape must be the one that the renderer was created for.
     pub fn render(&mut self, scene: &Scene, bar: &ProgressBar) -> Result<Picture> {
         bar.reset();
         let watch = |done: usize, rows: usize| {
@@ -49,7 +49,7 @@ impl Backend {
     }
 }
 
-/// One sample per pixel of filtered textures, on the processor.
+/// One sample per pixel of filtered textures, on the CPU.
 pub struct MethodBackend {
     pub shading: Shading,
     pub textures: BakedTextures,
@@ -67,7 +67,7 @@ pub struct GroundTruthBackend {
     pub size: (u32, u32),
 }
 
-/// The graphics card.
+/// The GPU.
 pub struct GpuBackend {
     renderer: Renderer,
     drawing: Drawing,
@@ -75,7 +75,7 @@ pub struct GpuBackend {
 }
 
 impl GpuBackend {
-    /// Uploads the textures and the scene's shape to the fastest card.
+    /// Uploads the textures and the scene's shape to the fastest GPU.
     pub fn new(
         shading: Shading,
         arrays: &[TextureArray],

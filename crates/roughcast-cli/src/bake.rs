@@ -231,7 +231,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Contradictory options are an error of the command line, not of the map.
+/// Contradictory options are a command-line error, not an error of the map.
 pub fn usage_where_options(error: BakeError) -> anyhow::Error {
     match error {
         BakeError::Source(_) => error.into(),

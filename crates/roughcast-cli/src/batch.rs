@@ -1,4 +1,4 @@
-//! Reports on a folder of maps: a line for each, and how many are baked.
+//! Reports on a folder of maps: one line per map, and the number of baked maps.
 
 use std::num::NonZeroUsize;
 use std::path::Path;
@@ -14,10 +14,10 @@ use crate::progress::FolderBar;
 use crate::report::FileReport;
 use crate::{complain, one_line, refusals, say_json};
 
-/// The outcome for a file.
+/// The outcome for one file.
 enum Row {
     Baked(FileReport),
-    /// It is not a map of bumps, for this reason.
+    /// The file is not a bump map, for this reason.
     Skipped(String),
     Failed(Error),
 }
@@ -56,7 +56,7 @@ fn row_of(outcome: Result<FileOutcome, roughcast_pipeline::JobError>, args: &Arg
     match outcome {
         Ok(FileOutcome::Baked(report)) => Row::Baked(FileReport::new(report, args.times())),
         Ok(FileOutcome::Skipped(reason)) => Row::Skipped(words_on_skip(&reason)),
-        // The enum may grow.
+        // The enum may gain variants.
         Ok(other) => Row::Skipped(format!("{other:?}")),
         Err(error) => Row::Failed(refusals::of_job(error)),
     }

@@ -1,4 +1,4 @@
-//! Converts linear radiance to what a screen shows.
+//! Converts linear radiance to displayable colours.
 
 use roughcast_io::picture::Srgb8Picture;
 use roughcast_scene::Picture;
@@ -6,8 +6,9 @@ use roughcast_scene::Picture;
 /// The fraction of a picture's values that automatic exposure keeps below white.
 const KEPT: f64 = 0.99;
 
-/// An exposure that puts all but the brightest hundredth of a picture's lit pixels below white; one for a black picture.
-/// A highlight is a small part of a picture, so it may be overexposed only where it is much brighter than the rest.
+/// An exposure that puts all but the brightest hundredth of a picture's lit pixels below white; one for a black
+/// picture. A highlight is a small part of a picture, so it may be overexposed only where it is much brighter than the
+/// rest.
 pub fn exposure_of(picture: &Picture) -> f32 {
     let brightest = |[r, g, b]: &[f32; 3]| r.max(*g).max(*b);
     let mut values: Vec<f32> = picture.radiance.iter().map(brightest).filter(|value| *value > 0.0).collect();
@@ -18,13 +19,13 @@ pub fn exposure_of(picture: &Picture) -> f32 {
     }
 }
 
-/// The picture at an exposure, in sRGB; values brighter than white become white.
+/// The picture at an exposure, in sRGB; values brighter than white are clamped to white.
 pub fn shown(picture: &Picture, exposure: f32) -> Srgb8Picture {
     let pixels = picture.radiance.iter().flat_map(|pixel| pixel.map(|value| srgb8(value * exposure)));
     Srgb8Picture { width: picture.width as u32, height: picture.height as u32, pixels: pixels.collect() }
 }
 
-/// The code of a linear value in sRGB (IEC 61966-2-1). NaN is black.
+/// Encodes a linear value in sRGB (IEC 61966-2-1). NaN is black.
 pub fn srgb8(linear: f32) -> u8 {
     let linear = if linear > 0.0 { linear.min(1.0) } else { 0.0 };
     let encoded = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };

@@ -1,4 +1,4 @@
-//! Faults of the program itself: a panic ends the work on one file but not the run, and is reported in one line.
+//! Bugs in the program itself: a panic ends the work on one file but not the run, and is reported in one line.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -8,7 +8,7 @@ use anyhow::{Context, Result, anyhow};
 
 use crate::complain;
 
-/// How many jobs are guarded at the moment: while there are any, a panic is reported as their error.
+/// Number of jobs being guarded: while it is above zero, a panic is reported as their error.
 static GUARDED: Mutex<usize> = Mutex::new(0);
 
 /// Makes a panic print one line instead of a backtrace, or nothing if [`guarded`] or a caller of [`silenced`] reports it.

@@ -1,4 +1,4 @@
-//! Words for the library's findings about a map or a job, with the options that resolve them.
+//! Messages for the library's findings about a map or a job, with the options that resolve them.
 
 use std::path::Path;
 
@@ -78,7 +78,7 @@ pub fn words_of(finding: &Finding) -> String {
         Finding::NormalsNamedHeights => {
             "its name suggests heights, but its pixels are normals: it is baked as normals".to_owned()
         }
-        // The enum may grow.
+        // The enum may gain variants.
         other => format!("{other:?}"),
     }
 }
@@ -96,12 +96,12 @@ fn words_on_target(finding: TargetFinding, container: Container) -> String {
         TargetFinding::OneLevel => format!(
             "loaders of .{container} read one level and regenerate the others, which loses the roughness: write .ktx2"
         ),
-        // The enum may grow.
+        // The enum may gain variants.
         other => format!("{other:?}"),
     }
 }
 
-/// What common readers refuse: one line, or `None`.
+/// What common readers reject, in one line, or `None`.
 pub fn words_on_readers(limits: &[ReaderLimit]) -> Option<String> {
     let words = |limit: &ReaderLimit| match limit {
         ReaderLimit::Arrays => {
@@ -113,13 +113,13 @@ pub fn words_on_readers(limits: &[ReaderLimit]) -> Option<String> {
              at all (--bits half or --target web)"
                 .to_owned()
         }
-        // The enum may grow.
+        // The enum may gain variants.
         other => format!("{other:?}"),
     };
     (!limits.is_empty()).then(|| limits.iter().map(words).collect::<Vec<_>>().join("; "))
 }
 
-/// Why a file of a folder is not a map of bumps.
+/// Why a file of a folder is not a bump map.
 pub fn words_on_skip(reason: &SkipReason) -> String {
     match reason {
         SkipReason::Named { what } => format!("{what}, by its name"),
@@ -127,12 +127,12 @@ pub fn words_on_skip(reason: &SkipReason) -> String {
         SkipReason::Undecided { reason } => {
             format!("neither normals nor heights, by its pixels: {reason}")
         }
-        // The enum may grow.
+        // The enum may gain variants.
         other => format!("{other:?}"),
     }
 }
 
-/// Advice about heights that are not from 0 to 1.
+/// Advice about heights outside 0 to 1.
 fn words_on_units(range: HeightRange, width: usize, pixel_size: Option<PixelSize>) -> String {
     let scale_for = |pixel: f64| four_digits(height_scale_for_units(pixel, width));
     let formula =

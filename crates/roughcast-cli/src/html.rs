@@ -1,4 +1,4 @@
-//! Reports as one HTML file that contains its styles, tables and pictures, so that it can be sent alone.
+//! Reports as one self-contained HTML file, with its styles, tables and pictures, so that it can be sent alone.
 
 use std::fmt::{Display, Write};
 
@@ -22,7 +22,7 @@ img{display:block;image-rendering:pixelated;max-width:100%}
 ";
 
 impl Page {
-    /// A page with this title, which is also its heading.
+    /// A page with this title, which is also its main heading.
     pub fn new(title: &str) -> Self {
         let title = escaped(title);
         let html = format!(
@@ -77,22 +77,22 @@ impl Page {
         self.html.push_str("<div class=\"row\">\n");
     }
 
-    /// Ends it.
+    /// Ends a row of pictures.
     pub fn end_row(&mut self) {
         self.html.push_str("</div>\n");
     }
 
-    /// A picture with a caption, without loss.
+    /// A losslessly compressed picture with a caption.
     pub fn picture(&mut self, picture: &Srgb8Picture, caption: &str) {
         self.figure(picture.width, caption, &image("png", picture, &png(picture), caption));
     }
 
-    /// A picture with a caption, as a JPEG without visible loss: a fraction of the bytes for a detailed picture.
+    /// A picture with a caption, as a JPEG without visible artefacts: a fraction of the bytes for a detailed picture.
     pub fn photograph(&mut self, picture: &Srgb8Picture, caption: &str) {
         self.figure(picture.width, caption, &image("jpeg", picture, &jpeg(picture, STILL), caption));
     }
 
-    /// Pictures of equal size, one after the other, in a loop.
+    /// Pictures of equal size, shown one after the other in a loop.
     pub fn film(&mut self, frames: &[Srgb8Picture], frames_per_second: u16, caption: &str) {
         let count = frames.len();
         let seconds = count as f64 / f64::from(frames_per_second);
@@ -132,12 +132,12 @@ impl Page {
     }
 }
 
-/// Least quality of a still JPEG, and of one that is visible for a moment.
+/// Minimum quality of a still JPEG, and of one that is visible for a moment.
 const STILL: u8 = 80;
 const MOVING: u8 = 70;
-/// The quality that shows no steps in smooth pictures.
+/// The quality at which smooth pictures show no banding.
 const SMOOTH: u8 = 95;
-/// Pictures have the best quality that takes no more bytes per pixel: smooth ones, which show losses first, take few.
+/// Pictures have the best quality within a limit of bytes per pixel: smooth ones, which show artefacts first, need few.
 const CHEAP: f64 = 0.15;
 
 fn png(picture: &Srgb8Picture) -> Vec<u8> {

@@ -34,7 +34,7 @@ pub struct Args {
     source: SourceArgs,
 }
 
-/// The output, in both forms.
+/// The output, as text and as JSON.
 struct Findings {
     lines: Vec<String>,
     json: JsonMap<String, Value>,
@@ -67,7 +67,7 @@ fn look_at(args: &Args) -> Result<Findings> {
     match textures {
         Ok(array) => {
             drop(bytes);
-            // A PNG is one level of a texture, whose other levels were found beside it.
+            // A PNG is one level of a texture; its other levels were found next to it.
             let info = FileInfo { levels: array.level_count(), ..picture.map_err(refusals::of_read)?.info };
             findings.describe(&info);
             findings.textures(args, array);
@@ -121,7 +121,7 @@ impl Findings {
         self.put("ranges", Value::Object(rows), shown.join(", "));
     }
 
-    /// A file that `bake` wrote: the meaning of its texels, and the slopes that they decode to.
+    /// A file that `bake` wrote: the meaning of its texels, and the slopes decoded from them.
     fn textures(&mut self, args: &Args, array: TextureArray) {
         self.layout(&array.info, array.layers[0].sample_type());
         let named = |(texture, channel): (&Texture, usize)| {

@@ -8,7 +8,7 @@ use roughcast_pipeline::Map;
 use crate::args::SourceArgs;
 use crate::refusals;
 
-/// Reads a map and decides what the arguments do not specify. The error names the path.
+/// Reads a map and infers what the arguments do not specify. The error names the path.
 pub fn read_map(path: &Path, args: &SourceArgs) -> Result<Map> {
     roughcast_pipeline::read_map(path, &args.map_options())
         .map_err(|error| refusals::of_read_map(path, error))

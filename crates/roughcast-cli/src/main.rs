@@ -83,14 +83,14 @@ fn main() -> ExitCode {
     }
 }
 
-/// Reports what is wrong with the command line, in one line, or shows the requested help.
+/// Reports an error in the command line, in one line, or shows the requested help.
 fn explain(error: &clap::Error) -> ExitCode {
     let asked_for_help = !error.use_stderr()
         || error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
     if asked_for_help {
         let _ = error.print();
     } else {
-        // clap adds a usage and a pointer to --help, each after an empty line, which logs of scripts do not need.
+        // clap adds a usage and a pointer to --help, each after an empty line, which is noise in the logs of scripts.
         let text = error.render().to_string();
         let said = text
             .split("\n\n")
@@ -101,7 +101,7 @@ fn explain(error: &clap::Error) -> ExitCode {
     ExitCode::from(error.exit_code() as u8)
 }
 
-/// A command line that is invalid for any files.
+/// A command line that is invalid regardless of the files.
 #[derive(Debug)]
 struct UsageError(String);
 
@@ -118,8 +118,8 @@ fn usage(path: &Path, line: &str) -> anyhow::Error {
     UsageError(format!("{}: {line}", path.display())).into()
 }
 
-/// An error with its causes on one line. Decoders' messages may contain line breaks or control characters, which a
-/// terminal must not receive.
+/// An error with its causes on one line. Decoders' messages may contain line breaks or control characters, which must
+/// not reach a terminal.
 fn one_line(error: &anyhow::Error) -> String {
     let text = error.chain().map(refusals::with_options).collect::<Vec<_>>().join(": ");
     // Spaces are kept, since they may be part of a file's name.
@@ -140,7 +140,7 @@ fn say_json(value: &serde_json::Value) -> anyhow::Result<()> {
     say(&serde_json::to_string_pretty(value).expect("a report is plain data"))
 }
 
-/// Prints a line to stderr. If that is closed, nobody reads it.
+/// Prints a line to stderr. If stderr is closed, the line is dropped.
 fn complain(text: &str) {
     let _ = writeln!(std::io::stderr(), "{text}");
 }

@@ -1,4 +1,4 @@
-//! `roughcast precision`: which storage a map needs.
+//! `roughcast precision`: which sample type a map needs.
 
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use roughcast_pipeline::{Progress, Stage, Watch};
 
-/// Bars of shorter jobs would only flicker.
+/// Shorter jobs show no bar, since it would only flicker.
 const QUIET_FOR: Duration = Duration::from_millis(400);
 
 /// A bar over `steps` steps; it shows nothing unless stderr is a terminal.
@@ -19,7 +19,7 @@ pub fn bar(steps: u64) -> ProgressBar {
     bar
 }
 
-/// A bar over long work, which shows the remaining time.
+/// A bar for long work, which shows the remaining time.
 pub fn timed_bar(steps: u64) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr());
     let style = ProgressStyle::with_template("{bar:24} {percent}% {wide_msg} {eta} left")
@@ -28,7 +28,7 @@ pub fn timed_bar(steps: u64) -> ProgressBar {
     bar
 }
 
-/// The stages of one job, shown on a bar while it lasts.
+/// The stages of one job, shown on a bar while it runs.
 pub struct StageBar {
     bar: ProgressBar,
     started: Instant,
@@ -38,7 +38,7 @@ pub struct StageBar {
 impl StageBar {
     /// A job that has just begun.
     pub fn new() -> Self {
-        /// All but the end.
+        /// All stages except the last.
         const STAGES: u64 = Stage::ALL.len() as u64 - 1;
         Self { bar: bar(STAGES), started: Instant::now(), stage: Mutex::new(None) }
     }
@@ -65,7 +65,7 @@ impl Watch for StageBar {
     }
 }
 
-/// A bar over the maps of a folder.
+/// A bar for the maps of a folder.
 pub struct FolderBar {
     bar: ProgressBar,
 }

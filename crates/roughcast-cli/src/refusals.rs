@@ -1,5 +1,5 @@
-//! Errors of the libraries in one line, with the options to change, and sorted into faults of the command line and faults of
-//! files.
+//! Error messages for the libraries' errors, in one line, with the options to change; classified as faults of the
+//! command line or of files.
 
 mod bake_options;
 
@@ -137,7 +137,7 @@ pub fn of_write_files(error: WriteFilesError) -> Error {
     }
 }
 
-/// Why options of `bake` do not go together.
+/// Why options of `bake` are incompatible.
 pub fn of_choices(error: ChoiceError) -> Error {
     usage_line(match error {
         ChoiceError::Container(error) => container_line(error),
@@ -219,7 +219,7 @@ fn of_roughness(error: RoughnessError) -> Error {
     }
 }
 
-/// Why a job ended without files.
+/// Why a job ended without writing files.
 pub fn of_job(error: JobError) -> Error {
     match error {
         JobError::Choices(error) => of_choices(error),
@@ -236,7 +236,7 @@ pub fn of_job(error: JobError) -> Error {
     }
 }
 
-/// What is wrong with a map that must not be repaired.
+/// The faults of a map that must not be repaired.
 fn broken_texels(counts: SourceCounts, texels: u64) -> Error {
     let kinds = [
         (counts.behind, "point into the surface"),

@@ -1,4 +1,4 @@
-//! `roughcast render`: a map on a shape, shaded by any of the models, on the processor or on the graphics card.
+//! `roughcast render`: a map on a shape, shaded by any of the models, on the CPU or on the GPU.
 
 use std::borrow::Cow;
 use std::fs;
@@ -191,7 +191,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             add(&mut set, &args.output, format, &picture, exposure)?;
             set.commit()?;
             if format == PictureFormat::Png {
-                // So that another picture can have the same exposure.
+                // So that another picture can use the same exposure.
                 say(&format!("{}: white is a radiance of {}", args.output.display(), 1.0 / exposure))?;
             }
         }
@@ -201,7 +201,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 impl Args {
-    /// Refuses invalid arguments before anything is read.
+    /// Rejects invalid arguments before anything is read.
     fn check(&self) -> Result<()> {
         if self.frames.is_none() {
             PictureFormat::of(&self.output)?;
@@ -226,7 +226,7 @@ impl Args {
         Ok(())
     }
 
-    /// The exposure of a picture. All frames use the first one's; otherwise they would flicker.
+    /// The exposure of a picture. All frames use the first one's, since they would flicker otherwise.
     fn exposure_of(&self, first: &Picture) -> f32 {
         self.white.map_or_else(|| exposure_of(first), |white| 1.0 / white)
     }
@@ -275,7 +275,7 @@ impl Args {
             }
             Subject::Baked(arrays) => (Cow::Borrowed(arrays), arrays[0].info.wrap),
         };
-        // Toksvig's factor is valid only for the exponent that it was baked for.
+        // Toksvig's factor is valid only for the exponent with which it was baked.
         if let (Shading::Toksvig, Some(power)) = (shading, arrays[0].info.specular_power()) {
             options.specular_power = power;
         }
@@ -293,7 +293,7 @@ impl Args {
         Ok(Backend::Method(MethodBackend { shading, textures, sampler, options, size }))
     }
 
-    /// The model: the one that was named, else LEAN's for a map, and for a baked file the one that samples its layout.
+    /// The model: the named one, or else LEAN's for a map, and for a baked file the one that samples its layout.
     fn model(&self, subject: &Subject) -> Result<Shading> {
         let Subject::Baked(arrays) = subject else { return Ok(self.shading.unwrap_or(Shading::Lean)) };
         let layout = arrays[0].info.layout;
@@ -307,7 +307,7 @@ impl Args {
                     shading.layout()
                 ),
             )),
-            // The last of several is the one named after the layout.
+            // If there are several, the last is the one named after the layout.
             None => Shading::ALL.iter().rev().copied().find(|shading| shading.layout() == layout).ok_or_else(
                 || {
                     usage(
@@ -337,7 +337,7 @@ impl Subject {
     }
 }
 
-/// All frames, or none.
+/// Writes all frames, or none.
 fn render_frames(args: &Args, scene: &Scene, backend: &mut Backend, frames: u32) -> Result<()> {
     let folder = || args.output.display().to_string();
     fs::create_dir_all(&args.output).with_context(folder)?;

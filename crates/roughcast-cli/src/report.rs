@@ -13,7 +13,7 @@ use crate::{complain, say, say_json, warn};
 /// A map's report, and which parts of it are shown.
 pub struct FileReport {
     job: Box<JobReport>,
-    /// The common readers that refuse such a file.
+    /// The common readers that reject such a file.
     reader_note: Option<String>,
     warnings: Vec<String>,
     times: Times,
@@ -132,7 +132,7 @@ impl FileReport {
         lines
     }
 
-    /// The specular power without the steepest texels, if it is clearly different.
+    /// The specular power without the steepest texels, if it differs clearly.
     fn power_of_most_in_words(&self) -> String {
         const CLEARLY: f32 = 1.5;
         let power = self.job.bounds_of_most().usable_specular_power();
@@ -143,7 +143,7 @@ impl FileReport {
         }
     }
 
-    /// The root mean square with the base roughness, if it is different.
+    /// The root mean square including the base roughness, if it differs.
     fn with_base_in_words(&self) -> String {
         let BakeReport { rms_slope, rms_slope_with_base, .. } = self.job.report;
         if rms_slope_with_base > rms_slope {

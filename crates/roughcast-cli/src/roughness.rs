@@ -46,7 +46,7 @@ pub struct RoughnessArgs {
 }
 
 impl RoughnessArgs {
-    /// What the arguments name; `None` if they name nothing.
+    /// The base roughness that the arguments specify; `None` if they specify none.
     pub fn input(&self) -> Option<RoughnessInput> {
         if let Some(power) = self.specular_power {
             return Some(RoughnessInput::SpecularPower(power));

@@ -1,4 +1,4 @@
-//! Arguments for what a picture shows and how it is shaded, shared by the subcommands that render.
+//! Arguments for the scene and its shading, shared by the subcommands that render.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -51,7 +51,7 @@ impl SceneChoice {
         }
     }
 
-    /// The shape; a mesh is read from its file.
+    /// The shape; a mesh is loaded from its file.
     pub fn shape(&self) -> Result<Shape> {
         Ok(match self {
             Self::Plane => Shape::Plane(Plane::default()),

@@ -1,4 +1,4 @@
-//! `roughcast shader`: the shading models for other people's renderers.
+//! `roughcast shader`: exports the shading models for use in other renderers.
 
 mod export;
 mod guest;

@@ -1,4 +1,4 @@
-//! Reads files written by roughcast, with errors that name the remedy.
+//! Reads files written by roughcast, with errors that suggest the remedy.
 
 use std::path::Path;
 
@@ -10,12 +10,12 @@ pub use roughcast_io::texture_files::is_baked;
 
 use crate::refusals;
 
-/// Reads one file, given its bytes; for PNG any level, with the others beside it. The error names the path.
+/// Reads one file, given its bytes; for PNG any level, with the other levels next to it. The error names the path.
 pub fn read_bytes(path: &Path, bytes: &[u8], limits: &Limits) -> Result<TextureArray> {
     texture_files::read_texture_bytes(path, bytes, limits).map_err(refusals::of_read_files)
 }
 
-/// Reads a file and the others of its set beside it. The error names the path.
+/// Reads a file and the others of its set next to it. The error names the path.
 pub fn read_with_parts(path: &Path, limits: &Limits) -> Result<Vec<TextureArray>> {
     texture_files::read_with_parts(path, limits).map_err(refusals::of_read_files)
 }

@@ -1,4 +1,4 @@
-//! `roughcast unpack`: any layout back to float moments.
+//! `roughcast unpack`: converts any layout back to float moments.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -54,12 +54,12 @@ fn write(args: &Args, moments: &Stored) -> Result<(), WriteFilesError> {
     files.commit().map(drop)
 }
 
-/// The same moments in the layout of that name, with what is known about the base.
+/// The same moments in the named layout, with the known information about the base.
 fn moments_of(arrays: &[TextureArray]) -> Result<TextureArray> {
     let levels = decode(arrays)?;
     let first = &arrays[0].info;
     let info = TextureInfo {
-        // Toksvig's factor holds the base, but the variance that its normals decode to does not.
+        // Toksvig's factor includes the base, but the variance decoded from its normals does not.
         base: if first.layout.base_role() == BaseRole::Apart { Base::None } else { first.base },
         base_variance: first.base_variance,
         brdf: first.brdf,

@@ -3,7 +3,7 @@
 use crate::GpuError;
 use crate::error::one_line;
 
-/// Features that are requested if the adapter has them. None is needed by everything.
+/// Features that are requested if the adapter has them. None is required everywhere.
 const WANTED_FEATURES: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
     .union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS)
     .union(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM)
@@ -13,20 +13,20 @@ const WANTED_FEATURES: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
 /// Which adapters may be used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AdapterChoice {
-    /// The fastest of any kind; a software driver if there is nothing else.
+    /// The fastest adapter of any kind; a software driver only if there is no other.
     #[default]
     Fastest,
-    /// A software driver: the same on every machine.
+    /// A software driver, which behaves the same on every machine.
     Software,
 }
 
 /// Which limits are requested.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LimitChoice {
-    /// All that the adapter has.
+    /// All limits of the adapter.
     #[default]
     Adapter,
-    /// Those of every implementation of WebGPU, so that nothing works here that would not work there.
+    /// The limits that every WebGPU implementation guarantees, so that what works here works there too.
     WebGpu,
 }
 
@@ -34,7 +34,7 @@ pub enum LimitChoice {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct GpuOptions {
-    /// The APIs to choose from.
+    /// The graphics APIs to choose from.
     pub backends: wgpu::Backends,
     /// Which adapters may be used.
     pub adapter: AdapterChoice,
@@ -43,19 +43,19 @@ pub struct GpuOptions {
 }
 
 impl GpuOptions {
-    /// The same with these APIs.
+    /// The same options with these APIs.
     #[must_use]
     pub fn with_backends(self, backends: wgpu::Backends) -> Self {
         Self { backends, ..self }
     }
 
-    /// The same with these adapters.
+    /// The same options with these adapters.
     #[must_use]
     pub fn with_adapter(self, adapter: AdapterChoice) -> Self {
         Self { adapter, ..self }
     }
 
-    /// The same with these limits.
+    /// The same options with these limits.
     #[must_use]
     pub fn with_limits(self, limits: LimitChoice) -> Self {
         Self { limits, ..self }
@@ -80,13 +80,13 @@ pub struct Gpu {
     pub device: wgpu::Device,
     /// Its queue.
     pub queue: wgpu::Queue,
-    /// The adapter: its name, driver, and whether it is a software one.
+    /// The adapter's name and driver, and whether it is a software adapter.
     pub info: wgpu::AdapterInfo,
     /// Features that may be used.
     pub features: wgpu::Features,
-    /// The limits.
+    /// The device's limits.
     pub limits: wgpu::Limits,
-    /// Knows what formats support beyond WebGPU's guarantees; unknown for a device of the caller.
+    /// Used to query format support beyond WebGPU's guarantees; `None` for a device of the caller.
     adapter: Option<wgpu::Adapter>,
 }
 
@@ -96,7 +96,7 @@ impl Gpu {
     /// # Errors
     /// [`GpuError::NoAdapter`] and [`GpuError::NoDevice`].
     pub async fn new(options: &GpuOptions) -> Result<Self, GpuError> {
-        // OpenGL only if there is nothing better: it lacks compute shaders on many devices.
+        // OpenGL is used only if there is nothing better: it lacks compute shaders on many devices.
         let (first, second) = (options.backends & wgpu::Backends::PRIMARY, options.backends);
         let adapter = match request_adapter(first, options.adapter).await {
             Ok(adapter) => adapter,
@@ -107,7 +107,7 @@ impl Gpu {
         Self::from_adapter(&adapter, options.limits).await
     }
 
-    /// Creates a device of an adapter that the caller has chosen, such as one that can present to a window.
+    /// Creates a device from an adapter that the caller has chosen, such as one that can present to a window.
     ///
     /// # Errors
     /// [`GpuError::NoDevice`].
@@ -127,18 +127,18 @@ impl Gpu {
         Ok(Self { adapter: Some(adapter.clone()), ..Self::from_device(device, queue) })
     }
 
-    /// Uses a device of the caller: an engine's, a browser's, a window's.
+    /// Uses a device of the caller, such as an engine's, a browser's or a window's.
     pub fn from_device(device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let (info, features, limits) = (device.adapter_info(), device.features(), device.limits());
         Self { device, queue, info, features, limits, adapter: None }
     }
 
-    /// Whether the adapter is a program on the CPU: its timings are not those of graphics hardware.
+    /// Whether the adapter is a software implementation on the CPU, whose timings are not those of graphics hardware.
     pub fn is_software(&self) -> bool {
         self.info.device_type == wgpu::DeviceType::Cpu
     }
 
-    /// Whether there are compute shaders. WebGL2 has none.
+    /// Whether the device has compute shaders. WebGL2 has none.
     pub fn has_compute(&self) -> bool {
         self.limits.max_compute_invocations_per_workgroup > 0
     }
@@ -148,7 +148,7 @@ impl Gpu {
         self.features.contains(wgpu::Features::TIMESTAMP_QUERY)
     }
 
-    /// Refuses a format that the device cannot use in all of these ways.
+    /// Checks that the device can use a format in all of these ways.
     ///
     /// # Errors
     /// [`GpuError::Format`], which names what to use instead.
@@ -164,7 +164,7 @@ impl Gpu {
         if !self.features.contains(format.required_features()) {
             return Err(GpuError::Format { wanted: "use", format, instead });
         }
-        // With adapter-specific formats, only a trial shows what a device of the caller supports.
+        // With adapter-specific formats, only creating a texture shows what a device of the caller supports.
         let specific = wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES;
         let allowed = match (&self.adapter, self.features.contains(specific)) {
             (_, false) => format.guaranteed_format_features(self.features).allowed_usages,
@@ -183,7 +183,7 @@ impl Gpu {
         Ok(())
     }
 
-    /// Refuses a format that the device cannot filter.
+    /// Checks that the device can filter a format.
     ///
     /// # Errors
     /// [`GpuError::Format`], which names what to use instead.
@@ -197,7 +197,7 @@ impl Gpu {
         Err(GpuError::Format { wanted: "filter", format, instead })
     }
 
-    /// Creates a texture, or returns why it cannot.
+    /// Creates a texture, or returns the reason why it cannot be created.
     ///
     /// # Errors
     /// [`GpuError::Empty`], [`GpuError::TextureTooLarge`], [`GpuError::OutOfMemory`], [`GpuError::Refused`].
@@ -217,7 +217,7 @@ impl Gpu {
         self.checked(what, |device| device.create_texture(descriptor)).await
     }
 
-    /// Creates a buffer, or returns why it cannot.
+    /// Creates a buffer, or returns the reason why it cannot be created.
     ///
     /// # Errors
     /// [`GpuError::BufferTooLarge`], [`GpuError::OutOfMemory`], [`GpuError::Refused`].
@@ -236,8 +236,8 @@ impl Gpu {
         self.checked(what, |device| device.create_buffer(descriptor)).await
     }
 
-    /// Creates something that wgpu may reject as invalid or too large; its message becomes an error instead of
-    /// a panic.
+    /// Creates something that wgpu may reject as invalid or too large, and turns wgpu's message into an error instead
+    /// of a panic.
     ///
     /// # Errors
     /// [`GpuError::OutOfMemory`], [`GpuError::Refused`].
@@ -250,7 +250,7 @@ impl Gpu {
             let full = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
             let refused = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
             let made = make(&self.device);
-            // The inner scope ends first.
+            // The inner scope must be popped first.
             let refused = refused.pop();
             (made, refused, full.pop())
         };

@@ -1,4 +1,4 @@
-//! What can go wrong on a GPU. One line each, with the remedy.
+//! Errors of the GPU code. Each message is one line and states the remedy.
 
 use roughcast::BakeError;
 use roughcast_scene::DetailError;
@@ -8,7 +8,7 @@ use roughcast_scene::render::RenderError;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuError {
-    /// There is no adapter of the requested kind.
+    /// No adapter of the requested kind exists.
     #[error(
         "no GPU adapter was found ({reason}): install a graphics driver; a software one is in the Debian package \
          mesa-vulkan-drivers"
@@ -17,7 +17,7 @@ pub enum GpuError {
         /// wgpu's message.
         reason: String,
     },
-    /// The adapter refuses to give a device.
+    /// The adapter did not provide a device.
     #[error(
         "the adapter '{adapter}' cannot create a device ({reason}): update its driver, or choose another adapter"
     )]
@@ -27,14 +27,14 @@ pub enum GpuError {
         /// wgpu's message.
         reason: String,
     },
-    /// The device cannot use a texture format in the wanted way.
+    /// The device cannot use a texture format for the requested operation.
     #[error("this device cannot {wanted} {format:?} textures: {instead}")]
     Format {
-        /// The operation.
+        /// The requested operation.
         wanted: &'static str,
         /// The format.
         format: wgpu::TextureFormat,
-        /// The remedy.
+        /// The remedy: what to use instead.
         instead: &'static str,
     },
     /// A feature is missing.
@@ -42,7 +42,7 @@ pub enum GpuError {
     Feature {
         /// The feature.
         feature: &'static str,
-        /// The remedy.
+        /// The remedy: what to use instead.
         instead: &'static str,
     },
     /// A texture is larger than the device allows.
@@ -55,10 +55,10 @@ pub enum GpuError {
         width: u32,
         /// Rows.
         height: u32,
-        /// The device's longest side.
+        /// The device's largest side length.
         limit: u32,
     },
-    /// A texture without texels was asked for.
+    /// A texture without texels was requested.
     #[error("a texture needs at least one texel, not {width}x{height}")]
     Empty {
         /// Texels in a row.
@@ -75,7 +75,7 @@ pub enum GpuError {
         what: &'static str,
         /// Its size in bytes.
         bytes: u64,
-        /// The device's largest, in bytes.
+        /// The device's largest buffer, in bytes.
         limit: u64,
     },
     /// The device's memory is full.
@@ -84,7 +84,7 @@ pub enum GpuError {
         /// What was being created.
         what: &'static str,
     },
-    /// wgpu refuses the request.
+    /// wgpu rejected the request.
     #[error("the GPU refuses {what} ({reason}): update its driver, or work on the CPU")]
     Refused {
         /// What was being created.
@@ -98,24 +98,24 @@ pub enum GpuError {
         /// wgpu's message.
         reason: String,
     },
-    /// The map cannot be read as slopes, or options contradict each other.
+    /// The map cannot be read as slopes, or the options contradict each other.
     #[error(transparent)]
     Bake(#[from] BakeError),
     /// The scene cannot be rendered.
     #[error(transparent)]
     Scene(#[from] RenderError),
-    /// Textures are not a source of bumps: they are incomplete, or not those of the model.
+    /// The textures are not a source of bumps: they are incomplete, or do not belong to the model.
     #[error(transparent)]
     Detail(#[from] DetailError),
-    /// A texture or an image is not of the required kind.
+    /// A texture or an image does not have the required size, channels or type.
     #[error("{0}")]
     Shape(String),
-    /// Something that only the CPU supports.
+    /// The CPU supports this, but the GPU does not.
     #[error("{0}")]
     OnlyOnCpu(String),
 }
 
-/// A longer message on one line.
+/// A multi-line message on one line.
 pub(crate) fn one_line(message: &dyn std::fmt::Display) -> String {
     message.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
 }

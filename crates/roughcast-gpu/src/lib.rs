@@ -1,7 +1,7 @@
 //! roughcast on the GPU.
 //!
-//! Everything that has to wait is `async` and nothing blocks, so that the crate can be compiled for the web. Natively any
-//! executor works; `pollster::block_on` is the smallest. Natively, a thread polls the device while a future waits for it.
+//! All functions that wait are `async` and none blocks, so that the crate can be compiled for the web. Natively, any
+//! executor works (`pollster::block_on` is the smallest), and a thread polls the device while a future waits for it.
 
 #![forbid(unsafe_code)]
 

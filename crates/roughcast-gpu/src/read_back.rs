@@ -4,17 +4,17 @@ use crate::error::one_line;
 use crate::wait::{Answer, called_back};
 use crate::{Gpu, GpuError};
 
-/// A copy in memory that the CPU can read, made by an encoder. Read it once the encoder's commands are submitted.
+/// A copy in CPU-readable memory, made by an encoder. Read it once the encoder's commands are submitted.
 #[derive(Debug)]
 pub struct Staged {
     buffer: wgpu::Buffer,
-    /// Used bytes of a row, and bytes from one row to the next.
+    /// Bytes used in a row, and the stride between rows.
     row: u64,
     stride: u64,
 }
 
 impl Staged {
-    /// Waits for the copy and returns its bytes, rows without padding.
+    /// Waits for the copy and returns its bytes. Rows are not padded.
     ///
     /// # Errors
     /// [`GpuError::ReadBack`] if the device was lost.
@@ -32,7 +32,7 @@ impl Staged {
     }
 }
 
-/// Encodes a copy of a whole buffer, which needs the usage `COPY_SRC` and a size that is a multiple of four.
+/// Encodes a copy of a whole buffer. The buffer needs the usage `COPY_SRC` and a size that is a multiple of four.
 ///
 /// # Errors
 /// [`GpuError`] if the copy does not fit into memory.
@@ -46,8 +46,8 @@ pub async fn stage_buffer(
     Ok(Staged { row: staging.size(), stride: staging.size(), buffer: staging })
 }
 
-/// Encodes a copy of one level of a texture of one plane of colour, which needs the usage `COPY_SRC`. Layers of an array
-/// follow each other.
+/// Encodes a copy of one level of a colour texture with a single plane. The texture needs the usage `COPY_SRC`. Layers
+/// of an array follow each other.
 ///
 /// # Errors
 /// [`GpuError`] if the copy does not fit into memory, or the texture holds depth or several planes.
@@ -89,7 +89,7 @@ pub async fn stage_texture(
     Ok(Staged { buffer, row, stride })
 }
 
-/// The bytes of a whole buffer; see [`stage_buffer`].
+/// Reads the bytes of a whole buffer; see [`stage_buffer`].
 ///
 /// # Errors
 /// [`GpuError`] if the copy does not fit into memory or the device was lost.
@@ -100,7 +100,7 @@ pub async fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, Gp
     staged.read(gpu).await
 }
 
-/// The texels of one level of a texture, rows without padding; see [`stage_texture`].
+/// Reads the texels of one level of a texture, with unpadded rows; see [`stage_texture`].
 ///
 /// # Errors
 /// [`GpuError`] if the copy does not fit into memory or the device was lost.
@@ -132,7 +132,7 @@ pub async fn submitted_work_done(gpu: &Gpu) -> Result<(), GpuError> {
 
 async fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<(), GpuError> {
     let ask = |answer: Answer<_>| {
-        // Without the scope wgpu would panic on a lost device. The callback gets the error too.
+        // Without the scope, wgpu would panic on a lost device. The callback receives the error too.
         let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
         buffer.map_async(wgpu::MapMode::Read, .., move |result| answer.send(result));
         drop(scope.pop());

@@ -1,13 +1,13 @@
-//! How long passes take on the GPU itself, by its own clock.
+//! Measures how long passes take on the GPU, by its own clock.
 
 use crate::read_back::read_buffer;
 use crate::{Gpu, GpuError};
 
-/// Room for the begin and the end of this many spans in one set of queries (WebGPU's limit is 4096 queries).
+/// Maximum number of spans, each with a begin and an end, in one query set (WebGPU's limit is 4096 queries).
 const MOST_SPANS: u32 = 2048;
 const QUERY_BYTES: u64 = 8;
 
-/// Spans of passes, which are measured as the encoder's commands run.
+/// Spans of passes, measured as the encoder's commands run.
 ///
 /// ```text
 /// let mut timestamps = Timestamps::new(&gpu, 2).await?;
@@ -31,11 +31,11 @@ pub struct Timestamps {
 pub struct Measured {
     /// Its name.
     pub name: String,
-    /// How long it took. None if the clock could not measure it: it was reset, or is too coarse to separate begin and end.
+    /// Its duration. None if the clock could not measure it: it was reset, or is too coarse to separate begin and end.
     pub nanoseconds: Option<f64>,
 }
 
-/// The queries of one span's begin and end.
+/// The queries for the begin and the end of one span.
 #[derive(Clone, Debug)]
 pub struct Span {
     queries: wgpu::QuerySet,
@@ -43,7 +43,7 @@ pub struct Span {
 }
 
 impl Timestamps {
-    /// Room for `capacity` spans, 1 to 2048.
+    /// Creates room for `capacity` spans, 1 to 2048.
     ///
     /// # Errors
     /// [`GpuError::Feature`] if the device has no timestamps.
@@ -83,7 +83,7 @@ impl Timestamps {
         Some(Span { queries: self.queries.clone(), begin: 2 * index })
     }
 
-    /// Encodes the collection of all spans. Call it after the last of their passes.
+    /// Encodes the collection of all spans. Call it after the last pass that they measure.
     pub fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
         let used = 2 * self.names.len() as u32;
         if used > 0 {
@@ -91,7 +91,7 @@ impl Timestamps {
         }
     }
 
-    /// Waits for the submitted commands and returns the spans; all are free again.
+    /// Waits for the submitted commands and returns the spans. All of them are then free for reuse.
     ///
     /// # Errors
     /// [`GpuError::ReadBack`] if the device was lost.
@@ -110,7 +110,7 @@ impl Timestamps {
 }
 
 impl Span {
-    /// Of one compute pass.
+    /// Measures one compute pass.
     pub fn of_compute_pass(&self) -> wgpu::ComputePassTimestampWrites<'_> {
         wgpu::ComputePassTimestampWrites {
             query_set: &self.queries,
@@ -119,7 +119,7 @@ impl Span {
         }
     }
 
-    /// Of one render pass.
+    /// Measures one render pass.
     pub fn of_render_pass(&self) -> wgpu::RenderPassTimestampWrites<'_> {
         wgpu::RenderPassTimestampWrites {
             query_set: &self.queries,
@@ -128,20 +128,20 @@ impl Span {
         }
     }
 
-    /// From the begin of this render pass; another pass must end it.
+    /// Starts the span at the begin of this render pass; another pass must end it.
     pub fn from_render_pass(&self) -> wgpu::RenderPassTimestampWrites<'_> {
         wgpu::RenderPassTimestampWrites { end_of_pass_write_index: None, ..self.of_render_pass() }
     }
 
-    /// Up to the end of this render pass; another pass has begun it.
+    /// Ends the span at the end of this render pass; another pass has started it.
     pub fn to_render_pass(&self) -> wgpu::RenderPassTimestampWrites<'_> {
         wgpu::RenderPassTimestampWrites { beginning_of_pass_write_index: None, ..self.of_render_pass() }
     }
 
-    /// Around commands outside of passes, such as copies.
+    /// Starts the span outside of a pass, to measure commands such as copies.
     ///
     /// # Errors
-    /// [`GpuError::Feature`] if the device cannot.
+    /// [`GpuError::Feature`] if the device does not support this.
     pub fn begin_outside_passes(
         &self,
         gpu: &Gpu,
@@ -150,10 +150,10 @@ impl Span {
         self.write(gpu, encoder, self.begin)
     }
 
-    /// The end of [`Span::begin_outside_passes`].
+    /// Ends a span that [`Span::begin_outside_passes`] started.
     ///
     /// # Errors
-    /// [`GpuError::Feature`] if the device cannot.
+    /// [`GpuError::Feature`] if the device does not support this.
     pub fn end_outside_passes(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) -> Result<(), GpuError> {
         self.write(gpu, encoder, self.begin + 1)
     }

@@ -1,7 +1,7 @@
-//! Waits for wgpu's callbacks: nothing spins, the caller's thread does not block, and an error ends the wait.
+//! Waits for wgpu's callbacks without spinning or blocking the caller's thread. An error ends the wait.
 //!
-//! In a browser callbacks come by themselves. Natively they come only from [`wgpu::Device::poll`], so a thread that lives as
-//! long as the wait blocks in it. All other threads sleep.
+//! In a browser, callbacks arrive on their own. Natively they are only called by [`wgpu::Device::poll`], so a thread
+//! blocks in it for as long as the wait lasts. All other threads sleep.
 
 use std::future::Future;
 use std::pin::Pin;
@@ -13,12 +13,12 @@ use std::{thread::JoinHandle, time::Duration};
 #[cfg(not(target_arch = "wasm32"))]
 use crate::error::one_line;
 
-/// Something that calls back.
+/// A device that calls back.
 pub(crate) trait Device: Clone + Unpin + wgpu::WasmNotSend + 'static {
-    /// Blocks until the work submitted so far is done, and calls back.
+    /// Blocks until the work submitted so far is done, and runs the callbacks.
     ///
     /// # Errors
-    /// The reason why it cannot.
+    /// The reason why the device cannot finish its work.
     #[cfg(not(target_arch = "wasm32"))]
     fn finish_work(&self) -> Result<(), String>;
 }
@@ -75,8 +75,8 @@ struct Shared<T> {
 struct State<T> {
     answer: Option<Result<T, String>>,
     waker: Option<Waker>,
-    /// Whether a thread still holds the device. The wait lasts until it does not: a program may end with the wait, and a
-    /// thread that destroys the device while the program ends can crash the driver.
+    /// Whether a thread still holds the device. The wait lasts until the thread lets go of it: a program may exit right
+    /// after the wait, and destroying the device on a thread during exit can crash the driver.
     polled: bool,
 }
 
@@ -104,7 +104,7 @@ impl<T> Signal<T> {
         }
     }
 
-    /// Whether the answer comes within this time.
+    /// Whether the answer arrives within this time.
     #[cfg(not(target_arch = "wasm32"))]
     fn is_answered_within(&self, time: Duration) -> bool {
         let waiting = |state: &mut State<T>| state.answer.is_none();
@@ -112,7 +112,7 @@ impl<T> Signal<T> {
         !result.unwrap_or_else(PoisonError::into_inner).1.timed_out()
     }
 
-    /// No code that holds the lock can panic, so the state behind a poisoned lock is valid.
+    /// Locks the state. No code that holds the lock can panic, so the state behind a poisoned lock is valid.
     fn state(&self) -> MutexGuard<'_, State<T>> {
         self.0.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -131,7 +131,7 @@ fn wake<T>(mut state: MutexGuard<'_, State<T>>) {
 }
 
 struct Wait<T, D> {
-    /// Taken when a thread begins to poll it.
+    /// Taken when a thread starts to poll it.
     device: Option<D>,
     signal: Signal<T>,
     #[cfg(not(target_arch = "wasm32"))]
@@ -161,7 +161,7 @@ impl<T: Send + 'static, D: Device> Future for Wait<T, D> {
     }
 }
 
-/// In a browser callbacks need no help.
+/// In a browser, callbacks need no polling.
 #[cfg(target_arch = "wasm32")]
 impl<T, D> Wait<T, D> {
     fn watch(&mut self, _: D) -> Result<(), String> {
@@ -184,18 +184,18 @@ impl<T: Send + 'static, D: Device> Wait<T, D> {
         Ok(())
     }
 
-    /// Lets the thread end, which has nothing left to do but to return.
+    /// Joins the thread, which has nothing left to do but return.
     fn end(&mut self) {
         let this_thread = std::thread::current().id();
-        // An executor may poll the future from within its waker, which the thread itself calls.
+        // An executor may poll the future from within its waker, and the thread itself calls the waker.
         if let Some(thread) = self.thread.take_if(|thread| thread.thread().id() != this_thread) {
-            // A panic has ended the wait with an error already.
+            // A panic has already ended the wait with an error.
             let _ = thread.join();
         }
     }
 }
 
-/// Polls the device on a thread of its own. When dropped, it lets go of the device first, then ends the wait.
+/// Polls the device on its own thread. When dropped, it releases the device first and then ends the wait.
 #[cfg(not(target_arch = "wasm32"))]
 struct Poller<T, D> {
     device: Option<D>,
@@ -231,7 +231,7 @@ impl<T, D> Drop for Poller<T, D> {
 }
 
 /// How long an answer may take once the device's work is done. Another thread that polls the same device may have taken
-/// the callback, and calls it after a few others.
+/// the callback, and may run a few others before it.
 #[cfg(not(target_arch = "wasm32"))]
 #[derive(Clone, Copy)]
 struct Patience {

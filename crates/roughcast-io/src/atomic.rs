@@ -1,10 +1,11 @@
-//! Files that appear whole or not at all.
+//! Files that appear either complete or not at all.
 //!
-//! A file is written without a name, or under a hidden one beside its destination (see [`temporary`]), and takes its place when it is
-//! complete. Whatever goes wrong before that leaves an older file as it was.
+//! A file is written without a name, or under a hidden name in the destination's folder (see [`temporary`]), and is
+//! moved to its destination when it is complete. If anything fails before that, an existing file stays unchanged.
 //!
-//! The file is not synced to the disk. A bake lost to a power cut can be repeated, and waiting for hundreds of megabytes
-//! to reach the disk takes longer than the bake. The guard is against a program or a disk that fails half-way.
+//! The file is not synced to the disk. A bake lost to a power cut can be repeated, and waiting for hundreds of
+//! megabytes to reach the disk takes longer than the bake. This protects against a program or a disk that fails
+//! half-way.
 
 mod temporary;
 
@@ -14,21 +15,21 @@ use std::path::{Path, PathBuf};
 
 use temporary::Temporary;
 
-/// Symbolic links that are followed one after the other, as Linux does.
+/// Maximum number of chained symbolic links followed, as on Linux.
 const MAX_LINKS: usize = 40;
 
-/// A file to write to, which takes its place at [`AtomicFile::commit`]; if it is dropped before that, it vanishes.
+/// A file to write to. [`AtomicFile::commit`] moves it to its destination; if dropped before that, it is deleted.
 #[derive(Debug)]
 pub struct AtomicFile {
     destination: PathBuf,
     file: BufWriter<Temporary>,
-    /// Of the file that will be replaced.
+    /// Permissions of the file to be replaced.
     permissions: Option<Permissions>,
 }
 
 impl AtomicFile {
-    /// Opens a temporary file beside `destination`. An existing file stays until the commit, and passes on its
-    /// permissions; otherwise the permissions are those of any new file. Symbolic links are followed.
+    /// Opens a temporary file for `destination`, in the same folder. An existing file stays until the commit, and the
+    /// new file gets its permissions; otherwise the permissions are those of any new file. Symbolic links are followed.
     ///
     /// # Errors
     /// If the folder is missing or cannot be written to, and if the destination is a folder, a device or
@@ -44,10 +45,10 @@ impl AtomicFile {
         Ok(Self { file: BufWriter::new(file), permissions, destination })
     }
 
-    /// Puts the file in its place, replacing any file there.
+    /// Moves the file to its destination, replacing any file there.
     ///
     /// # Errors
-    /// If the last bytes cannot be written or the file cannot be renamed: then the destination is as it was.
+    /// If the last bytes cannot be written or the file cannot be renamed. The destination is then unchanged.
     pub fn commit(self) -> io::Result<()> {
         self.complete()?.rename()
     }
@@ -78,7 +79,7 @@ impl Seek for AtomicFile {
     }
 }
 
-/// A file whose bytes are all written.
+/// A completely written file.
 struct Complete {
     destination: PathBuf,
     file: Temporary,
@@ -90,7 +91,7 @@ impl Complete {
     }
 }
 
-/// Several files that belong together: none takes its place until all are written.
+/// Several files that belong together: none is moved to its destination until all are written.
 #[derive(Debug, Default)]
 pub struct AtomicSet {
     files: Vec<AtomicFile>,
@@ -105,7 +106,7 @@ impl AtomicSet {
     /// Adds a file that has been written completely.
     ///
     /// # Errors
-    /// If a file of the set has the same destination already: one of the two would be lost.
+    /// If another file of the set already has the same destination: one of the two would be lost.
     pub fn push(&mut self, file: AtomicFile) -> io::Result<()> {
         if self.files.iter().any(|other| other.destination == file.destination) {
             let message = "two of the files to write have this name: give each a name of its own";
@@ -115,12 +116,12 @@ impl AtomicSet {
         Ok(())
     }
 
-    /// Puts all files in their places.
+    /// Moves all files to their destinations.
     ///
     /// # Errors
-    /// If the last bytes of any file cannot be written: then all destinations are as they were. If a file cannot be
-    /// renamed, which happens only if its folder has changed in the meantime: then those added before it are in
-    /// place, and it and the later ones are not. The message starts with the name of the file.
+    /// If the last bytes of any file cannot be written, all destinations are unchanged. If a file cannot be renamed,
+    /// which happens only if its folder has changed in the meantime, the files added before it are in place, but it and
+    /// the later ones are not. The message starts with the name of the file.
     pub fn commit(self) -> io::Result<()> {
         let named = |destination: &Path, error: io::Error| {
             io::Error::new(error.kind(), format!("{}: {error}", destination.display()))
@@ -138,7 +139,7 @@ impl AtomicSet {
     }
 }
 
-/// Renaming would replace a device or a write-protected file without a word.
+/// Refuses devices and write-protected files, which renaming would silently replace.
 fn check_replaceable(old: &Metadata) -> io::Result<()> {
     let (kind, message) = if old.is_dir() {
         (ErrorKind::IsADirectory, "it is a folder: add a file name")
@@ -152,7 +153,7 @@ fn check_replaceable(old: &Metadata) -> io::Result<()> {
     Err(io::Error::new(kind, message))
 }
 
-/// The canonical path of a file, so that two spellings of it compare equal.
+/// The canonical path of a file, so that different spellings compare equal.
 fn resolved(destination: &Path) -> io::Result<PathBuf> {
     if let Ok(existing) = fs::canonicalize(destination) {
         return Ok(existing);
@@ -169,12 +170,12 @@ fn resolved(destination: &Path) -> io::Result<PathBuf> {
     Ok(folder.join(name))
 }
 
-/// Where a chain of symbolic links leads, whether anything is there or not; a path that is no link itself.
+/// The target of a chain of symbolic links, whether it exists or not. The result is not a link itself.
 fn linked(destination: &Path) -> io::Result<PathBuf> {
     let mut path = destination.to_owned();
     for _ in 0..MAX_LINKS {
         match fs::read_link(&path) {
-            // A relative target starts at the folder of the link.
+            // A relative target is relative to the folder of the link.
             Ok(target) => path = path.parent().unwrap_or(Path::new("")).join(target),
             Err(_) => return Ok(path),
         }
@@ -310,7 +311,7 @@ mod tests {
         file.commit().expect("a writable folder");
         assert_eq!(fs::read(folder.path().join("below/target")).expect("the file"), b"new");
         assert!(fs::symlink_metadata(&first).expect("the link").is_symlink());
-        // A link into a folder that is not there, and links that lead in a circle.
+        // A link into a missing folder, and a cycle of links.
         symlink("missing/target", folder.path().join("nowhere")).expect("a link");
         symlink("circle", folder.path().join("circle")).expect("a link");
         let refusal =
@@ -380,7 +381,7 @@ mod tests {
         assert_eq!(fs::read(folder.path().join("a")).expect("the file"), b"old");
     }
 
-    /// The second destination becomes a folder while the files are written.
+    /// The second destination becomes a folder while the files are being written.
     #[test]
     fn a_rename_that_fails_names_its_file() {
         let folder = folder();

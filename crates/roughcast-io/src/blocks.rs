@@ -50,8 +50,8 @@ impl BlockFormat {
         }
     }
 
-    /// How a block of RGBA texels is compressed. BC7 uses the "fast" settings: the next better ones take several times as
-    /// long, minutes for a large texture, and gain little. Opaque blocks, as in most packed materials, have settings
+    /// The compressor for a block of RGBA texels. BC7 uses the "fast" settings: the next better ones take several times
+    /// as long, minutes for a large texture, and gain little. Opaque blocks, as in most packed materials, use settings
     /// that spend no time on the fourth channel.
     fn variant(self, rgba: &[u8; 64]) -> CompressionVariant {
         match self {
@@ -68,7 +68,7 @@ impl BlockFormat {
 /// A [`TextureArray`] in blocks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlockArray {
-    /// What the texels mean.
+    /// The meaning of the texels.
     pub info: TextureInfo,
     /// The block format of every layer and level.
     pub format: BlockFormat,
@@ -81,7 +81,7 @@ pub struct BlockArray {
 }
 
 impl BlockArray {
-    /// A file for each layer, as [`roughcast::texture::split_layers`] makes them of texels.
+    /// Splits the array into one array per layer, as [`roughcast::texture::split_layers`] does for texels.
     pub fn split_layers(self) -> Vec<Self> {
         let infos = split_infos(&self.info);
         if infos.len() == 1 || infos.len() != self.layers.len() {
@@ -104,17 +104,17 @@ pub struct BlockLayer {
     pub levels: Vec<Vec<u8>>,
 }
 
-/// Is told which fraction of some work is done, 0 ..= 1, from any thread, and may stop it. Fractions of work that threads share may come
-/// out of order.
+/// A callback that receives the completed fraction of some work, 0 ..= 1, on any thread, and may stop the work. If
+/// threads share the work, fractions may arrive out of order.
 pub type FractionDone<'a> = dyn Fn(f32) -> ControlFlow<()> + Sync + 'a;
 
 /// Compresses 8-bit textures. Sizes that are not multiples of 4 are padded by repeating the edge.
 ///
-/// Blocks do not depend on each other, so the result is the same for any number of threads. BC4 and BC5 take well under a
-/// second for a million texels, BC7 about nine on one core.
+/// Blocks do not depend on each other, so the result is the same for any number of threads. BC4 and BC5 take well under
+/// a second for a million texels, BC7 about nine on one core.
 ///
 /// # Errors
-/// [`WriteError::Unsupported`] if the samples are not 8-bit or the number of channels is not that of the format.
+/// [`WriteError::Unsupported`] if the samples are not 8-bit or the number of channels does not match the format.
 pub fn compress(array: &TextureArray, format: BlockFormat) -> Result<BlockArray, WriteError> {
     match compress_watched(array, format, &|_| ControlFlow::Continue(()))? {
         ControlFlow::Continue(blocks) => Ok(blocks),
@@ -122,7 +122,7 @@ pub fn compress(array: &TextureArray, format: BlockFormat) -> Result<BlockArray,
     }
 }
 
-/// As [`compress`], but `watch` is told of each row of blocks and may stop the work: then the result is `Break`.
+/// As [`compress`], but calls `watch` after each row of blocks, which may stop the work: then the result is `Break`.
 ///
 /// # Errors
 /// As [`compress`].
@@ -158,7 +158,7 @@ fn block_side(texels: usize) -> usize {
     texels.div_ceil(4)
 }
 
-/// `blocks_done` is told how many more blocks are done.
+/// Compresses one level. `blocks_done` receives the number of newly completed blocks.
 fn compress_level(
     level: &Image,
     format: BlockFormat,
@@ -190,7 +190,7 @@ fn compress_level(
     })
 }
 
-/// The 4 x 4 texels of a block as RGBA; beyond the edge the last texel is repeated.
+/// The 4 x 4 texels of a block as RGBA; the last texel is repeated beyond the edge.
 fn rgba_of_block(level: &Image, texels: &[u8], column: usize, row: usize) -> [u8; 64] {
     let channels = level.channels();
     let mut rgba = [0; 64];
@@ -207,7 +207,7 @@ fn rgba_of_block(level: &Image, texels: &[u8], column: usize, row: usize) -> [u8
 /// BC7 in 8 bits.
 ///
 /// # Panics
-/// If the number of bytes of a level is not that of its blocks.
+/// If the number of bytes of a level does not match its number of blocks.
 pub fn decompress(blocks: &BlockArray) -> TextureArray {
     let format = TexelFormat::Blocks(blocks.format.code());
     let layers = blocks.layers.iter().map(|layer| {

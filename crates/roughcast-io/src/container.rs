@@ -1,4 +1,4 @@
-//! The containers that textures are written to, and what each can store.
+//! The containers for textures, and what each can store.
 
 use std::path::Path;
 
@@ -32,7 +32,7 @@ pub enum ContainerError {
     /// EXR stores half and single floats.
     #[error("exr stores floats, not {sample_type} bits: store half or single floats")]
     IntegersInExr {
-        /// The bits asked for.
+        /// The requested number of bits.
         sample_type: SampleType,
     },
     /// The layout exists only in floats, which PNG cannot store.
@@ -44,7 +44,7 @@ pub enum ContainerError {
     /// PNG stores 8 or 16 bits.
     #[error("png stores 8 or 16 bits, not {sample_type}: store 8 or 16 bits, or write exr")]
     FloatsInPng {
-        /// The bits asked for.
+        /// The requested number of bits.
         sample_type: SampleType,
     },
     /// A texel of a GPU texture has at most four channels.
@@ -58,8 +58,8 @@ pub enum ContainerError {
 }
 
 impl Container {
-    /// The container that a path's extension names, in any case; `None` for another extension. `.tx`, OpenImageIO's extension for a
-    /// texture of any format, is a tiled EXR.
+    /// The container for a path's extension, ignoring case; `None` for an unknown extension. `.tx`, OpenImageIO's
+    /// extension for a texture of any format, is a tiled EXR.
     pub fn of(path: &Path) -> Option<Self> {
         let extension = path.extension().and_then(|extension| extension.to_str())?.to_ascii_lowercase();
         let name = if extension == "tx" { "exr" } else { extension.as_str() };
@@ -74,10 +74,10 @@ impl Container {
         }
     }
 
-    /// Refuses what this container cannot store, before any work is done for it.
+    /// Refuses output that this container cannot store, before any work is done for it.
     ///
     /// # Errors
-    /// [`ContainerError`] names what does not fit.
+    /// [`ContainerError`] states what the container cannot store.
     pub fn check(self, options: &BakeOptions) -> Result<(), ContainerError> {
         let (layout, bits) = (options.layout, options.sample_type);
         let float = bits.is_float();

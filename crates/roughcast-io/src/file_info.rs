@@ -1,16 +1,17 @@
-//! What a file says about itself, and how much of it may be read.
+//! Information that a file contains about itself, and options and limits for reading it.
 
 use std::collections::BTreeMap;
 
 use roughcast::{Kind, NormalChannels};
 
-/// How an image is to be read.
+/// Options for reading an image.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ReadOptions {
     /// How much the reader may allocate.
     pub limits: Limits,
-    /// The layer or part of an EXR to read, by name, or the image of a TIFF, by number from 1. `None` reads the unambiguous one.
+    /// The layer or part of an EXR to read, by name, or the image of a TIFF, by number from 1. `None` reads the
+    /// unambiguous one.
     pub layer: Option<String>,
     /// The channels to read, by name and in this order. If empty, the names in the file decide.
     pub channels: Vec<String>,
@@ -29,7 +30,7 @@ impl ReadOptions {
         Self { layer, ..self }
     }
 
-    /// The same with these channels, in this order; none for those that the file's names decide.
+    /// The same with these channels, in this order. If empty, the names in the file decide.
     #[must_use]
     pub fn with_channels(self, channels: Vec<String>) -> Self {
         Self { channels, ..self }
@@ -45,7 +46,7 @@ impl From<Limits> for ReadOptions {
 /// How much a reader may allocate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Largest number of pixels of level 0, summed over layers. Checked before anything of that size is allocated.
+    /// Maximum number of pixels of level 0, summed over layers. Checked before anything of that size is allocated.
     pub max_pixels: u64,
 }
 
@@ -56,7 +57,7 @@ impl Default for Limits {
     }
 }
 
-/// What the numbers of an image mean before any convention of normal maps is applied.
+/// The meaning of an image's numbers before any normal map convention is applied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ValueRange {
     /// Unsigned normalised, 0 ..= 1.
@@ -67,7 +68,7 @@ pub enum ValueRange {
     Float,
 }
 
-/// Where the components of a normal are stored, according to the file itself.
+/// The channels that contain the components of a normal, according to the file itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum NormalEncoding {
     /// The file does not state it.
@@ -92,7 +93,7 @@ pub enum LengthUnit {
     Unstated,
 }
 
-/// How wide a pixel is on the ground.
+/// Width of a pixel on the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PixelSize {
     /// Width, above zero.
@@ -101,7 +102,7 @@ pub struct PixelSize {
     pub unit: LengthUnit,
 }
 
-/// What a file contains.
+/// Information about a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileInfo {
     /// `PNG`, `JPEG`, `TGA`, `BMP`, `WebP`, `TIFF`, `HDR`, `EXR`, `KTX2` or `DDS`.
@@ -122,13 +123,13 @@ pub struct FileInfo {
     pub channels: Vec<String>,
     /// Pairs that the file stores alongside the pixels (KTX2 key-value data, EXR text attributes, PNG text, DDS words).
     pub metadata: BTreeMap<String, String>,
-    /// What the file contains, according to its own words, such as the names of its channels.
+    /// The content of the file according to its own metadata, such as its channel names.
     pub kind: Option<Kind>,
     /// Where normals are stored, according to the file.
     pub normal_encoding: NormalEncoding,
     /// The width of a pixel on the ground, according to the file (GeoTIFF).
     pub pixel_size: Option<PixelSize>,
-    /// What a user should hear about how the file was read: one clause each, without the path.
+    /// Warnings for the user about how the file was read: one clause each, without the path.
     pub warnings: Vec<String>,
 }
 

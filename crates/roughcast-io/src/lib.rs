@@ -1,22 +1,23 @@
-//! File input and output for `roughcast`: reads images of ten formats, writes textures with all their levels and reads them back.
+//! File input and output for `roughcast`: reads images of ten formats, writes textures with all their levels and reads
+//! them back.
 //!
-//! - [`read_image`] and [`read_image_file`] decode PNG, JPEG, TGA, BMP, WebP, TIFF, Radiance HDR, OpenEXR, KTX2 and DDS to
-//!   an [`roughcast::Image`] in the type in which the file stores its samples;
-//! - [`ktx2`], [`dds`] and [`exr`] write a [`roughcast::texture::TextureArray`] with its levels, and read back what they
-//!   wrote; [`png_levels`] writes one level as a PNG;
+//! - [`read_image`] and [`read_image_file`] decode PNG, JPEG, TGA, BMP, WebP, TIFF, Radiance HDR, OpenEXR, KTX2 and DDS
+//!   to an [`roughcast::Image`] in the type in which the file stores its samples;
+//! - [`ktx2`], [`dds`] and [`exr`] write a [`roughcast::texture::TextureArray`] with its levels, and read back what
+//!   they wrote; [`png_levels`] writes one level as a PNG;
 //! - [`picture`] writes rendered pictures as PNG, animated PNG and EXR;
 //! - [`compress`] makes BC4, BC5 and BC7 blocks, [`decompress`] returns what a graphics processor will see, and
 //!   [`stored_of`] also measures what they cost;
-//! - [`texture_files`] writes all files of a layout or none, and finds those that belong together; [`Container`] knows what
-//!   each format can store;
+//! - [`texture_files`] writes all files of a layout or none, and finds those that belong together; [`Container`] knows
+//!   what each format can store;
 //! - `mesh`, with the feature of that name (on by default), reads Wavefront OBJ and glTF;
 //! - [`AtomicFile`] and [`AtomicSet`] write files atomically.
 //!
 //! Readers accept any bytes: none panics or allocates more memory than [`Limits`] allow. Errors are one line with the
 //! fault and the remedy; the caller adds the path. Values are data: gamma and colour profiles are ignored.
 //!
-//! Out of scope: the meaning of a layout's texels (see [`roughcast::texture`]), cube maps, volumes, BC6H, ETC2, HDR ASTC,
-//! and colour management.
+//! Out of scope: the meaning of a layout's texels (see [`roughcast::texture`]), cube maps, volumes, BC6H, ETC2, HDR
+//! ASTC, and colour management.
 //!
 //! # Example
 //!
@@ -79,6 +80,6 @@ use roughcast::Image;
 pub struct Decoded {
     /// The pixels.
     pub image: Image,
-    /// What the file says about itself.
+    /// The information that the file contains about itself.
     pub info: FileInfo,
 }

@@ -1,20 +1,22 @@
-//! What a file of a material contains, by its name: the suffixes of texture libraries, engines and painters.
+//! Infers the role of a material's file from its name: the suffixes of texture libraries, engines and painting
+//! programs.
 //!
-//! The words are those of ambientCG (`_NormalGL`), Poly Haven (`_nor_gl_1k`), Quixel (`_Albedo`), Unreal (`T_Rock_N`), Unity
-//! (`_MetallicGlossMap`), glTF and Blender (`baseColor`) and Substance (`Normal_OpenGL`). Case, separators and the resolution do not
-//! count; the last word decides, so `gloss_paint_normal.png` is a normal map. A name that ends in several words, one of which means
-//! normals, such as `ground_nrm_rgh.png`, is a normal map that contains the others in its further channels.
+//! The words are those of ambientCG (`_NormalGL`), Poly Haven (`_nor_gl_1k`), Quixel (`_Albedo`), Unreal (`T_Rock_N`),
+//! Unity (`_MetallicGlossMap`), glTF and Blender (`baseColor`) and Substance (`Normal_OpenGL`). Case, separators and
+//! the resolution are ignored. The last word decides, so `gloss_paint_normal.png` is a normal map. If a name ends in
+//! several role words and one of them means normals, as in `ground_nrm_rgh.png`, the file is a normal map that contains
+//! the other roles in its further channels.
 
 use roughcast::Green;
 
-/// What a picture of a material contains.
+/// The content of a material's picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MaterialRole {
     /// Normals; the name may specify which way green points.
     Normal(Option<Green>),
     /// Heights or depths.
     Height,
-    /// Anything that is not a map of bumps, in one word for messages: `colour`, `roughness` ...
+    /// Anything other than a normal or height map, as one word for messages: `colour`, `roughness` ...
     Other(&'static str),
 }
 
@@ -34,7 +36,7 @@ const PACKED: MaterialRole = MaterialRole::Other("packed channels");
 const TRANSMISSION: MaterialRole = MaterialRole::Other("translucency");
 const HELPER: MaterialRole = MaterialRole::Other("a mask or preview");
 
-/// Words, without separators and in lower case, that identify a file's content wherever they end its name.
+/// Words, without separators and in lower case, that identify a file's content at the end of its name.
 const WORDS: [(&[&str], MaterialRole); 16] = [
     (&["normalgl", "norgl", "normalopengl", "normalogl", "nrmgl", "nrmogl"], UP),
     (&["normaldx", "nordx", "normaldirectx", "normald3d", "nrmdx", "nrmd3d"], DOWN),
@@ -85,7 +87,8 @@ const WORDS: [(&[&str], MaterialRole); 16] = [
     (&["bc"], COLOUR),
 ];
 
-/// Letters that identify it only among other files of the same material: `T_Rock_N`, `T_Rock_D`. `door_h.png` alone is not identified.
+/// Letters that identify the content only if other files of the same material exist: `T_Rock_N`, `T_Rock_D`.
+/// `door_h.png` alone is not identified.
 const LETTERS: [(&str, MaterialRole); 10] = [
     ("n", NORMAL),
     ("h", HEIGHT),
@@ -99,17 +102,17 @@ const LETTERS: [(&str, MaterialRole); 10] = [
     ("o", OPACITY),
 ];
 
-/// The longest name of a role, in words: `occlusion roughness metallic`.
+/// Maximum number of words in a role's name: `occlusion roughness metallic`.
 const MAX_WORDS: usize = 3;
 
-/// What a name means.
+/// The meaning of a file name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NamedRole {
     /// What the file contains.
     pub role: MaterialRole,
-    /// The name without the words of its role, in lower case: the same for all files of a material.
+    /// The name without its role words, in lower case: the same for all files of a material.
     pub material: String,
-    /// Whether the role is a single letter, which counts only beside other files of the material.
+    /// Whether the role is a single letter, which counts only if other files of the material exist.
     pub by_letter: bool,
 }
 
@@ -125,7 +128,7 @@ pub fn role_of(stem: &str) -> Option<NamedRole> {
     (!before.is_empty()).then(|| NamedRole { role: *role, material: before.concat(), by_letter: true })
 }
 
-/// The role that the last words name, the longest name first, and the words before it.
+/// The role named by the last words, trying the longest names first, and the words before it.
 fn ending_role(words: &[String]) -> Option<(MaterialRole, &[String])> {
     (1..=MAX_WORDS.min(words.len())).rev().find_map(|count| {
         let (before, last) = words.split_at(words.len() - count);
@@ -135,8 +138,8 @@ fn ending_role(words: &[String]) -> Option<(MaterialRole, &[String])> {
     })
 }
 
-/// The normals that a picture of several roles contains: `nrm_rgh` is normals in RGB and roughness in alpha. A mask or preview of
-/// normals is not one.
+/// The normals that a picture of several roles contains: `nrm_rgh` is normals in RGB and roughness in alpha. A mask or
+/// preview of normals is not one.
 fn normals_among(last: MaterialRole, mut before: &[String]) -> Option<(MaterialRole, &[String])> {
     if last == HELPER {
         return None;
@@ -148,12 +151,12 @@ fn normals_among(last: MaterialRole, mut before: &[String]) -> Option<(MaterialR
             normals = Some(role);
         }
     }
-    // All words of roles go, so that the material is the same as that of its other files.
+    // All role words are removed, so that the material's name matches that of its other files.
     normals.map(|role| (role, before))
 }
 
-/// The roles in the names of files in one folder: a single letter counts if another file of the same material is identified by
-/// its name.
+/// The roles in the names of files in one folder: a single letter counts if another file of the same material is
+/// identified by its name.
 pub fn roles_of<'a>(stems: impl IntoIterator<Item = &'a str>) -> Vec<Option<NamedRole>> {
     let roles: Vec<Option<NamedRole>> = stems.into_iter().map(role_of).collect();
     let of_material =
@@ -169,7 +172,7 @@ fn words_of(stem: &str) -> Vec<String> {
     let letters: Vec<char> = stem.chars().collect();
     for (i, &c) in letters.iter().enumerate() {
         let next_is_lower = letters.get(i + 1).is_some_and(|next| next.is_lowercase());
-        // `baseColor` and `AOMap` begin a word at the C and at the M.
+        // In `baseColor` and `AOMap`, a word begins at the C and at the M.
         let begins =
             c.is_uppercase() && (previous.is_lowercase() || previous.is_uppercase() && next_is_lower);
         if c.is_alphanumeric() {

@@ -1,16 +1,16 @@
-//! The pairs of text that files store alongside the pixels, in bounded number and size.
+//! The text pairs that files store alongside the pixels, limited in number and size.
 
 use std::collections::BTreeMap;
 
-/// Pairs that are kept from one file. A baked texture has about twenty.
+/// Maximum number of pairs kept from one file. A baked texture has about twenty.
 const MAX_PAIRS: usize = 256;
 /// Longest key kept, in bytes: EXR allows 255, PNG 79.
 const MAX_KEY_BYTES: usize = 255;
-/// Longest value kept, in bytes. Whole XMP packets and thumbnails are not what these pairs are for.
+/// Longest value kept, in bytes. These pairs are not meant for whole XMP packets and thumbnails.
 pub(crate) const MAX_VALUE_BYTES: usize = 16 << 10;
 
-/// Adds a pair, unless the bounds are reached. A value that is too long is left out, because half of it would be wrong.
-/// The first of two values under one key stays.
+/// Adds a pair, unless the limits are reached. A value that is too long is left out, since a truncated one would be
+/// wrong. If a key has two values, the first is kept.
 pub(crate) fn insert(pairs: &mut BTreeMap<String, String>, key: &str, value: &str) {
     let fits = pairs.len() < MAX_PAIRS && key.len() <= MAX_KEY_BYTES && value.len() <= MAX_VALUE_BYTES;
     if fits && !key.is_empty() {
@@ -18,7 +18,8 @@ pub(crate) fn insert(pairs: &mut BTreeMap<String, String>, key: &str, value: &st
     }
 }
 
-/// Adds a pair whose value is bytes. Text, which may end with NULs, is kept as text; anything else becomes its length in words.
+/// Adds a pair whose value is bytes. Text, which may end with NULs, is kept as text; anything else becomes its length
+/// in words.
 pub(crate) fn insert_bytes(pairs: &mut BTreeMap<String, String>, key: &str, value: &[u8]) {
     let text = std::str::from_utf8(value).ok().map(|text| text.trim_end_matches('\0'));
     match text.filter(|text| !text.contains('\0')) {

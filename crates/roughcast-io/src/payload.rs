@@ -1,4 +1,4 @@
-//! The contents of a texture file, and its shape: the part that KTX2 and DDS have in common.
+//! The contents and shape of a texture file, shared by KTX2 and DDS.
 
 use std::borrow::Cow;
 
@@ -14,7 +14,7 @@ use crate::{Limits, ReadError, WriteError};
 /// The texels to be written.
 #[derive(Clone, Copy, Debug)]
 pub enum Payload<'a> {
-    /// Texels as they are: 1, 2 or 4 channels of any sample type.
+    /// Uncompressed texels: 1, 2 or 4 channels of any sample type.
     Texels(&'a TextureArray),
     /// Compressed blocks.
     Blocks(&'a BlockArray),
@@ -23,7 +23,7 @@ pub enum Payload<'a> {
 /// How the levels of a file are compressed beyond the texel format. DDS supports none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Supercompression {
-    /// Not at all: a reader can hand the bytes of the file to the graphics processor.
+    /// No compression: a reader can pass the bytes of the file to the graphics processor.
     #[default]
     None,
     /// Zstandard, each level as one frame.
@@ -66,7 +66,7 @@ impl Shape {
         }
         let pixels = width.checked_mul(height).and_then(|pixels| pixels.checked_mul(self.layers as u64));
         if pixels.is_none_or(|pixels| pixels > limits.max_pixels) {
-            // Layers are counted as rows, so that the number in the message is the one that broke the limit.
+            // Layers are counted as rows, so that the message states the number that exceeds the limit.
             let height = height.saturating_mul(self.layers as u64);
             return Err(ReadError::TooLarge { width, height, max_pixels: limits.max_pixels });
         }
@@ -93,7 +93,7 @@ impl Shape {
 }
 
 impl Payload<'_> {
-    /// What the texels mean.
+    /// The meaning of the texels.
     pub fn info(&self) -> &TextureInfo {
         match self {
             Payload::Texels(array) => &array.info,
@@ -101,7 +101,7 @@ impl Payload<'_> {
         }
     }
 
-    /// The shape, after checking that every level has the size and the format that it states.
+    /// The shape, after checking that every level has the stated size and format.
     pub(crate) fn shape(&self, container: &'static str) -> Result<Shape, WriteError> {
         let unsupported =
             |what: String, remedy: &'static str| WriteError::Unsupported { container, what, remedy };
@@ -147,7 +147,7 @@ impl Payload<'_> {
         }
     }
 
-    /// The bytes of one layer of a level, as they go into the file.
+    /// The bytes of one layer of a level in file format.
     pub(crate) fn bytes(&self, layer: usize, level: usize) -> Cow<'_, [u8]> {
         match self {
             Payload::Texels(array) => little_endian_bytes(array.layers[layer].levels[level].samples()),
@@ -204,8 +204,8 @@ pub(crate) fn textures_from<'a>(
     Ok(TextureArray { info, layers: layers.collect() })
 }
 
-/// Name of each layer and of its channels: those of the layout. A file with other layers than its layout has is read
-/// too, with numbered layers and the channels R, G, B, A; the layout's decoder will report what is missing.
+/// The names of each layer and its channels, from the layout. A file whose layers do not match its layout is read too,
+/// with numbered layers and the channels R, G, B, A; the layout's decoder will report what is missing.
 fn layer_names(
     container: &'static str,
     info: &TextureInfo,
@@ -215,7 +215,7 @@ fn layer_names(
         ["layer0", "layer1", "layer2", "layer3", "layer4", "layer5", "layer6", "layer7"];
     let channels = shape.format.channel_names();
     let specs = layers_of(info);
-    // Block-compressed normals lack the channels behind the second.
+    // Block-compressed normals have only the first two channels.
     if specs.len() == shape.layers && specs.iter().all(|spec| spec.channels.len() >= channels.len()) {
         return Ok(specs.iter().map(|spec| (spec.name, spec.channels[..channels.len()].to_vec())).collect());
     }

@@ -29,7 +29,8 @@ impl Srgb8Picture {
         Self { width, height, pixels: vec![0; 3 * width as usize * height as usize] }
     }
 
-    /// Pictures in a row, their tops aligned, `gap` pixels of this grey between them. `None` if there are no pictures.
+    /// Places pictures side by side, aligned at the top, with `gap` pixels of this grey between them. `None` if there
+    /// are no pictures.
     pub fn side_by_side<'a>(
         pictures: impl IntoIterator<Item = &'a Self> + Clone,
         gap: u32,
@@ -47,7 +48,7 @@ impl Srgb8Picture {
         Some(row)
     }
 
-    /// Copies another picture into this one, its top left corner at `(x, y)`; parts outside are cut off.
+    /// Copies another picture into this one with its top left corner at `(x, y)`; parts outside are cropped.
     pub fn paste(&mut self, other: &Self, x: u32, y: u32) {
         let columns = other.width.min(self.width.saturating_sub(x)) as usize;
         let rows = other.height.min(self.height.saturating_sub(y));
@@ -67,7 +68,7 @@ pub fn write_png(picture: &Srgb8Picture, out: impl Write) -> Result<(), WriteErr
     encode(picture, out, |encoder| encoder.set_color(png::ColorType::Rgb), &picture.pixels)
 }
 
-/// Writes the same picture in fewer bytes if it is grey or has few colours: as grey, or with a palette.
+/// Writes a picture as PNG in fewer bytes if it is grey or has few colours: as grey, or with a palette.
 ///
 /// # Errors
 /// [`WriteError::Io`] if `out` fails.
@@ -90,7 +91,7 @@ pub fn write_compact_png(picture: &Srgb8Picture, out: impl Write) -> Result<(), 
         encoder.set_color(png::ColorType::Indexed);
         encoder.set_depth(depth);
         encoder.set_palette(palette.as_flattened().to_vec());
-        // Whole bytes order colours from dark to bright; neighbours differ little.
+        // 8-bit indices order colours from dark to bright, so neighbours differ little.
         encoder.set_filter(if bits == 8 { png::Filter::Adaptive } else { png::Filter::NoFilter });
     };
     encode(picture, out, configure, &packed(&indices, picture.width as usize, bits))
@@ -118,7 +119,7 @@ pub fn write_jpeg(picture: &Srgb8Picture, quality: u8, out: impl Write) -> Resul
     })
 }
 
-/// The one value of every pixel, if all are grey.
+/// One value per pixel, if all pixels are grey.
 fn grey(pixels: &[[u8; 3]]) -> Option<Vec<u8>> {
     pixels.iter().map(|[r, g, b]| (r == g && g == b).then_some(*r)).collect()
 }
@@ -137,7 +138,7 @@ fn palette(pixels: &[[u8; 3]]) -> Option<Vec<[u8; 3]>> {
     Some(colours)
 }
 
-/// Indices of this many bits, rows filled up to whole bytes.
+/// Packs indices of this many bits, with rows padded to whole bytes.
 fn packed(indices: &[u8], width: usize, bits: u8) -> Vec<u8> {
     let a_byte = usize::from(8 / bits);
     let byte = |indices: &[u8]| {
@@ -180,7 +181,7 @@ pub struct Plane {
 /// Writes planes of linear values as an OpenEXR picture of single floats, ZIP-compressed.
 ///
 /// # Errors
-/// [`WriteError::Unsupported`] if a plane has not `width * height` values; [`WriteError::Io`] if `out` fails.
+/// [`WriteError::Unsupported`] if a plane does not have `width * height` values; [`WriteError::Io`] if `out` fails.
 pub fn write_exr(
     (width, height): (usize, usize),
     planes: Vec<Plane>,

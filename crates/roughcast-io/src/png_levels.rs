@@ -12,9 +12,9 @@ const PIECE: usize = 1 << 15;
 
 /// Writes an image of 8- or 16-bit unsigned samples as PNG, with `text` as text chunks.
 ///
-/// One channel is written as grey, three as RGB and four as RGBA. PNG has no two channels but grey with alpha, which many
-/// programs multiply into the grey, so two channels are written as RGB with a blue of zero. There is no gamma and no sRGB chunk:
-/// the values are data, not colours, and no program should convert them.
+/// One channel is written as grey, three as RGB and four as RGBA. Two channels are written as RGB with a blue of zero:
+/// PNG's only two-channel format is grey with alpha, and many programs multiply the alpha into the grey. There is no
+/// gamma and no sRGB chunk: the values are data, not colours, and no program should convert them.
 ///
 /// # Errors
 /// [`WriteError::Unsupported`] for floats, for more than four channels, for more than 2^31 - 1 pixels in a row or rows,
@@ -55,7 +55,7 @@ pub fn write_level(
     writer.finish().map_err(failure)
 }
 
-/// A `tEXt` chunk, or an `iTXt` chunk where the value needs more than the Latin letters of the former.
+/// Adds a `tEXt` chunk, or an `iTXt` chunk if the value contains non-ASCII characters.
 fn add_text(encoder: &mut png::Encoder<impl Write>, key: &str, value: &str) -> Result<(), WriteError> {
     const LONGEST_KEY: usize = 79;
     if !(1..=LONGEST_KEY).contains(&key.len()) || !key.bytes().all(|byte| byte.is_ascii_graphic()) {
@@ -72,7 +72,7 @@ fn add_text(encoder: &mut png::Encoder<impl Write>, key: &str, value: &str) -> R
         .map_err(failure)
 }
 
-/// Passes on the samples, a few rows at a time so that no second image is in memory.
+/// Passes on the samples a few rows at a time, to avoid a second image in memory.
 fn put_samples(image: &Image, out: &mut impl Write) -> std::io::Result<()> {
     let channels = image.channels();
     let piece = PIECE / channels * channels;
@@ -87,7 +87,7 @@ fn put_samples(image: &Image, out: &mut impl Write) -> std::io::Result<()> {
     }
 }
 
-/// The bytes of whole pixels: two channels get a third of zeros.
+/// The bytes of whole pixels; two channels get a third channel of zeros.
 fn in_order<T: Copy + Default, const N: usize>(
     samples: &[T],
     channels: usize,
@@ -105,7 +105,7 @@ fn refusal(what: String, remedy: &'static str) -> WriteError {
     WriteError::Unsupported { container: "PNG", what, remedy }
 }
 
-/// The image has been checked before, so only the disk can fail.
+/// Converts an encoding error. The image has been checked already, so only `out` can fail.
 fn failure(error: png::EncodingError) -> WriteError {
     match error {
         png::EncodingError::IoError(error) => WriteError::Io(error),
@@ -128,7 +128,7 @@ mod tests {
         write_level(image, text, &mut bytes).map(|()| bytes)
     }
 
-    /// Header, chunks of colour and pixels, as the png crate decodes them.
+    /// Header, colour chunks and pixels, as decoded by the png crate.
     fn decoded(bytes: &[u8]) -> (png::Info<'static>, Vec<u8>) {
         let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().expect("a PNG");
         let mut pixels = vec![0; reader.output_buffer_size().expect("it fits")];

@@ -1,4 +1,4 @@
-//! Textures as they go into files, texels or compressed blocks, and what block compression costs.
+//! Textures in the form in which files store them, texels or compressed blocks, and the error of block compression.
 
 use std::ops::ControlFlow;
 
@@ -8,17 +8,17 @@ use roughcast::{Blocks, Moments, SampleType};
 use crate::blocks::{BlockArray, BlockFormat, FractionDone, compress_watched, decompress};
 use crate::{Payload, WriteError};
 
-/// The textures of one file: texels, or blocks made of them.
+/// The textures of one file, as texels or compressed blocks.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Stored {
-    /// Texels as they are.
+    /// Uncompressed texels.
     Texels(TextureArray),
     /// Compressed blocks.
     Blocks(BlockArray),
 }
 
 impl Stored {
-    /// As input for the writers of KTX2 and DDS.
+    /// The input for the KTX2 and DDS writers.
     pub fn payload(&self) -> Payload<'_> {
         match self {
             Stored::Texels(array) => Payload::Texels(array),
@@ -26,7 +26,7 @@ impl Stored {
         }
     }
 
-    /// What the texels mean.
+    /// The meaning of the texels.
     pub fn info(&self) -> &TextureInfo {
         match self {
             Stored::Texels(array) => &array.info,
@@ -50,7 +50,7 @@ impl Stored {
         }
     }
 
-    /// The type of the texels; blocks are sampled as 8-bit texels are.
+    /// The sample type of the texels; blocks count as 8-bit.
     pub fn sample_type(&self) -> SampleType {
         match self {
             Stored::Texels(array) => array.layers[0].sample_type(),
@@ -81,7 +81,7 @@ impl Stored {
         format!("{channels} {bits}")
     }
 
-    /// One for each layer, for a file of its own.
+    /// Splits the textures into one per layer, each for its own file.
     pub fn split(self) -> Vec<Stored> {
         match self {
             Stored::Texels(array) => split_layers(vec![array]).into_iter().map(Stored::Texels).collect(),
@@ -105,8 +105,9 @@ pub enum CompressError {
     Stopped,
 }
 
-/// Compresses each array into blocks, BC4 for one channel, BC5 for two and BC7 for four, and measures what that costs; with
-/// [`Blocks::None`] the texels stay unchanged. `watch` is told the fraction done, from any thread, and may stop the work.
+/// Compresses each array into blocks, BC4 for one channel, BC5 for two and BC7 for four, and measures the error. With
+/// [`Blocks::None`] the texels stay unchanged. `watch` receives the completed fraction, on any thread, and may stop the
+/// work.
 ///
 /// # Errors
 /// [`CompressError`] if the texels are not 8-bit or have three channels, if the textures do not decode, or if
@@ -148,7 +149,8 @@ fn block_format(array: &TextureArray) -> BlockFormat {
     }
 }
 
-/// What block compression adds to the standard deviation of slopes, `σ = sqrt(tr Σ / 2)`, and to their variance, over all levels.
+/// The error that block compression adds to the standard deviation of slopes, `σ = sqrt(tr Σ / 2)`, and to their
+/// variance, over all levels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompressionError {
     /// Root mean square error of σ.
@@ -162,7 +164,7 @@ pub struct CompressionError {
 }
 
 impl CompressionError {
-    /// Measures the textures after compression against those before it.
+    /// Compares the textures after compression with those before it.
     ///
     /// # Errors
     /// [`DecodeError`] if either set is not complete.
@@ -208,7 +210,7 @@ mod tests {
 
     const SIDE: usize = 32;
 
-    /// The two files of `pbr`: a rough map's normals, for BC5, and its roughness, for BC4.
+    /// The two files of `pbr` for a rough map: its normals, for BC5, and its roughness, for BC4.
     fn pbr() -> Vec<TextureArray> {
         let texels =
             (0..SIDE * SIDE).flat_map(|i| [(i * 37 % 200) as u8 + 28, (i * 91 % 200) as u8 + 28, 255]);
@@ -244,7 +246,7 @@ mod tests {
         assert!(error.sigma_rms > 0.0 && error.sigma_max >= error.sigma_rms, "{error:?}");
         let fractions = fractions.into_inner().expect("no panic");
         let last = fractions.iter().copied().fold(0.0, f32::max);
-        /// Single floats that are added up.
+        /// Rounding error of the summed single floats.
         const ROUNDING: f32 = 1e-5;
         assert!((last - 1.0).abs() < ROUNDING && fractions.len() > 2 * SIDE / 4, "{fractions:?}");
     }

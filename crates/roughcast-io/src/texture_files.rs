@@ -1,8 +1,9 @@
 //! The files of a texture: one, or several that belong together.
 //!
-//! A layout of one part is one file. A layout of several parts is a file for each, `NAME.PART.ext`; if every layer has a file of its
-//! own, that is `NAME.LAYER.ext`; and PNG has a file for each level, `NAME.L0.png` and so on. [`TextureFiles`] writes all of
-//! them or none; [`read_with_parts`] finds the others beside the one that was named.
+//! A layout of one part is one file. A layout of several parts has one file per part, `NAME.PART.ext`; if every layer
+//! has its own file, that is `NAME.LAYER.ext`; and PNG has one file per level, `NAME.L0.png` and so on.
+//! [`TextureFiles`] writes all of them or none; [`read_with_parts`] finds the other files in the folder of the given
+//! one.
 
 mod names;
 mod read;

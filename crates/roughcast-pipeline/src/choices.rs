@@ -1,4 +1,4 @@
-//! What is stored and how; open choices follow from the container and the target.
+//! What is stored and how. Options left open are chosen for the container and the target.
 
 use roughcast::texture::{Base, Brdf, Layout, RoughnessStored, TextureInfo, split_infos};
 use roughcast::{
@@ -10,14 +10,14 @@ use roughcast_io::{Container, ContainerError, Supercompression};
 use crate::roughness::Roughness;
 use crate::target::{Target, TargetError};
 
-/// What is stored and how. [`BakeChoices::new`] leaves everything open.
+/// What is stored and how. [`BakeChoices::new`] leaves all options open.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct BakeChoices {
     /// The layout.
     pub layout: Layout,
-    /// Bits per value. Open: 8 for blocks, `pbr` and `toksvig`, half floats for EXR, but single floats for `moments`, half
-    /// floats for the web, otherwise 16.
+    /// Bits per value. If open: 8 for blocks, `pbr` and `toksvig`; for EXR half floats, but single floats for
+    /// `moments`; half floats for the web; otherwise 16.
     pub sample_type: Option<SampleType>,
     /// The largest slope that 8- and 16-bit texels represent.
     pub scale: ScaleChoice,
@@ -25,16 +25,16 @@ pub struct BakeChoices {
     pub filter: PyramidFilter,
     /// Whether the roughness of the material is folded into the moments.
     pub base: Base,
-    /// The reflectance function that the roughness is meant for.
+    /// The reflectance function that the roughness is intended for.
     pub brdf: Brdf,
-    /// How `pbr` stores roughness. Open: perceptual, or in floats for Blinn-Phong a specular power.
+    /// How `pbr` stores roughness. If open: perceptual, or for Blinn-Phong in floats a specular power.
     pub roughness_stored: Option<RoughnessStored>,
     /// For `pbr`: how the direction of the roughness is stored; `None` stores none.
     pub anisotropy: Option<AnisotropyOutput>,
-    /// For `pbr`: the channels of the roughness texture. Open: packed if the picture of the roughness is, otherwise green, in EXR one
-    /// channel.
+    /// For `pbr`: the channels of the roughness texture. If open: packed if the roughness picture is packed, otherwise
+    /// green; for EXR a single channel.
     pub roughness_texture: Option<RoughnessTexture>,
-    /// For `pbr` in floats: how unit vectors are stored. Open: unorm.
+    /// For `pbr` in floats: how unit vectors are stored. If open: unorm.
     pub normal_range: Option<NormalRange>,
     /// Block compression.
     pub blocks: Blocks,
@@ -42,21 +42,21 @@ pub struct BakeChoices {
     pub target: Target,
     /// How layers are distributed over files.
     pub layers: LayerFiles,
-    /// How the levels of KTX2 are packed.
+    /// How the levels of a KTX2 file are compressed.
     pub supercompression: Supercompression,
 }
 
 /// How the layers of a layout are distributed over files.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum LayerFiles {
-    /// As array layers of one file, if container and target support them.
+    /// As array layers of one file, if the container and the target support them.
     #[default]
     Together,
-    /// Each in a file of its own.
+    /// Each layer in its own file.
     Split,
 }
 
-/// A choice of `pbr` alone.
+/// An option that only `pbr` has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum PbrChoice {
@@ -74,24 +74,24 @@ pub enum PbrChoice {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ChoiceError {
-    /// The container cannot store it.
+    /// The container cannot store the textures.
     #[error(transparent)]
     Container(#[from] ContainerError),
-    /// The target cannot sample it.
+    /// The target cannot sample the textures.
     #[error(transparent)]
     Target(#[from] TargetError),
-    /// Only `pbr` has this choice.
+    /// Only `pbr` has this option.
     #[error("{choice:?} is a choice of the layout 'pbr', and the layout is '{layout}'")]
     OnlyForPbr {
-        /// The choice.
+        /// The option.
         choice: PbrChoice,
         /// The layout.
         layout: Layout,
     },
-    /// Integers have one range of normals.
+    /// Integers support only one range of normals.
     #[error("{sample_type} bits always store a normal as n/2 + 1/2")]
     NormalRangeOfIntegers {
-        /// The bits.
+        /// The sample type.
         sample_type: SampleType,
     },
     /// Only KTX2 has supercompression.
@@ -124,7 +124,7 @@ impl BakeChoices {
         }
     }
 
-    /// The options of the bake; open choices are made for the container, the target and the picture of the roughness.
+    /// The options of the bake. Open options are chosen for the container, the target and the roughness picture.
     pub fn options(&self, container: Container, roughness: Option<&Roughness>) -> BakeOptions {
         let bits =
             self.sample_type.unwrap_or(match (container, self.layout.default_sample_type(), self.blocks) {
@@ -135,7 +135,7 @@ impl BakeChoices {
                 }
                 (_, suited, _) => suited,
             });
-        // Blinn-Phong renderers need exponents, which only floats can store.
+        // Blinn-Phong renderers expect exponents, which only floats can store.
         let stored = match (self.roughness_stored, self.brdf) {
             (Some(stored), _) => stored,
             (None, Brdf::BlinnPhong) if bits.is_float() => RoughnessStored::SpecularPower,
@@ -158,8 +158,8 @@ impl BakeChoices {
             .with_filter(self.filter)
     }
 
-    /// The channels of `pbr`'s roughness: glTF's, with the occlusion and metalness of the picture if it has them. Renderers
-    /// that read EXR expect a roughness of one channel.
+    /// The channels of `pbr`'s roughness: glTF's, with occlusion and metalness if the picture has them. Renderers that
+    /// read EXR expect a single-channel roughness.
     fn roughness_channels(&self, container: Container, roughness: Option<&Roughness>) -> RoughnessTexture {
         self.roughness_texture.unwrap_or_else(|| match container {
             _ if roughness.is_some_and(Roughness::is_packed) => RoughnessTexture::Packed,
@@ -168,7 +168,7 @@ impl BakeChoices {
         })
     }
 
-    /// Whether each layer gets a file of its own. PNG has no layers, and loaders on the web do not support them.
+    /// Whether each layer gets its own file. PNG has no layers, and loaders on the web do not support them.
     pub fn splits(&self, container: Container) -> bool {
         self.layers == LayerFiles::Split || container == Container::Png || self.target != Target::Desktop
     }
@@ -200,7 +200,7 @@ impl BakeChoices {
         Ok(())
     }
 
-    /// What the first file that is written contains.
+    /// The meaning of the texels in the first file that is written.
     pub fn first_file(&self, container: Container) -> TextureInfo {
         let parts = self.layout.parts_written(self.blocks, &self.options(container, None).pbr);
         let info = TextureInfo::new(self.layout, parts[0]);

@@ -1,4 +1,4 @@
-//! Why a job ended without files.
+//! Reasons why a job ended without writing files.
 
 use std::io;
 use std::path::PathBuf;
@@ -11,12 +11,12 @@ use crate::choices::ChoiceError;
 use crate::map::{MapError, ReadMapError};
 use crate::roughness::RoughnessError;
 
-/// Why a job ended without files: existing files have not changed, but see
+/// Why a job ended without writing files. Existing files are unchanged, but see
 /// [`AtomicSet::commit`](roughcast_io::AtomicSet::commit).
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum JobError {
-    /// The watch stopped it.
+    /// The watch cancelled the job.
     #[error("the job was cancelled")]
     Cancelled,
     /// The choices contradict each other.
@@ -27,7 +27,7 @@ pub enum JobError {
     Map {
         /// The map.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: ReadMapError,
     },
     /// The roughness of the material cannot be loaded.
@@ -38,17 +38,17 @@ pub enum JobError {
     Bake {
         /// The map.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: BakeError,
     },
-    /// The map has texels without a usable normal, which must not be repaired.
+    /// The map has texels without a usable normal, and the settings forbid repairing them.
     #[error("{}: {} of its {texels} texels are broken", path.display(), counts.broken())]
     BrokenTexels {
         /// The map.
         path: PathBuf,
-        /// How many of each kind.
+        /// Number of broken texels of each kind.
         counts: SourceCounts,
-        /// Texels of the map.
+        /// Number of texels in the map.
         texels: u64,
     },
     /// The textures cannot be compressed.
@@ -56,24 +56,24 @@ pub enum JobError {
     Compress {
         /// The map.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: CompressError,
     },
     /// The files cannot be written.
     #[error(transparent)]
     Write(#[from] WriteFilesError),
-    /// A fault of roughcast itself, caught so that the other maps of a folder are not lost.
+    /// A bug in roughcast itself, caught so that the other maps of a folder are still baked.
     #[error("{}: a fault of roughcast itself, please report it with this file: {message}", path.display())]
     Panicked {
         /// The map.
         path: PathBuf,
-        /// The message of the panic.
+        /// The panic message.
         message: String,
     },
 }
 
 impl JobError {
-    /// Why the picture is not a map, or may not be one, if that ended the job.
+    /// The reason why the picture is not a map, or may not be one, if that ended the job.
     pub fn no_map(&self) -> Option<&MapError> {
         match self {
             JobError::Map { source: ReadMapError::Map(error), .. } => Some(error),
@@ -87,13 +87,13 @@ impl JobError {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FolderError {
-    /// The output is a file, or has the name of one.
+    /// The output is an existing file, or its name looks like a file's.
     #[error("{} is not a folder to write to", path.display())]
     OutputIsFile {
         /// The output.
         path: PathBuf,
     },
-    /// The outputs would lie among the maps, and the next run would treat them as maps.
+    /// The outputs would be written among the maps, and the next run would treat them as maps.
     #[error("{} is the folder of the maps", path.display())]
     OutputIsInput {
         /// The output.
@@ -107,7 +107,7 @@ pub enum FolderError {
     NoMaps {
         /// The folder.
         path: PathBuf,
-        /// The patterns that names had to match; empty if all names match.
+        /// The patterns that file names had to match; empty if all names match.
         patterns: Vec<String>,
     },
     /// A folder cannot be listed or created.
@@ -115,7 +115,7 @@ pub enum FolderError {
     Io {
         /// The folder.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: io::Error,
     },
 }

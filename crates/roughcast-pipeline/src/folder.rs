@@ -1,4 +1,4 @@
-//! A folder of maps: one bad file does not stop the rest.
+//! Bakes a folder of maps. One bad file does not stop the rest.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsString;
@@ -23,13 +23,13 @@ use crate::map::{MapError, kind_by_pixels};
 use crate::report::JobReport;
 use crate::watch::{Progress, Stage, Watch, Watched};
 
-/// Extensions of the files that are considered, in lower case.
+/// File extensions that are considered, in lower case.
 pub const EXTENSIONS: [&str; 15] = [
     "png", "jpg", "jpeg", "tga", "bmp", "webp", "tif", "tiff", "hdr", "exr", "ktx2", "dds", "rgbe", "pic",
     "tx",
 ];
 
-/// The default limit of simultaneous jobs: each has a whole map in memory.
+/// The default limit on simultaneous jobs: each holds a whole map in memory.
 pub const DEFAULT_JOBS: usize = 4;
 
 /// Every map of a folder, and the folder to write to.
@@ -42,47 +42,47 @@ pub struct FolderJob<'a> {
     pub output: PathBuf,
     /// The container of the outputs.
     pub container: Container,
-    /// Patterns of names, `*` for any characters and `?` for one, ignoring case: files that match one are baked. Without patterns
-    /// all are.
+    /// File name patterns, with `*` for any characters and `?` for one, ignoring case. Files that match any pattern are
+    /// baked; without patterns all files are.
     pub patterns: Vec<String>,
-    /// Maps baked at the same time; `None` for the number of the pool's threads, but at most [`DEFAULT_JOBS`].
+    /// Number of maps baked at the same time; `None` for the pool's number of threads, but at most [`DEFAULT_JOBS`].
     pub jobs: Option<NonZeroUsize>,
-    /// The pool whose threads share the work; `None` for rayon's global one. [`FolderJob::run`] waits for it, so it must not be called on a
-    /// thread of that pool.
+    /// The pool whose threads share the work; `None` for rayon's global pool. [`FolderJob::run`] waits for it, so it
+    /// must not be called from a thread of that pool.
     pub pool: Option<&'a ThreadPool>,
     /// How the maps are read and baked.
     pub settings: BakeSettings,
 }
 
-/// The outcome for a file of a folder.
+/// The outcome for one file of a folder.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum FileOutcome {
-    /// It was baked.
+    /// The file was baked.
     Baked(Box<JobReport>),
-    /// It is not a map of bumps.
+    /// The file is not a bump map.
     Skipped(SkipReason),
 }
 
-/// Why a file of a folder is not a map of bumps.
+/// Why a file of a folder is not a bump map.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SkipReason {
-    /// By its name.
+    /// Its name says so.
     Named {
-        /// What its name suggests: `roughness`.
+        /// What the name suggests, such as `roughness`.
         what: &'static str,
     },
     /// Roughcast wrote it.
     Baked,
-    /// Its pixels are neither normals nor heights for certain, and its name names no role.
+    /// The pixels are not clearly normals or heights, and the name does not state a role.
     Undecided {
         /// What the pixels show.
         reason: String,
     },
 }
 
-/// A file of a folder, and its outcome.
+/// A file of a folder and its outcome.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct FolderResult {
@@ -93,7 +93,7 @@ pub struct FolderResult {
 }
 
 impl<'a> FolderJob<'a> {
-    /// All maps of `input` as KTX2 into `output`.
+    /// A job that bakes all maps of `input` to KTX2 files in `output`.
     pub fn new(input: impl Into<PathBuf>, output: impl Into<PathBuf>, settings: BakeSettings) -> Self {
         Self {
             input: input.into(),
@@ -106,12 +106,13 @@ impl<'a> FolderJob<'a> {
         }
     }
 
-    /// Bakes every map, several at a time; one that fails does not stop the others. The results come in the order of the names, and
-    /// neither they nor the files depend on the number of jobs or threads.
+    /// Bakes every map, several at a time; a failure does not stop the others. Results are in the order of the names.
+    /// Neither the results nor the files depend on the number of jobs or threads.
     ///
-    /// What a file contains follows from its name, if its pixels agree, or from its pixels alone
-    /// ([`roughcast_io::material_names`]); other files of a material are skipped. After a `Break` of `watch` no further job begins, those
-    /// under way end at their next report, and the outcome of all these is [`JobError::Cancelled`].
+    /// The contents of a file are determined by its name, if its pixels agree, or by its pixels alone
+    /// ([`roughcast_io::material_names`]); other files of a material are skipped. After `watch` returns `Break`, no
+    /// further job starts and running jobs end at their next report; the outcome of all of these is
+    /// [`JobError::Cancelled`].
     ///
     /// # Errors
     /// [`FolderError`] if there is no map to bake.
@@ -128,7 +129,7 @@ impl<'a> FolderJob<'a> {
         Ok(rows.map(|(input, outcome)| FolderResult { input, outcome }).collect())
     }
 
-    /// A folder whose name ends like a file's is probably a mistake.
+    /// Refuses an output folder whose name ends like a file's, which is probably a mistake.
     fn check_output(&self) -> Result<(), FolderError> {
         let is_file = self.output.exists() && !self.output.is_dir();
         if is_file || (!self.output.exists() && Container::of(&self.output).is_some()) {
@@ -141,7 +142,8 @@ impl<'a> FolderJob<'a> {
         FolderError::Io { path: path.to_owned(), source }
     }
 
-    /// The files of the folder that may be maps and whose names match a pattern, if there are any, in the order of their names.
+    /// The files of the folder that may be maps and whose names match a pattern, if there are patterns, in the order of
+    /// their names.
     fn maps(&self) -> Result<Vec<PathBuf>, FolderError> {
         let folder = &self.input;
         let matches = |name: &str| {
@@ -165,7 +167,8 @@ impl<'a> FolderJob<'a> {
         Ok(maps)
     }
 
-    /// `NAME.ktx2` for `NAME.png`; if several inputs share a name, `NAME_png.ktx2` and so on, so that none is lost.
+    /// Output paths: `NAME.ktx2` for `NAME.png`. If several inputs share a name, they become `NAME_png.ktx2` and so on,
+    /// so that none is overwritten.
     fn outputs(&self, inputs: &[PathBuf]) -> Vec<PathBuf> {
         let stem = |path: &Path| path.file_stem().unwrap_or_default().to_owned();
         let mut uses: BTreeMap<OsString, usize> = BTreeMap::new();
@@ -179,7 +182,7 @@ impl<'a> FolderJob<'a> {
                 name.push("_");
                 name.push(input.extension().unwrap_or_default());
             }
-            // `a.png`, `a.jpg` and `a_png.png` would still clash.
+            // `a.png`, `a.jpg` and `a_png.png` could still clash.
             while !taken.insert(name.clone()) {
                 name.push("_");
             }
@@ -190,7 +193,7 @@ impl<'a> FolderJob<'a> {
         inputs.iter().map(output_of).collect()
     }
 
-    /// What is known of each file from the names of all.
+    /// What the names of all files reveal about each file.
     fn files<'f>(&self, inputs: &'f [PathBuf]) -> Vec<File<'f>> {
         let stem_of = |input: &'f PathBuf| input.file_stem().and_then(|stem| stem.to_str());
         let roles = roles_of(inputs.iter().map(|input| stem_of(input).unwrap_or_default()));
@@ -203,7 +206,7 @@ impl<'a> FolderJob<'a> {
         named.map(file).collect()
     }
 
-    /// Runs the jobs on threads of their own; outcomes come back in the order of the inputs.
+    /// Runs the jobs on their own threads; outcomes are in the order of the inputs.
     fn bake_all(&self, inputs: &[PathBuf], watch: &dyn Watch) -> Vec<Result<FileOutcome, JobError>> {
         let files = self.files(inputs);
         let watch = &Shared { watch, stopped: AtomicBool::new(false) };
@@ -240,14 +243,14 @@ impl<'a> FolderJob<'a> {
     }
 }
 
-/// A file of a folder, and the role in its name.
+/// A file of a folder, and the role that its name states.
 struct File<'a> {
     input: &'a Path,
     output: PathBuf,
     role: Option<MaterialRole>,
 }
 
-/// Bakes one file; a panic becomes its error.
+/// Bakes one file and turns a panic into an error.
 fn bake_guarded(
     file: &File<'_>,
     settings: &BakeSettings,
@@ -259,7 +262,7 @@ fn bake_guarded(
         let message = text.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("a panic");
         Err(JobError::Panicked { path: file.input.to_owned(), message: message.to_owned() })
     });
-    // A `Break` stops the others: `Shared` remembers it.
+    // A `Break` stops the other jobs: `Shared` remembers it.
     let _ = watched.end();
     if let Ok(FileOutcome::Baked(report)) = &mut outcome {
         report.times = watched.times().to_vec();
@@ -267,7 +270,7 @@ fn bake_guarded(
     outcome
 }
 
-/// The watch of all jobs of a folder: its answer to one counts for all.
+/// The watch shared by all jobs of a folder: a `Break` in one job stops all of them.
 struct Shared<'a> {
     watch: &'a dyn Watch,
     stopped: AtomicBool,
@@ -282,7 +285,8 @@ impl Watch for Shared<'_> {
     }
 }
 
-/// Bakes one file of a folder, or returns why it is not a map: by its name, if its pixels agree, or by its pixels alone.
+/// Bakes one file of a folder, or returns why it is not a map: because of its name, if its pixels agree, or because of
+/// its pixels alone.
 fn bake_by_role(
     file: &File<'_>,
     settings: &BakeSettings,
@@ -291,7 +295,7 @@ fn bake_by_role(
     let File { input, output, role } = file;
     let role = *role;
     let baked = |report| Ok(FileOutcome::Baked(Box::new(report)));
-    // An explicit kind takes precedence over names of files.
+    // An explicit kind takes precedence over file names.
     let decided = settings.map.kind.is_some();
     if let Some(MaterialRole::Other(what)) = role.filter(|_| !decided) {
         watched.begin(Stage::Reading)?;

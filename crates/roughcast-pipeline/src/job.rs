@@ -1,4 +1,4 @@
-//! One job: a map in, the files of a layout out, all of them or none.
+//! One job: reads a map and writes all files of a layout or none.
 
 use std::path::{Path, PathBuf};
 
@@ -18,26 +18,26 @@ use crate::sidecar::Sidecar;
 use crate::target::reader_limits;
 use crate::watch::{Stage, Watch, Watched};
 
-/// The default exponent of Toksvig's gloss factor: the lowest that the LEAN paper shows.
+/// The default exponent of Toksvig's gloss factor: the lowest one shown in the LEAN paper.
 pub const TOKSVIG_POWER: f32 = 128.0;
 
 /// What to do with broken texels: NaN, infinite, or normals that point into the surface or have no direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum BrokenTexels {
-    /// They are repaired and counted.
+    /// Repair and count them.
     #[default]
     Repair,
-    /// The map is refused.
+    /// Refuse the map.
     Refuse,
 }
 
-/// Whether `NAME.json` is written beside the textures.
+/// Whether `NAME.json` is written next to the textures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SidecarFile {
-    /// It is not.
+    /// It is not written.
     #[default]
     None,
-    /// It is: see [`Sidecar`].
+    /// It is written: see [`Sidecar`].
     Json,
 }
 
@@ -70,26 +70,26 @@ impl BakeSettings {
     }
 }
 
-/// One map, and the file or files to write.
+/// A map, and the file or files to write.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BakeJob {
     /// The map.
     pub input: PathBuf,
-    /// The file to write, whose extension names the container; a layout of several files writes `NAME.PART.ext`, PNG a file for
-    /// each level.
+    /// The file to write. Its extension selects the container. A layout of several files writes `NAME.PART.ext`; PNG
+    /// writes one file per level.
     pub output: PathBuf,
-    /// How it is read and baked.
+    /// How the map is read and baked.
     pub settings: BakeSettings,
 }
 
 impl BakeJob {
-    /// Reads the map, bakes it and writes the files: all of them, or none if anything fails or `watch` stops the job.
+    /// Reads the map, bakes it and writes the files. If anything fails or `watch` stops the job, no file is written.
     ///
-    /// The work is shared by the threads of the rayon pool in which this is called: inside of `pool.install(|| job.run(&watch))`
-    /// it is that pool, otherwise rayon's global one. The files do not depend on it.
+    /// The work is shared by the threads of the current rayon pool: inside of `pool.install(|| job.run(&watch))` that
+    /// is `pool`, otherwise rayon's global pool. The files do not depend on the pool.
     ///
     /// # Errors
-    /// [`JobError`], also [`JobError::Cancelled`].
+    /// [`JobError`], including [`JobError::Cancelled`].
     pub fn run(&self, watch: &dyn Watch) -> Result<JobReport, JobError> {
         let mut watched = Watched::new(watch, &self.input, 0, 1);
         let result = run(&self.input, &self.output, &self.settings, &mut watched);
@@ -102,7 +102,7 @@ impl BakeJob {
     }
 }
 
-/// A finding if the name of a file suggests that it is not a map of bumps, and the options do not name the kind.
+/// A finding if the file name suggests something other than a bump map and the options do not state the kind.
 fn named_otherwise(input: &Path, settings: &BakeSettings) -> Option<Finding> {
     let stem = input.file_stem()?.to_str()?;
     let named = role_of(stem).filter(|named| !named.by_letter && settings.map.kind.is_none())?;
@@ -112,7 +112,7 @@ fn named_otherwise(input: &Path, settings: &BakeSettings) -> Option<Finding> {
     }
 }
 
-/// Bakes one map. Nothing is written unless everything went well.
+/// Bakes one map. Nothing is written unless all steps succeed.
 pub(crate) fn run(
     input: &Path,
     output: &Path,
@@ -147,7 +147,7 @@ pub(crate) fn run(
         let (counts, texels) = (report.counts, report.texels);
         return Err(JobError::BrokenTexels { path: path(), counts, texels });
     }
-    // The pixels are no longer needed, and the next steps need memory.
+    // The pixels are no longer needed, and the next steps use a lot of memory.
     drop((image, roughness));
 
     watched.begin(Stage::Compressing)?;
@@ -201,7 +201,7 @@ fn roughness_of(settings: &BakeSettings, findings: &mut Vec<Finding>) -> Result<
     }
 }
 
-/// The textures as they go into files, compressed and split if requested.
+/// The textures as stored in the files, compressed and split if requested.
 fn compressed(
     mut arrays: Vec<TextureArray>,
     choices: &BakeChoices,
@@ -217,7 +217,7 @@ fn compressed(
     Ok((stored, error))
 }
 
-/// Writes all files, and puts them in their places unless the watch stops the job.
+/// Writes all files and moves them into place unless the watch stops the job.
 fn write(
     input: &Path,
     output: &Path,
@@ -248,8 +248,9 @@ fn unused_roughness(settings: &BakeSettings) -> Option<Finding> {
     (!uses).then_some(Finding::RoughnessNotStored { layout, given })
 }
 
-/// Direct3D refuses to create block-compressed textures whose sides are not multiples of the blocks' side; Vulkan, Metal and
-/// OpenGL do not (Microsoft, "Texture Block Compression in Direct3D 11", virtual size versus physical size).
+/// Checks for textures that Direct3D refuses: block-compressed ones whose sides are not multiples of the block size.
+/// Vulkan, Metal and OpenGL accept them (Microsoft, "Texture Block Compression in Direct3D 11", virtual size versus
+/// physical size).
 fn blocks_that_do_not_fit(container: Container, options: &BakeOptions, info: &FileInfo) -> Option<Finding> {
     const BLOCK_SIDE: usize = 4;
     let (width, height) = (info.width, info.height);

@@ -1,19 +1,21 @@
-//! From map files to baked texture files: the code that a program, a Python package, a web server and an asset importer share.
+//! From map files to baked texture files: the code shared by the command-line program, a Python package, a web server
+//! and an asset importer.
 //!
 //! A short tour, in the order of the work:
 //!
-//! 1. [`read_map`] reads a file and decides what was not specified: heights or normals, in which channels, with green up or down.
-//!    It returns oddities as [`Finding`]s, data that a program puts into words.
+//! 1. [`read_map`] reads a file and decides what was not specified: heights or normals, in which channels, with green
+//!    up or down. It returns oddities as [`Finding`]s, which are data; the calling program words them.
 //! 2. [`RoughnessInput`] loads the roughness of the material, from a number or a picture.
-//! 3. [`BakeChoices`] specifies what is stored and how; open choices follow from the container and the [`Target`].
-//! 4. [`BakeJob`] processes one map: read, bake, compress, write. Its files appear together or not at all, with a [`Sidecar`] if
-//!    requested. [`JobReport`] has the numbers.
+//! 3. [`BakeChoices`] specifies what is stored and how; open options are chosen for the container and the [`Target`].
+//! 4. [`BakeJob`] processes one map: read, bake, compress, write. Its files appear together or not at all, with a
+//!    [`Sidecar`] if requested. [`JobReport`] contains the numbers.
 //! 5. [`FolderJob`] processes a folder of maps, several at a time.
 //! 6. A [`Watch`] receives the progress of jobs, and may stop them.
 //!
-//! [`bake_for`] is the short way for renderers: the textures of a shading model from a map in memory.
+//! [`bake_for`] is the shortcut for renderers: it bakes the textures of a shading model from a map in memory.
 //!
-//! The library prints nothing and knows no options of a command line. The rayon pool in which it is called shares the work.
+//! The library prints nothing and does not depend on command-line options. The work runs on the rayon pool in which it
+//! is called.
 //!
 //! # Example
 //!

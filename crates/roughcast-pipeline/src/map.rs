@@ -1,4 +1,4 @@
-//! Loads a map: reads the file, decides what it is, and reports oddities.
+//! Loads a map: reads the file, determines its kind, and reports oddities.
 
 use std::path::{Path, PathBuf};
 
@@ -16,27 +16,28 @@ use roughcast_io::{Decoded, FileInfo, NormalEncoding, ReadError, ReadOptions, Va
 
 use crate::Finding;
 
-/// How a map is read; what is `None` is decided from the file and its pixels.
+/// How a map is read. Options that are `None` are decided from the file and its pixels.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MapOptions {
     /// How the file is read.
     pub read: ReadOptions,
-    /// What the picture is.
+    /// The kind of map.
     pub kind: Option<Kind>,
     /// Which way green points in a normal map; up by default.
     pub green: Option<Green>,
-    /// The direction of green in the name of the file. It counts if [`MapOptions::green`] is open and the slopes do not contradict it.
+    /// The direction of green stated in the file name. It applies if [`MapOptions::green`] is `None` and the slopes do
+    /// not contradict it.
     pub green_by_name: Option<Green>,
     /// Which way red points in a normal map.
     pub red: Red,
-    /// Factor of a normal's x and y; 1 if it is open. Height maps have none.
+    /// Factor for a normal's x and y; 1 if `None`. Height maps have none.
     pub normal_scale: Option<f32>,
     /// The range of a normal's stored components.
     pub range: Option<NormalRange>,
     /// The channels that hold a normal.
     pub normal_channels: Option<NormalChannels>,
-    /// Height of a value of 1, as a fraction of the map's width; [`SourceOptions::DEFAULT_HEIGHT_SCALE`] if it is open.
+    /// Height of a value of 1, as a fraction of the map's width; [`SourceOptions::DEFAULT_HEIGHT_SCALE`] if `None`.
     pub height_scale: Option<f32>,
     /// Whether white is high or deep.
     pub height_sense: HeightSense,
@@ -70,7 +71,7 @@ impl Default for MapOptions {
 }
 
 impl MapOptions {
-    /// The options of the bake, after the pixels have decided the open ones.
+    /// The options of the bake, with open options decided from the pixels.
     fn source(&self, kind: Kind, range: NormalRange, channels: NormalChannels) -> SourceOptions {
         SourceOptions::default()
             .with_kind(kind)
@@ -95,9 +96,9 @@ pub struct Map {
     pub image: Image,
     /// What the file says about itself.
     pub info: FileInfo,
-    /// How to read the pixels, with nothing left open.
+    /// How to read the pixels, with all options decided.
     pub options: SourceOptions,
-    /// The correlation that the test of green measured, -1 ..= 1; `None` for heights and for too little evidence.
+    /// The correlation that the green test measured, -1 ..= 1; `None` for heights and if there is too little evidence.
     pub green_correlation: Option<f64>,
     /// The test's verdict on the direction of green.
     pub green: Option<GreenVerdict>,
@@ -105,31 +106,31 @@ pub struct Map {
     pub findings: Vec<Finding>,
 }
 
-/// Why an image is not a map that can be baked, or may not be one.
+/// Why an image cannot be baked as a map, or may not be one.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MapError {
-    /// `bake` wrote it: its channels are not those of a map, or contain a roughness that includes the bumps.
+    /// `bake` wrote it: its channels are not those of a map, or it contains a roughness that includes the bumps.
     #[error("it is already baked, in the layout '{layout}', so its values are no longer those of a map")]
     Baked {
-        /// The layout that the file names.
+        /// The layout stated in the file.
         layout: String,
     },
-    /// Its pixels are neither normals nor heights for certain: the caller has to name the kind.
+    /// The pixels are not clearly normals or heights: the caller must state the kind.
     #[error("it looks like neither a normal nor a height map: {reason}")]
     Undecided {
         /// What the pixels show.
         reason: String,
-        /// Whether it has an alpha, which may be a component of a normal.
+        /// Whether it has an alpha channel, which may hold a component of a normal.
         has_alpha: bool,
     },
-    /// Signed numbers were asked for, and the file has none.
+    /// Signed numbers were requested, but the file has none.
     #[error("{format} has no signed numbers")]
     NotSigned {
         /// The pixel format.
         format: String,
     },
-    /// A scale of normals was given, and this is a height map.
+    /// A normal scale was given, but this is a height map.
     #[error("a scale of normals was given, and this is a height map")]
     NormalScaleOfHeights,
 }
@@ -138,7 +139,7 @@ pub enum MapError {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadMapError {
-    /// The file is not an image that can be read.
+    /// The file is not a readable image.
     #[error(transparent)]
     Read(#[from] ReadError),
     /// The image is not a map.
@@ -148,8 +149,8 @@ pub enum ReadMapError {
 
 /// Reads a map and decides the open options.
 ///
-/// If the slopes do not show which way green points, a height map of the same material beside it decides, found by its name
-/// ([`roughcast_io::material_names`]).
+/// If the slopes do not show which way green points, a height map of the same material in the same folder decides. It
+/// is found by its name ([`roughcast_io::material_names`]).
 ///
 /// # Errors
 /// [`ReadMapError`].
@@ -164,7 +165,7 @@ pub fn read_map(path: &Path, options: &MapOptions) -> Result<Map, ReadMapError> 
     Ok(map)
 }
 
-/// The height map of the same material in the same folder, by its name.
+/// The height map of the same material in the same folder, found by its name.
 fn height_beside(path: &Path, options: &ReadOptions) -> Option<(PathBuf, Image)> {
     let material = role_of(path.file_stem()?.to_str()?)?.material;
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
@@ -180,7 +181,7 @@ fn height_beside(path: &Path, options: &ReadOptions) -> Option<(PathBuf, Image)>
     Some((found, decoded.image))
 }
 
-/// Decides the open options for an image that was read.
+/// Decides the open options for a decoded image.
 ///
 /// # Errors
 /// [`MapError`] if it is not a map, or may not be one.
@@ -212,7 +213,7 @@ pub fn map_of(Decoded { image, info }: Decoded, options: &MapOptions) -> Result<
     let mut map = Map { image, info, options: source, green_correlation: None, green: None, findings };
     map.test_green();
     if let (Some(named), None, Some(GreenVerdict::Down)) = (options.green_by_name, options.green, map.green) {
-        // The name and the slopes contradict each other: the slopes decide.
+        // The name and the slopes contradict each other; the slopes take precedence.
         let turned = MapOptions { green_by_name: None, green: Some(turned(named)), ..options.clone() };
         let Map { image, info, .. } = map;
         map = map_of(Decoded { image, info }, &turned)?;
@@ -224,7 +225,8 @@ pub fn map_of(Decoded { image, info }: Decoded, options: &MapOptions) -> Result<
     Ok(map)
 }
 
-/// The kind of map that the pixels of a file are for certain, ignoring the kind in the options; also `None` if it cannot be read.
+/// The kind of map, if the pixels of a file show it clearly; the kind in the options is ignored. `None` if unclear or
+/// if the file cannot be read.
 pub fn kind_by_pixels(path: &Path, options: &MapOptions) -> Option<Kind> {
     let Decoded { image, info } = read_image_file(path, &options.read).ok()?;
     let range = options.range.unwrap_or_else(|| range_of(&image, &info));
@@ -248,7 +250,7 @@ fn kind_of(
     if let Some(kind) = wanted.or(info.kind) {
         return Ok(kind);
     }
-    // The height is the first of these six channels, whatever the others contain.
+    // The height is the first of these six channels, regardless of what the others contain.
     if info.channels.first().is_some_and(|name| name == "b0_h") {
         return Ok(Kind::Height);
     }
@@ -277,7 +279,7 @@ fn turned(green: Green) -> Green {
 }
 
 impl Map {
-    /// Heights in metres at a scale that is made for 0 to 1 give walls instead of hills.
+    /// Reports heights that seem to be in metres: at a scale meant for 0 to 1 they give walls instead of hills.
     fn look_for_units(&mut self) {
         if self.options.kind != Kind::Height || self.info.range != ValueRange::Float {
             return;
@@ -288,7 +290,8 @@ impl Map {
         }
     }
 
-    /// Most maps are read with green up by default; the curl of the slopes shows if that is wrong.
+    /// Tests the direction of green. Most maps are read with green up by default; the curl of the slopes shows whether
+    /// that is wrong.
     fn test_green(&mut self) {
         if self.options.kind == Kind::Normal
             && let Some(test) = test_green_of_map(&self.image, &self.options)

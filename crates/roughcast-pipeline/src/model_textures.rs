@@ -10,11 +10,11 @@ use roughcast::{
 /// How a model's textures are baked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextureOptions {
-    /// The type of their texels.
+    /// The sample type of the texels.
     pub sample_type: SampleType,
-    /// One roughness or two, for `ggx`.
+    /// Whether `ggx` stores one roughness or two.
     pub anisotropy: Anisotropy,
-    /// The exponent of the base roughness, which `toksvig` and `ggx` store; the other models add it when shading.
+    /// The exponent of the base roughness. `toksvig` and `ggx` store it; the other models add it when shading.
     pub specular_power: f32,
 }
 

@@ -17,35 +17,35 @@ use crate::watch::Stage;
 pub struct JobReport {
     /// The map.
     pub input: PathBuf,
-    /// The files that were written, in their order.
+    /// The files that were written, in the order of writing.
     pub files: Vec<PathBuf>,
     /// What the map's file says about itself.
     pub info: FileInfo,
-    /// How its pixels were read.
+    /// How the map's pixels were read.
     pub source: SourceOptions,
-    /// How it was baked.
+    /// How the map was baked.
     pub options: BakeOptions,
     /// The report of the bake.
     pub report: BakeReport,
-    /// The error of block compression, if there is any.
+    /// The error of block compression, if the textures are compressed.
     pub compression: Option<CompressionError>,
-    /// The correlation that the test of green measured, -1 ..= 1; `None` for heights and for too little evidence.
+    /// The correlation that the green test measured, -1 ..= 1; `None` for heights and if there is too little evidence.
     pub green_correlation: Option<f64>,
-    /// Common readers that refuse such files.
+    /// Common readers that refuse the written files.
     pub reader_limits: Vec<ReaderLimit>,
     /// Findings for the user, in the order in which they were found.
     pub findings: Vec<Finding>,
-    /// The stages, with the time that each took.
+    /// The stages, with the duration of each.
     pub times: Vec<(Stage, Duration)>,
 }
 
 impl JobReport {
-    /// The largest errors of values decoded from the files, including those of the blocks.
+    /// The largest errors of values decoded from the files, including the errors of block compression.
     pub fn bounds(&self) -> Bounds {
         self.with_blocks(self.report.bounds)
     }
 
-    /// The same without the steepest 0.1 % of the texels.
+    /// The same as [`Self::bounds`], without the steepest 0.1 % of the texels.
     pub fn bounds_of_most(&self) -> Bounds {
         self.with_blocks(self.report.bounds_of_most)
     }

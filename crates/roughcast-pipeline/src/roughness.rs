@@ -1,4 +1,4 @@
-//! The base roughness of the material: a number, or a picture that is read from a file.
+//! The base roughness of the material: a number, or a picture read from a file.
 
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,8 @@ use roughcast_io::{Decoded, FileInfo, Limits, ReadError, ReadOptions, read_image
 use crate::findings::RoughnessForm;
 use crate::map::{MapError, refuse_baked};
 
-/// The Blinn-Phong exponents that materials may have: below 1 nothing is shiny, and above this single floats cannot represent bumps.
+/// The allowed range of Blinn-Phong exponents. Below 1 nothing is shiny; above the maximum single floats cannot
+/// represent bumps.
 pub const SPECULAR_POWERS: RangeInclusive<f32> = 1.0..=1_000_000.0;
 
 /// Where the roughness of a material comes from.
@@ -19,18 +20,19 @@ pub const SPECULAR_POWERS: RangeInclusive<f32> = 1.0..=1_000_000.0;
 pub enum RoughnessInput {
     /// A Blinn-Phong exponent.
     SpecularPower(f32),
-    /// One number for the whole material.
+    /// A single number for the whole material.
     Value {
         /// The number.
         value: f32,
         /// What it means.
         stored: RoughnessStored,
     },
-    /// A picture; it is resampled if its size is not the map's.
+    /// A picture. It is resampled if its size differs from the map's.
     File {
         /// The picture.
         path: PathBuf,
-        /// The channel, by name; `None` for green in colour, as glTF packs it, and the only one in grey.
+        /// The channel, by name. `None` selects green in colour pictures, as in glTF's packing, and the only channel in
+        /// grey ones.
         channel: Option<String>,
         /// What its values mean.
         stored: RoughnessStored,
@@ -41,7 +43,7 @@ pub enum RoughnessInput {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RoughnessError {
-    /// The number is not one that this kind of roughness can be.
+    /// The number is outside of the range of this kind of roughness.
     #[error(
         "{value} is not a roughness stored as '{stored}': it must be from {} to {}",
         range.start(),
@@ -50,9 +52,9 @@ pub enum RoughnessError {
     OutOfRange {
         /// The number.
         value: f32,
-        /// What it should mean.
+        /// The intended meaning of the number.
         stored: RoughnessStored,
-        /// The numbers allowed.
+        /// The allowed range.
         range: RangeInclusive<f32>,
     },
     /// The picture cannot be read.
@@ -60,32 +62,32 @@ pub enum RoughnessError {
     Read {
         /// The picture.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: ReadError,
     },
-    /// The picture does not have the channel that was named.
+    /// The picture lacks the named channel.
     #[error("the roughness {} cannot be read from the channel that was named", path.display())]
     Channel {
         /// The picture.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: ReadError,
     },
-    /// The picture is one that `bake` wrote.
+    /// The picture was written by `bake`.
     #[error("{} has no roughness of a material", path.display())]
     Map {
         /// The picture.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: MapError,
     },
 }
 
-/// A base roughness with the picture that it may come from.
+/// A base roughness, with its picture if it comes from one.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Roughness {
-    /// The variance of slopes, per axis.
+    /// The slope variance per axis.
     Variance(f32),
     /// A channel of a picture.
     Map {
@@ -99,7 +101,7 @@ pub enum Roughness {
 }
 
 impl Roughness {
-    /// As [`roughcast::Bake`] takes it.
+    /// The roughness in the form that [`roughcast::Bake`] expects.
     pub fn base(&self) -> BaseRoughness<'_> {
         match self {
             Roughness::Variance(variance) => BaseRoughness::Variance(*variance),
@@ -109,15 +111,16 @@ impl Roughness {
         }
     }
 
-    /// Whether it is a colour picture with roughness in green: glTF's packed texture, whose other channels are kept.
+    /// Whether it is a colour picture with roughness in green, as in glTF's packed texture; its other channels are
+    /// kept.
     pub fn is_packed(&self) -> bool {
         matches!(self, Roughness::Map { image, channel: 1, .. } if image.channels() >= 3 && !is_grey(image))
     }
 }
 
-/// Whether red, green and blue are equal throughout, except for lossy compression.
+/// Whether red, green and blue are equal throughout, up to the error of lossy compression.
 fn is_grey(image: &Image) -> bool {
-    /// JPEG's rounding of chroma.
+    /// The error of JPEG's chroma rounding.
     const LOSSY: f32 = 4.5 / 255.0;
     (0..image.height()).all(|y| {
         (0..image.width()).all(|x| {
@@ -127,7 +130,7 @@ fn is_grey(image: &Image) -> bool {
     })
 }
 
-/// The index of a channel of this name. The only channel of a grey picture is also its red.
+/// The index of the channel with this name. The only channel of a grey picture also counts as red.
 fn channel_of(info: &FileInfo, name: &str) -> Option<usize> {
     let is_grey = info.channels.len() == 1 && info.channels[0] == "Y";
     let place = info.channels.iter().position(|channel| channel.eq_ignore_ascii_case(name));
@@ -135,7 +138,7 @@ fn channel_of(info: &FileInfo, name: &str) -> Option<usize> {
 }
 
 impl RoughnessInput {
-    /// The picture, if it is one.
+    /// The path of the picture, if there is one.
     pub fn file(&self) -> Option<&Path> {
         match self {
             RoughnessInput::File { path, .. } => Some(path),
@@ -143,7 +146,7 @@ impl RoughnessInput {
         }
     }
 
-    /// How it was given.
+    /// How the roughness was given.
     pub fn form(&self) -> RoughnessForm {
         match self {
             RoughnessInput::SpecularPower(_) => RoughnessForm::SpecularPower,
@@ -195,7 +198,7 @@ fn picture(
     Ok(Roughness::Map { image, channel, stored })
 }
 
-/// The picture, or its named channel if the picture itself does not have it: a layer of an EXR may.
+/// Reads the picture, or its named channel if only a layer of the file has it, as in EXR.
 fn read(path: &Path, channel: Option<&str>, limits: &Limits) -> Result<Decoded, RoughnessError> {
     let whole = ReadOptions::from(*limits);
     let unread = |source| RoughnessError::Read { path: path.to_owned(), source };

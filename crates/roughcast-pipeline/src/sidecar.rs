@@ -1,4 +1,4 @@
-//! `NAME.json`: what a shader needs to know about baked files, for loaders that drop the metadata of the files themselves.
+//! `NAME.json`: what a shader needs to know about baked files, for loaders that drop the files' own metadata.
 
 use std::path::PathBuf;
 
@@ -7,11 +7,11 @@ use roughcast::{SampleType, level_sizes};
 use roughcast_io::Stored;
 use serde_json::{Value, json};
 
-/// What was written.
+/// Describes the written files.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Sidecar {
-    /// What the texels of the first file mean; the other files differ only in their part and layer.
+    /// The meaning of the texels in the first file; the other files differ only in their part and layer.
     pub info: TextureInfo,
     /// The type of the texels.
     pub sample_type: SampleType,
@@ -21,37 +21,37 @@ pub struct Sidecar {
     pub height: usize,
     /// Number of levels.
     pub levels: usize,
-    /// How stored texels become values.
+    /// How stored texels are converted to values.
     pub packing: Packing,
     /// The parts, in the order in which they were written.
     pub parts: Vec<SidecarPart>,
 }
 
-/// One part of a layout, or one layer of it that has a file of its own.
+/// A part of a layout, or a layer of it that has its own file.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SidecarPart {
-    /// The names of its files, without their folder: one, or for PNG one per level.
+    /// The names of its files, without their folder: a single one, or for PNG one per level.
     pub files: Vec<String>,
-    /// What its texels mean.
+    /// The meaning of its texels.
     pub info: TextureInfo,
-    /// Its layers: name and channels.
+    /// Its layers: names and channels.
     pub layers: Vec<(&'static str, Vec<&'static str>)>,
     /// The format of its texels: `RGBA 16-bit float`, `BC5`.
     pub format: String,
 }
 
 impl Sidecar {
-    /// Describes what was written. `files` are the paths of all files, in the order of `stored`, for PNG all levels one after the
-    /// other.
+    /// Describes the written files. `files` are the paths of all files, in the order of `stored`; for PNG, the levels
+    /// of each follow one another.
     ///
     /// # Panics
-    /// If nothing is stored, or there are fewer files than parts.
+    /// If `stored` is empty, or there are fewer files than parts.
     pub fn new(stored: &[Stored], files: &[PathBuf]) -> Self {
         let first = &stored[0];
         let (width, height) = first.size();
         let levels = level_sizes(width, height).len();
-        // One file for each of what is stored, or one for each level of it.
+        // Either one file for each entry of `stored`, or one file for each of its levels.
         let files_each = if files.len() == stored.len() { 1 } else { levels };
         let parts =
             stored.iter().zip(files.chunks(files_each)).map(|(part, files)| SidecarPart::new(part, files));
@@ -94,8 +94,8 @@ impl Sidecar {
         })
     }
 
-    /// The members of the exported shaders' `Packing`: `value = stored * pair[0] + pair[1]`, with stored as a sampler returns it, and
-    /// two numbers of choices.
+    /// The members of the exported shaders' `Packing`: `value = stored * pair[0] + pair[1]`, where stored is the value
+    /// that a sampler returns, and two numbers that encode choices.
     fn packing_json(&self) -> Value {
         let packing = &self.packing;
         json!({

@@ -1,4 +1,4 @@
-//! Where textures will be used, and what can be read there.
+//! Where textures will be used, and what can be sampled there.
 
 use roughcast::texture::Layout;
 use roughcast::{BakeOptions, Blocks, SampleType, named_enum};
@@ -16,7 +16,7 @@ named_enum! {
     }
 }
 
-/// Why the target cannot sample the textures at all.
+/// Why the target cannot sample the textures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TargetError {
@@ -37,7 +37,7 @@ pub enum TargetError {
     Blocks,
 }
 
-/// What works only with a feature, or loses something, on the target.
+/// What works on the target only with a feature, or loses something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum TargetFinding {
@@ -49,17 +49,17 @@ pub enum TargetFinding {
     OneLevel,
 }
 
-/// Something that common readers refuse.
+/// A feature that common readers refuse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ReaderLimit {
-    /// three.js (0.187: uploads layer 0 of an uncompressed array), Babylon.js and Godot read no array textures.
+    /// three.js (0.187: uploads layer 0 of an uncompressed array), Babylon.js and Godot do not read array textures.
     Arrays,
-    /// Browsers sample 16-bit integers only with an extension, Babylon.js and PlayCanvas not at all.
+    /// Browsers sample 16-bit integers only with an extension; Babylon.js and PlayCanvas do not support them at all.
     SixteenBits,
 }
 
-/// What common readers refuse in a file of this kind.
+/// The features of a file of this kind that common readers refuse.
 pub fn reader_limits(container: Container, layers: usize, sample_type: SampleType) -> Vec<ReaderLimit> {
     if !matches!(container, Container::Ktx2 | Container::Dds) {
         return Vec::new();
@@ -70,10 +70,11 @@ pub fn reader_limits(container: Container, layers: usize, sample_type: SampleTyp
 }
 
 impl Target {
-    /// Refuses what the target cannot sample at all.
+    /// Refuses textures that the target cannot sample at all.
     ///
-    /// Sources: WebGPU, "Texture Format Capabilities" (16-bit UNORM formats need the feature `texture-formats-tier1`, blocks the
-    /// feature `texture-compression-bc`); OpenGL ES 3.0, table 3.13 (no 16-bit normalised formats), EXT_texture_norm16.
+    /// Sources: WebGPU, "Texture Format Capabilities" (16-bit UNORM formats need the feature `texture-formats-tier1`,
+    /// blocks the feature `texture-compression-bc`); OpenGL ES 3.0, table 3.13 (no 16-bit normalised formats),
+    /// EXT_texture_norm16.
     ///
     /// # Errors
     /// [`TargetError`].
@@ -89,7 +90,7 @@ impl Target {
         })
     }
 
-    /// What works only with a feature there, or loses something.
+    /// What works on the target only with a feature, or loses something.
     pub fn findings(self, container: Container, options: &BakeOptions) -> Vec<TargetFinding> {
         if self == Target::Desktop {
             return Vec::new();

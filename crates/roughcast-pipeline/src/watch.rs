@@ -9,7 +9,7 @@ use roughcast::named_enum;
 use crate::JobError;
 
 named_enum! {
-    /// What a job is doing. Stages come in this order.
+    /// The stages of a job, in order.
     #[derive(PartialOrd, Ord)]
     #[non_exhaustive]
     pub enum Stage: "stage" {
@@ -17,16 +17,16 @@ named_enum! {
         Reading = "reading",
         /// Making the textures and their levels.
         Baking = "baking",
-        /// Compressing them into blocks, if requested.
+        /// Compressing the textures into blocks, if requested.
         Compressing = "compressing",
-        /// Writing the files. They take their places after the last report of this stage.
+        /// Writing the files. They are moved into place after the last report of this stage.
         Writing = "writing",
         /// The job has ended, successfully or not.
         Ended = "ended",
     }
 }
 
-/// How far a job is.
+/// The progress of a job.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Progress<'a> {
@@ -38,15 +38,15 @@ pub struct Progress<'a> {
     pub count: usize,
     /// The stage.
     pub stage: Stage,
-    /// Which fraction of the stage is done, 0 ..= 1, if that is known. Threads that share the work may report out of order.
+    /// The completed fraction of the stage, 0 ..= 1, if known. Threads that share the work may report out of order.
     pub fraction: Option<f32>,
 }
 
 /// Receives the progress of jobs, and may stop them.
 ///
-/// Any closure `Fn(&Progress) -> ControlFlow<()> + Sync` is one. It is called from any thread, also from several at once, at
-/// the beginning of each stage and, but for the first, within it. After `ControlFlow::Break` a job ends with [`JobError::Cancelled`] and
-/// leaves no file behind, and a folder begins no further job.
+/// Any closure `Fn(&Progress) -> ControlFlow<()> + Sync` is a watch. It may be called from any thread, and from several
+/// at once: at the beginning of each stage and, except in the first stage, also within it. After `ControlFlow::Break` a
+/// job ends with [`JobError::Cancelled`] and leaves no file behind, and a folder starts no further job.
 pub trait Watch: Sync {
     /// Receives the progress of a job.
     fn progress(&self, progress: &Progress<'_>) -> ControlFlow<()>;
@@ -68,7 +68,7 @@ impl Watch for Unwatched {
     }
 }
 
-/// One job that is watched, with the time of each stage.
+/// A watched job, with the time of each stage.
 pub(crate) struct Watched<'a> {
     watch: &'a dyn Watch,
     input: &'a Path,
@@ -92,7 +92,7 @@ impl<'a> Watched<'a> {
         self.tell(None)
     }
 
-    /// Reports how much of the stage is done.
+    /// Reports the completed fraction of the stage.
     pub fn tell(&self, fraction: Option<f32>) -> Result<(), JobError> {
         match self.report(fraction) {
             ControlFlow::Continue(()) => Ok(()),
@@ -100,7 +100,7 @@ impl<'a> Watched<'a> {
         }
     }
 
-    /// As [`Watched::tell`], for work that stops at a `Break`.
+    /// As [`Watched::tell`], for work that stops on `Break`.
     pub fn report(&self, fraction: Option<f32>) -> ControlFlow<()> {
         let Some((stage, _)) = self.stage else { return ControlFlow::Continue(()) };
         let Self { input, index, count, .. } = *self;
@@ -120,7 +120,7 @@ impl<'a> Watched<'a> {
         }
     }
 
-    /// The completed stages, with the time that each took.
+    /// The completed stages, with the duration of each.
     pub fn times(&self) -> &[(Stage, Duration)] {
         &self.times
     }

@@ -5,14 +5,14 @@ use glam::{DMat4, DVec3};
 
 use crate::Ray;
 
-/// A pinhole camera. The picture's middle looks at `target`.
+/// A pinhole camera that looks at `target`, which appears in the middle of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Position of the eye.
     pub eye: DVec3,
     /// The point in the middle of the picture.
     pub target: DVec3,
-    /// The direction that is up in the picture, not parallel to the view; its length does not matter.
+    /// The direction that points up in the picture. It must not be parallel to the view; its length does not matter.
     pub up: DVec3,
     /// Full vertical angle of view, in radians, in 0 .. pi.
     pub vertical_fov: f64,
@@ -24,34 +24,35 @@ pub enum CameraError {
     /// NaN or infinity.
     #[error("the camera has a coordinate that is not finite: give numbers")]
     NotFinite,
-    /// The eye is at its target.
+    /// The eye coincides with its target.
     #[error("the camera's eye is at its target {0}: move one of them")]
     NoView(DVec3),
-    /// The view is parallel to the up direction, or there is no up direction.
+    /// The view is parallel to the up direction, or the up direction is zero.
     #[error("the camera's up direction {up} is zero or parallel to its view {view}: choose another")]
     ParallelUp {
         /// The up direction as given.
         up: DVec3,
-        /// From the eye to the target.
+        /// The direction from the eye to the target.
         view: DVec3,
     },
-    /// The angle of view is outside of 0 .. pi.
+    /// The angle of view lies outside of 0 .. pi.
     #[error("the camera's vertical angle of view is {0} radians: choose one between 0 and pi, both excluded")]
     FieldOfView(f64),
 }
 
-/// Smallest sine of the angle between the view and the up direction: below it the picture's right is rounding noise.
+/// Smallest sine of the angle between the view and the up direction. Below it, the picture's right direction is
+/// rounding noise.
 const MIN_SINE: f64 = 1e-9;
 
 impl Camera {
-    /// A valid camera.
+    /// Creates a valid camera.
     pub fn new(eye: DVec3, target: DVec3, up: DVec3, vertical_fov: f64) -> Result<Self, CameraError> {
         let camera = Self { eye, target, up, vertical_fov };
         camera.validate()?;
         Ok(camera)
     }
 
-    /// Checks that the camera is valid; the other methods presuppose it.
+    /// Checks that the camera is valid. The other methods require a valid camera.
     pub fn validate(&self) -> Result<(), CameraError> {
         let view = self.target - self.eye;
         if !(self.eye.is_finite() && view.is_finite() && self.up.is_finite() && self.vertical_fov.is_finite())
@@ -76,23 +77,23 @@ impl Camera {
         let forward = (self.target - self.eye).normalize();
         let right = forward.cross(self.up).normalize();
         let down = forward.cross(right);
-        // Square pixels: a pixel's size on the image plane at distance one.
+        // Pixels are square; this is a pixel's size on the image plane at distance one.
         let pixel = 2.0 * (0.5 * self.vertical_fov).tan() / f64::from(height.max(1));
         let corner =
             forward - right * (0.5 * pixel * f64::from(width)) - down * (0.5 * pixel * f64::from(height));
         PixelRays { eye: self.eye, corner, right: right * pixel, down: down * pixel }
     }
 
-    /// The ray through a point of a picture of `width` x `height` pixels, at least one each way.
+    /// The ray through a point of a picture of `width` x `height` pixels, both at least one.
     ///
-    /// `x` and `y` are in pixels; (0, 0) is the top left corner of the top left pixel, so pixel centres are at +0.5. Points
-    /// outside of the picture have rays too.
+    /// `x` and `y` are in pixels; (0, 0) is the top left corner of the top left pixel, so pixel centres are at +0.5.
+    /// Points outside of the picture are valid too.
     pub fn ray(&self, x: f64, y: f64, width: u32, height: u32) -> Ray {
         self.pixel_rays(width, height).ray(x, y)
     }
 
-    /// Clip space from world space in wgpu's conventions: right-handed world, x right and y up in -w .. w, z in 0 .. w from
-    /// `near` to `far` (0 < near < far). `aspect` is width over height.
+    /// The matrix from world space to clip space in wgpu's conventions: right-handed world, x right and y up in -w ..
+    /// w, z in 0 .. w from `near` to `far` (0 < near < far). `aspect` is width over height.
     pub fn clip_from_world(&self, aspect: f64, near: f64, far: f64) -> DMat4 {
         directx::perspective(self.vertical_fov, aspect, near, far)
             * view::look_at_mat4(self.eye, self.target, self.up.normalize_or_zero())

@@ -1,4 +1,4 @@
-//! Rays, what they hit, and the frame of the surface there.
+//! Rays, hits, and the frame of the surface at a hit.
 
 use glam::{DVec2, DVec3};
 
@@ -7,7 +7,7 @@ use crate::{UvPoint, UvSets};
 /// A ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it starts.
+    /// The start of the ray.
     pub origin: DVec3,
     /// Unit direction.
     pub direction: DVec3,
@@ -15,27 +15,28 @@ pub struct Ray {
 
 /// A tangent frame in world space: x right (growing u), y up (falling v), z the surface normal.
 ///
-/// Left-handed frames (mirrored texture coordinates) exist, and axes need be neither at right angles nor of unit length:
-/// [`Frame::tangent_from_world`] and [`Frame::world_from_tangent`] are each other's inverse for any of them. The frames of
-/// hits are orthonormal.
+/// Frames may be left-handed (mirrored texture coordinates), and axes need be neither perpendicular nor of unit length:
+/// [`Frame::tangent_from_world`] and [`Frame::world_from_tangent`] are inverse to each other for any frame. The frames
+/// of hits are orthonormal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     tangent: DVec3,
     bitangent: DVec3,
     normal: DVec3,
-    /// Known at construction, so that the common case takes three dot products.
+    /// Determined at construction, so that the common case needs only three dot products.
     orthonormal: bool,
 }
 
-/// Smallest volume of a frame's axes, relative to the product of their lengths: below it, components along the axes keep fewer
-/// than half of the digits of an f64.
+/// Minimum volume of a frame's axes, relative to the product of their lengths. Below it, components along the axes keep
+/// fewer than half of the digits of an f64.
 const MIN_VOLUME: f64 = 1e-8;
 
-/// How far products of supposedly orthonormal axes may be from 0 and 1: single floats may have been normalised.
+/// Maximum deviation from 0 and 1 of the dot products of orthonormal axes, which may have been normalised in single
+/// floats.
 const ORTHONORMAL: f64 = 1e-6;
 
 impl Frame {
-    /// A frame of unit axes at right angles, of either handedness.
+    /// A frame of perpendicular unit axes, of either handedness.
     pub fn orthonormal(tangent: DVec3, bitangent: DVec3, normal: DVec3) -> Self {
         debug_assert!(
             [tangent, bitangent, normal].iter().all(|axis| (axis.length_squared() - 1.0).abs() < ORTHONORMAL)
@@ -47,7 +48,7 @@ impl Frame {
         Self { tangent, bitangent, normal, orthonormal: true }
     }
 
-    /// A frame of any three axes that span space. `None` if they lie (almost) in a plane, or are not finite.
+    /// A frame of any three linearly independent axes. `None` if they lie (almost) in a plane, or are not finite.
     pub fn new(tangent: DVec3, bitangent: DVec3, normal: DVec3) -> Option<Self> {
         let lengths = tangent.length() * bitangent.length() * normal.length();
         let volume = tangent.dot(bitangent.cross(normal)).abs();
@@ -55,25 +56,25 @@ impl Frame {
         spans.then_some(Self { tangent, bitangent, normal, orthonormal: false })
     }
 
-    /// x, in world space.
+    /// The x axis, in world space.
     #[inline]
     pub fn tangent(&self) -> DVec3 {
         self.tangent
     }
 
-    /// y, in world space.
+    /// The y axis, in world space.
     #[inline]
     pub fn bitangent(&self) -> DVec3 {
         self.bitangent
     }
 
-    /// z, in world space: the shading normal.
+    /// The z axis, in world space: the shading normal.
     #[inline]
     pub fn normal(&self) -> DVec3 {
         self.normal
     }
 
-    /// The frame with all three axes reversed: that of the other side of the surface.
+    /// The frame with all three axes reversed, for the other side of the surface.
     #[must_use]
     pub fn reversed(&self) -> Self {
         Self { tangent: -self.tangent, bitangent: -self.bitangent, normal: -self.normal, ..*self }
@@ -88,11 +89,11 @@ impl Frame {
         self.reciprocal_components(v)
     }
 
-    /// [`Frame::tangent_from_world`] by the reciprocal basis. Apart from it, so that the common case is inlined.
+    /// [`Frame::tangent_from_world`] by the reciprocal basis. A separate function, so that the common case is inlined.
     #[cold]
     #[inline(never)]
     fn reciprocal_components(&self, v: DVec3) -> DVec3 {
-        // Their sign follows the handedness, and so does the volume's.
+        // The signs of these vectors follow the handedness, as does the volume's.
         let across = self.bitangent.cross(self.normal);
         let components = DVec3::new(
             v.dot(across),
@@ -112,33 +113,33 @@ impl Frame {
 /// Which side of a surface faces the viewer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Side {
-    /// The one that the surface's own normal points to.
+    /// The side that the surface's own normal points to.
     #[default]
     Front,
-    /// The other one.
+    /// The opposite side.
     Back,
 }
 
 /// A point of a surface.
 ///
-/// The surface has two parameters of its own, s and t, independent of its textures: a shape's are its texture coordinates,
-/// a triangle's run along two of its edges. Position and every set of texture coordinates are known with their change by
-/// s and t; by the chain rule that gives the change of either with the other.
+/// The surface has two parameters of its own, s and t, independent of its textures. For a shape they are its texture
+/// coordinates; for a triangle they run along two of its edges. The derivatives of the position and of every set of
+/// texture coordinates with respect to s and t are known; the chain rule gives the change of one with the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit<'a> {
     /// Distance along the ray.
     pub distance: f64,
     /// The point, in world space.
     pub position: DVec3,
-    /// Unit normal of the geometry itself, towards the viewer: the plane in which footprints lie.
+    /// Unit normal of the geometry itself, towards the viewer. Footprints lie in its plane.
     pub geometric_normal: DVec3,
-    /// The shading frame, orthonormal, towards the viewer.
+    /// The orthonormal shading frame, towards the viewer.
     pub frame: Frame,
     /// Which side faces the viewer.
     pub side: Side,
-    /// Change of the position with s.
+    /// Derivative of the position with respect to s.
     pub dpds: DVec3,
-    /// Change of the position with t.
+    /// Derivative of the position with respect to t.
     pub dpdt: DVec3,
     /// The texture coordinates.
     pub uv_sets: UvSets<'a>,
@@ -151,15 +152,16 @@ impl Hit<'_> {
         self.uv_sets.get(set).uv
     }
 
-    /// Change of the position with u of a set of texture coordinates. Zero if the set is missing, or does not determine
-    /// the direction of u because its area vanishes.
+    /// Derivative of the position with respect to u of a set of texture coordinates. Zero if the set is missing, or if
+    /// it has no area and thus does not determine the direction of u.
     pub fn dpdu(&self, set: usize) -> DVec3 {
         let UvPoint { ds, dt, .. } = self.uv_sets.get(set);
         let det = ds.perp_dot(dt);
         if det == 0.0 { DVec3::ZERO } else { (self.dpds * dt.y - self.dpdt * ds.y) / det }
     }
 
-    /// Change of the position with v of a set of texture coordinates; zero as for [`Hit::dpdu`].
+    /// Derivative of the position with respect to v of a set of texture coordinates; zero in the same cases as
+    /// [`Hit::dpdu`].
     pub fn dpdv(&self, set: usize) -> DVec3 {
         let UvPoint { ds, dt, .. } = self.uv_sets.get(set);
         let det = ds.perp_dot(dt);
@@ -167,13 +169,13 @@ impl Hit<'_> {
     }
 }
 
-/// Change of two coordinates from a pixel to its right and to its lower neighbour: of texture coordinates, in units of the
-/// texture, or of the surface's own parameters.
+/// Change of two coordinates from a pixel to its right and lower neighbours: either texture coordinates, in units of
+/// the texture, or the surface's own parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Footprint {
-    /// To the right.
+    /// Change to the right.
     pub dx: DVec2,
-    /// Downwards.
+    /// Change downwards.
     pub dy: DVec2,
 }
 
@@ -189,7 +191,7 @@ impl Footprint {
 mod tests {
     use super::*;
 
-    /// Rounding of a few f64 operations on numbers around one.
+    /// Rounding error of a few f64 operations on numbers around one.
     const ROUNDING: f64 = 1e-14;
 
     /// Orthonormal, sheared, stretched and mirrored frames.

@@ -3,14 +3,14 @@
 //!
 //! # Features
 //!
-//! - `render`, on by default: the CPU renderer with its texture filters, the hierarchy that finds the triangles of
-//!   a mesh, and the image metrics. Without it the crate is the description of a scene, for other renderers.
+//! - `render`, on by default: the CPU renderer with its texture filters, the bounding volume hierarchy for meshes, and
+//!   the image metrics. Without it the crate only describes scenes, for other renderers.
 //!
 //! # Conventions
 //!
 //! - World space is right-handed, y up; lengths have no unit. Geometry is computed in f64.
-//! - Texture coordinates are glTF's: (0, 0) is the top left corner of the image, v grows downwards. The tangent frame is
-//!   x right (growing u), y up (falling v), z out of the surface.
+//! - Texture coordinates are glTF's: (0, 0) is the top left corner of the image, v grows downwards. The tangent frame
+//!   is x right (growing u), y up (falling v), z out of the surface.
 //! - Colours are linear radiance.
 
 #![forbid(unsafe_code)]

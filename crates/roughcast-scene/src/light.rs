@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// A light without size.
+/// A light without extent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Light {
     /// Infinitely far away.
@@ -12,9 +12,9 @@ pub enum Light {
         /// Irradiance on a surface that faces it, in linear RGB.
         irradiance: [f32; 3],
     },
-    /// A point, whose irradiance falls with the square of the distance from [`Light::LEAST_DISTANCE`] on.
+    /// A point light. Its irradiance falls with the square of the distance, beyond [`Light::LEAST_DISTANCE`].
     Point {
-        /// Where it is.
+        /// Its position.
         position: DVec3,
         /// Irradiance at a distance of one, in linear RGB.
         intensity: [f32; 3],
@@ -22,15 +22,15 @@ pub enum Light {
 }
 
 impl Light {
-    /// Irradiance that gives a white surface which faces the light a radiance of one.
+    /// Irradiance that gives a white surface facing the light a radiance of one.
     pub const WHITE: [f32; 3] = [std::f32::consts::PI; 3];
 
-    /// A point light's irradiance is constant at shorter distances: it stays finite, and so do the results of shaders
-    /// in single floats.
+    /// A point light's irradiance is constant at distances below this, so that it and the results of single-float
+    /// shaders stay finite.
     pub const LEAST_DISTANCE: f64 = 1e-6;
 
-    /// Unit vector towards the light and the irradiance of a surface that faces it, at a point. The vector is zero at the
-    /// position of a point light, which therefore gives no light there.
+    /// Unit vector towards the light, and the irradiance of a surface that faces it, at a point. At the position of a
+    /// point light the vector is zero, so the light has no effect there.
     pub fn at(&self, point: DVec3) -> (DVec3, [f32; 3]) {
         match *self {
             Self::Directional { towards, irradiance } => (towards, irradiance),
@@ -50,7 +50,7 @@ mod tests {
 
     use super::*;
 
-    /// At the origin, where every distance is representable.
+    /// At the origin, where all distances are representable.
     const LIGHT: Light = Light::Point { position: DVec3::ZERO, intensity: [8.0, 4.0, 2.0] };
 
     #[test]
@@ -71,7 +71,8 @@ mod tests {
                 let light = reflect(&surface, &Material::default(), [0.0, 0.0, 1.0], &sample, &options);
                 let radiance = [light.diffuse, light.specular].concat();
                 assert!(radiance.iter().all(|r| r.is_finite()), "{shading}, {distance:e}: {light:?}");
-                // At the light's own place no side faces it. Squares of the two shortest distances are zero in f64.
+                // At the light's own position no side faces it. The squares of the two shortest distances are zero in
+                // f64.
                 assert_eq!(radiance.iter().any(|r| *r > 0.0), distance > 1e-100, "{shading}, {distance:e}");
             }
         }

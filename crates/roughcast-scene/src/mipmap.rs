@@ -17,11 +17,11 @@ pub struct Level {
     texels: Vec<[f32; 4]>,
 }
 
-/// A texture with its levels, as stored: integer texels as 0 ..= 1, floats unchanged. Channels that the texture lacks
-/// are 0, the fourth is 1, as in graphics hardware.
+/// A texture with its levels, as stored: integer texels as 0 ..= 1, floats unchanged. Missing channels are 0, or 1 for
+/// the fourth, as in graphics hardware.
 ///
-/// Four floats per texel are kept, 16 bytes; a summed-area table, made at its first use, takes 32 more for each texel of
-/// level 0.
+/// Each texel is stored as four floats, 16 bytes. A summed-area table, created on first use, takes 32 more bytes per
+/// texel of level 0.
 #[derive(Clone, Debug)]
 pub struct Mipmap {
     levels: Vec<Level>,
@@ -29,10 +29,10 @@ pub struct Mipmap {
 }
 
 impl Level {
-    /// A level of these texels, row by row from the top.
+    /// Creates a level from these texels, row by row from the top.
     ///
     /// # Errors
-    /// [`MipmapError::Size`] if their number does not fit, or is zero.
+    /// [`MipmapError::Size`] if the number of texels does not match the size, or is zero.
     pub fn new(width: usize, height: usize, texels: Vec<[f32; 4]>) -> Result<Self, MipmapError> {
         let got = texels.len();
         if got == 0 || width.checked_mul(height) != Some(got) {
@@ -54,12 +54,12 @@ impl Level {
         Self { width, height: image.height(), texels }
     }
 
-    /// Texels in a row.
+    /// Number of texels in a row.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows.
+    /// Number of rows.
     pub fn height(&self) -> usize {
         self.height
     }
@@ -74,7 +74,7 @@ impl Level {
         self.texels[y * self.width + x]
     }
 
-    /// Four neighbours, row by row, by the column and row of the first, which may lie beyond the edges.
+    /// Four neighbouring texels, row by row. `at` is the column and row of the first, which may lie beyond the edges.
     #[inline]
     pub(crate) fn square(&self, at: (i64, i64), wrap: Wrap) -> [[f32; 4]; 4] {
         square_at(at, (self.width, self.height), wrap).map(|texel| self.texels[texel])
@@ -94,10 +94,10 @@ impl Mipmap {
         Self::new(texture.levels.iter().map(Level::of).collect())
     }
 
-    /// A texture of these levels, the finest first. Their sizes need not be halves of each other.
+    /// Creates a texture from these levels, the finest first. Each size need not be half of the previous one.
     ///
     /// # Errors
-    /// [`MipmapError::Size`] if there is none.
+    /// [`MipmapError::Size`] if there are no levels.
     pub fn new(levels: Vec<Level>) -> Result<Self, MipmapError> {
         if levels.is_empty() {
             return Err(MipmapError::Size { level: 0, width: 0, height: 0, got: 0 });
@@ -124,18 +124,18 @@ impl Mipmap {
         (self.levels[0].width, self.levels[0].height)
     }
 
-    /// The summed-area table of level 0, computed at the first use.
+    /// The summed-area table of level 0, computed on first use.
     pub fn table(&self) -> &SummedAreaTable {
         self.table.get_or_init(|| SummedAreaTable::of(&self.levels[0]))
     }
 }
 
-/// The texel at an index, which may lie beyond the edges.
+/// The index of the texel after wrapping; `index` may lie beyond the edges.
 #[inline]
 pub(crate) fn wrapped(index: i64, length: usize, wrap: Wrap) -> usize {
     let length = length as i64;
     let inside = match wrap {
-        // Most indices lie inside, and a division is slow.
+        // Most indices are within the range, and a division is slow.
         Wrap::Repeat if (0..length).contains(&index) => index,
         Wrap::Repeat => index.rem_euclid(length),
         Wrap::Clamp => index.clamp(0, length - 1),
@@ -147,11 +147,11 @@ pub(crate) fn wrapped(index: i64, length: usize, wrap: Wrap) -> usize {
     inside as usize
 }
 
-/// Places, in a list of rows, of the texel in this column and row and of its neighbours to the right, below, and below to the
-/// right. All may lie beyond the edges.
+/// Indices, in row-major order, of the texel in this column and row and of its neighbours to the right, below, and
+/// below to the right. All of them may lie beyond the edges.
 #[inline]
 pub(crate) fn square_at((x, y): (i64, i64), (width, height): (usize, usize), wrap: Wrap) -> [usize; 4] {
-    // Within the map all ways to wrap agree, and most squares lie there.
+    // Inside the map all wrap modes agree, and most squares lie there.
     if (0..width as i64 - 1).contains(&x) && (0..height as i64 - 1).contains(&y) {
         let first = y as usize * width + x as usize;
         return [first, first + 1, first + width, first + width + 1];
@@ -161,7 +161,8 @@ pub(crate) fn square_at((x, y): (i64, i64), (width, height): (usize, usize), wra
     [top + left, top + right, bottom + left, bottom + right]
 }
 
-/// The floor of a coordinate and the remainder, in 0 ..= 1. Infinite coordinates and NaN give a valid place too. Faster than `floor`, which is a call where the compiler may not assume SSE 4.1.
+/// The floor of a coordinate and the remainder, in 0 ..= 1. Infinite coordinates and NaN give a valid index too. Faster
+/// than `floor`, which is a function call unless the compiler may assume SSE 4.1.
 #[inline]
 #[expect(clippy::manual_clamp, reason = "max turns NaN into zero; clamp would keep it")]
 pub(crate) fn whole_and_rest(x: f64) -> (i64, f64) {

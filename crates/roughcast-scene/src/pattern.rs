@@ -1,4 +1,4 @@
-//! Height maps of the papers' figures, computed by formula: all repeat without a seam, and their slopes are known.
+//! Height maps of the papers' figures, computed by formula. All tile seamlessly, and their slopes are known.
 
 use std::f64::consts::TAU;
 
@@ -23,7 +23,7 @@ impl Pattern {
         Self { heights: heights.expect("a square of one channel") }
     }
 
-    /// How the heights become slopes: the defaults, with heights in units of the width.
+    /// How the heights are converted to slopes: the default options, with heights in units of the width.
     pub fn source_options(&self) -> SourceOptions {
         SourceOptions::default().with_kind(Kind::Height).with_height_scale(1.0)
     }
@@ -31,8 +31,9 @@ impl Pattern {
 
 /// A checkerboard of raised squares with slanted edges (LEAN Figure 14).
 ///
-/// `squares` along each side, an even number so that the board repeats; the edges rise over `bevel` texels with this
-/// `slope`. Most of the surface is flat, so its highlight is as sharp as the base lobe, with a faint cross from the edges.
+/// There are `squares` squares along each side, an even number so that the board tiles. The edges rise over `bevel`
+/// texels with this `slope`. Most of the surface is flat, so its highlight is as sharp as the base lobe, with a faint
+/// cross from the edges.
 pub fn raised_checker(size: usize, squares: usize, bevel: f64, slope: f64) -> Pattern {
     let side = size as f64 / squares as f64;
     Pattern::of(size, |x, y| {
@@ -47,8 +48,8 @@ pub fn raised_checker(size: usize, squares: usize, bevel: f64, slope: f64) -> Pa
     })
 }
 
-/// Sharp V grooves along y: slopes of `±slope` along x and nothing between, which no single Gaussian describes (LEAN, section 6).
-/// `grooves` of them over the map.
+/// Sharp V grooves along y, `grooves` of them over the map. Slopes are `±slope` along x with nothing between, which no
+/// single Gaussian can describe (LEAN, section 6).
 pub fn v_grooves(size: usize, grooves: usize, slope: f64) -> Pattern {
     let period = size as f64 / grooves as f64;
     Pattern::of(size, |x, _| {
@@ -57,27 +58,28 @@ pub fn v_grooves(size: usize, grooves: usize, slope: f64) -> Pattern {
     })
 }
 
-/// Ridges along y of random heights and widths (LEAN Figure 2 d, 13): slopes along x are nearly Gaussian with this root
-/// mean square.
+/// Ridges along y with random heights and widths (LEAN Figure 2 d, 13). Slopes along x are nearly Gaussian with this
+/// root mean square.
 pub fn random_ridges(size: usize, rms_slope: f64, seed: u64) -> Pattern {
     let waves: Vec<Wave> = (0..RIDGE_WAVES).map(|i| Wave::ridge(i, size, seed)).collect();
     superposition(size, &waves, rms_slope)
 }
 
-/// Random bumps without a direction (LEAN Figure 2 a): slopes are nearly Gaussian with this root mean square length.
+/// Random bumps without a preferred direction (LEAN Figure 2 a). Slopes are nearly Gaussian with this root mean square
+/// length.
 pub fn random_bumps(size: usize, rms_slope: f64, seed: u64) -> Pattern {
     let waves: Vec<Wave> = (0..BUMP_WAVES).map(|i| Wave::bump(i, size, seed)).collect();
     superposition(size, &waves, rms_slope)
 }
 
-/// Enough waves for nearly Gaussian slopes, which the sum of many independent ones has.
+/// Number of waves: the sum of many independent waves has nearly Gaussian slopes.
 const RIDGE_WAVES: u64 = 24;
 const BUMP_WAVES: u64 = 48;
-/// Waves are this many texels long, at the least and at the most.
+/// Minimum and maximum wavelength, in texels.
 const SHORTEST_WAVE: f64 = 12.0;
 const LONGEST_WAVE: f64 = 40.0;
 
-/// A cosine over the map, a whole number of times each way.
+/// A cosine over the map, with an integer number of periods each way.
 struct Wave {
     cycles: [f64; 2],
     phase: f64,
@@ -93,14 +95,14 @@ impl Wave {
     fn bump(index: u64, size: usize, seed: u64) -> Self {
         let [length, phase, turn] = random(seed, index);
         let cycles = size as f64 / (SHORTEST_WAVE + length * (LONGEST_WAVE - SHORTEST_WAVE));
-        // Directions are distributed evenly, with some randomness, so that the bumps have no preferred direction.
+        // Directions are evenly distributed, with some randomness, so that the bumps have no preferred direction.
         let angle = (index as f64 + turn) * TAU / BUMP_WAVES as f64;
         let [x, y] = [(cycles * angle.cos()).round(), (cycles * angle.sin()).round()];
         Self { cycles: if x == 0.0 && y == 0.0 { [1.0, 0.0] } else { [x, y] }, phase: phase * TAU }
     }
 }
 
-/// The sum of waves of equal root mean square slope, which together have the requested one.
+/// The sum of waves of equal root mean square slope, whose total has the requested one.
 fn superposition(size: usize, waves: &[Wave], rms_slope: f64) -> Pattern {
     let frequency = TAU / size as f64;
     // The slope of a cosine of amplitude a and wave number k has mean square (a k)^2 / 2.
@@ -114,7 +116,7 @@ fn superposition(size: usize, waves: &[Wave], rms_slope: f64) -> Pattern {
     })
 }
 
-/// Three numbers in 0 .. 1 of a seed and an index (SplitMix64).
+/// Three numbers in 0 .. 1 from a seed and an index (SplitMix64).
 fn random(seed: u64, index: u64) -> [f64; 3] {
     std::array::from_fn(|i| {
         let counter = (3 * index + i as u64 + 1).wrapping_mul(GOLDEN_RATIO);
@@ -133,7 +135,7 @@ mod tests {
     const SIZE: usize = 256;
     const SLOPE: f64 = 0.25;
 
-    /// The moments of the whole map, by the library.
+    /// The moments of the whole map, computed by the library.
     fn whole(pattern: &Pattern) -> Moments {
         let options = BakeOptions::default().with_layout(Layout::Moments).with_sample_type(SampleType::F32);
         let baked = Bake::of(&pattern.heights)
@@ -146,7 +148,7 @@ mod tests {
 
     #[test]
     fn random_patterns_have_the_requested_slopes() {
-        // Waves that happen to be equal add up with random phases; and the Sobel filter weakens the shortest waves
+        // Waves that happen to be equal add up with random phases, and the Sobel filter weakens the shortest waves
         // (sin(k)/k at 12 texels: 5 %).
         const CHANCE: f64 = 0.15;
         let ridges = whole(&random_ridges(SIZE, SLOPE, 1)).covariance();
@@ -174,7 +176,7 @@ mod tests {
 
     #[test]
     fn grooves_and_edges_have_their_slopes() {
-        // Away from the kinks; the three texels about each of 32 kinks of 256 columns see both sides.
+        // Away from the kinks. The three texels around each of the 32 kinks in 256 columns see both sides.
         let grooves = whole(&v_grooves(SIZE, 16, 0.4)).covariance();
         assert!((grooves.xx / 0.16 - 1.0).abs() < 0.2, "{grooves:?}");
         let heights = raised_checker(SIZE, 8, 4.0, 0.5).heights;

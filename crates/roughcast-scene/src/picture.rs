@@ -9,14 +9,14 @@ pub struct Picture {
     pub height: usize,
     /// Radiance in linear RGB, background included.
     pub radiance: Vec<[f32; 3]>,
-    /// The part of the radiance from the specular lobes.
+    /// The part of the radiance that comes from specular lobes.
     pub specular: Vec<[f32; 3]>,
     /// The fraction of the pixel that a surface covers, 0 ..= 1.
     pub coverage: Vec<f32>,
 }
 
 impl Picture {
-    /// A black picture without a surface.
+    /// A black picture that no surface covers.
     pub fn empty(width: usize, height: usize) -> Self {
         let pixels = width * height;
         Self {
@@ -33,7 +33,7 @@ impl Picture {
         self.width * self.height
     }
 
-    /// Whether there is no pixel.
+    /// Whether the picture has no pixels.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -3,17 +3,17 @@
 use roughcast::Wrap;
 
 roughcast::named_enum! {
-    /// How a texture is averaged over a pixel.
+    /// How a texture is averaged over the pixel's footprint.
     pub enum Filter: "texture filter" {
-        /// Not at all: the nearest texel of level 0.
+        /// No averaging: the nearest texel of level 0.
         Nearest = "nearest",
-        /// Between the texels of two levels, by the footprint's larger extent.
+        /// Interpolation between the texels of two levels, chosen by the footprint's larger extent.
         Trilinear = "trilinear",
         /// As in graphics hardware: at most 16 trilinear taps along the footprint.
         Anisotropic = "anisotropic",
         /// Elliptical weighted average, with axes up to 32:1.
         Ewa = "ewa",
-        /// Summed-area table: the box around the footprint.
+        /// Summed-area table: the mean over the bounding box of the footprint.
         SummedArea = "summed-area",
     }
 }
@@ -24,36 +24,37 @@ roughcast::named_enum! {
 pub struct Sampler {
     /// The filter.
     pub filter: Filter,
-    /// A level of detail, 0 the finest, instead of the footprint's: a footprint of `2^level` texels each way. The bias
-    /// does not apply to it.
+    /// A level of detail (0 is the finest) that replaces the footprint's: it stands for a footprint of `2^level` texels
+    /// each way. The bias does not apply to it.
     pub level: Option<f64>,
-    /// Added to the footprint's level of detail. As in graphics hardware the taps of [`Filter::Anisotropic`] stay where
-    /// they are. Filters without levels use a footprint `2^bias` times as large; [`Filter::Nearest`] has none.
+    /// Bias added to the footprint's level of detail. As in graphics hardware, it does not move the taps of
+    /// [`Filter::Anisotropic`]. Filters without levels use a footprint `2^bias` times as large; [`Filter::Nearest`] has
+    /// none.
     pub mip_bias: f64,
     /// What lies beyond the edges.
     pub wrap: Wrap,
 }
 
 impl Sampler {
-    /// The same with this filter.
+    /// The same sampler with this filter.
     #[must_use]
     pub fn with_filter(self, filter: Filter) -> Self {
         Self { filter, ..self }
     }
 
-    /// The same at this level of detail; `None` for the footprint's.
+    /// The same sampler at this level of detail; `None` uses the footprint's.
     #[must_use]
     pub fn with_level(self, level: Option<f64>) -> Self {
         Self { level, ..self }
     }
 
-    /// The same with this added to the footprint's level of detail.
+    /// The same sampler with this bias added to the footprint's level of detail.
     #[must_use]
     pub fn with_mip_bias(self, mip_bias: f64) -> Self {
         Self { mip_bias, ..self }
     }
 
-    /// The same with this beyond the edges.
+    /// The same sampler with this wrap mode beyond the edges.
     #[must_use]
     pub fn with_wrap(self, wrap: Wrap) -> Self {
         Self { wrap, ..self }

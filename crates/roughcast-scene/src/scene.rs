@@ -1,4 +1,4 @@
-//! What is rendered.
+//! The scene that is rendered.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ pub struct Scene {
     pub shape: Arc<Shape>,
     /// The camera.
     pub camera: Camera,
-    /// The lights. Nothing casts a shadow.
+    /// The lights. There are no shadows.
     pub lights: Vec<Light>,
     /// The colours of the surface; textures provide its bumps and its roughness.
     pub material: Material,

@@ -1,14 +1,14 @@
-//! Slow camera moves, in which aliasing shows as flicker.
+//! Slow camera moves that make aliasing visible as flicker.
 
 use crate::Scene;
 
-/// How far the middle of the picture moves from frame to frame, as a fraction of the picture's height: less than a pixel, so
-/// that all jumps are aliasing.
+/// How far the middle of the picture moves from frame to frame, as a fraction of the picture's height. It is less than
+/// a pixel, so that all jumps are aliasing.
 const STEP: f64 = 1.0 / 600.0;
-/// The move is mostly sideways; this fraction is forward, so that the scale changes too.
+/// The forward fraction of the move, which is mostly sideways; it changes the scale too.
 const FORWARD: f64 = 0.5;
 
-/// The scene at `frames` times of a slow camera move, the first being the scene itself.
+/// The scene in `frames` steps of a slow camera move, starting with the scene itself.
 pub fn slow_move(scene: &Scene, frames: u32) -> Vec<Scene> {
     let camera = scene.camera;
     let forward = camera.target - camera.eye;
@@ -39,7 +39,7 @@ mod tests {
         let scene = View::Mid.scene(plane, (64, 64), SIZE, Material::default());
         let frames = slow_move(&scene, 5);
         assert_eq!((frames.len(), frames[0].camera), (5, scene.camera));
-        // Where a point of the first frame's middle is seen in each frame.
+        // Where each frame shows the point in the middle of the first frame.
         let seen = |frame: &Scene| {
             let aspect = f64::from(SIZE.0) / f64::from(SIZE.1);
             let clip = frame.camera.clip_from_world(aspect, 0.01, 100.0);

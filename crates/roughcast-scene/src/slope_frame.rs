@@ -1,35 +1,37 @@
-//! Converts the slopes in a texture to slopes of the surface that it lies on.
+//! Converts the slopes in a texture to slopes of the surface that it is applied to.
 //!
-//! A texture stores the slopes of heights f in texels over a grid of texels: `b = (-df/dx, -df/dy)`, x right and y up. On a
-//! surface, W texels lie along a unit of u and H texels along a unit of v, which grows downwards: `x = W u`, `y = -H v`. With h
-//! the world height of one texel of height, the surface is displaced along its normal by `h f`, whose derivatives are
+//! A texture stores the slopes of heights f in texels over a grid of texels: `b = (-df/dx, -df/dy)`, x right and y up.
+//! On a surface, W texels lie along a unit of u and H texels along a unit of v, which grows downwards: `x = W u`,
+//! `y = -H v`. With h the world height of one texel of height, the surface is displaced along its normal by `h f`,
+//! whose derivatives are
 //!
 //! ```text
 //! d(h f)/du = -h W b.x        d(h f)/dv = +h H b.y
 //! ```
 //!
-//! The chain rule makes them derivatives `(ds, dt)` by the surface's own parameters, and these have the surface gradient g: the
-//! vector of the tangent plane with `g · dpds = ds` and `g · dpdt = dt`. With n the shading normal it is
+//! The chain rule converts them to derivatives `(ds, dt)` with respect to the surface's own parameters. These determine
+//! the surface gradient g, the vector in the tangent plane with `g · dpds = ds` and `g · dpdt = dt`. With n the shading
+//! normal it is
 //!
 //! ```text
 //! g = (ds r1 + dt r2) / det,    r1 = dpdt × n,    r2 = n × dpds,    det = dpds · r1
 //! ```
 //!
-//! and the normal of the displaced surface is n - g (Mikkelsen, "Bump Mapping Unparametrized Surfaces on the GPU", 2010, Eqs. 3
-//! and 4, Listing 1). The slope in the hit's frame is (-g · tangent, -g · bitangent). All of it is linear in b, so a 2x2 matrix
-//! describes it, and moments transform with it. Only the area of the surface's own parametrization is divided by: texture
-//! coordinates may be degenerate.
+//! and the normal of the displaced surface is n - g (Mikkelsen, "Bump Mapping Unparametrized Surfaces on the GPU",
+//! 2010, Eqs. 3 and 4, Listing 1). The slope in the hit's frame is (-g · tangent, -g · bitangent). All of it is linear
+//! in b, so a 2x2 matrix describes it, and moments transform with it. The only division is by the area of the surface's
+//! own parametrization, so texture coordinates may be degenerate.
 
 use glam::{DVec2, DVec3};
 use roughcast::SlopeMatrix;
 
 use crate::{Hit, Side, UvPoint};
 
-/// Sine of the angle between dpds and dpdt, projected along the shading normal, below which the surface has no area that
-/// determines a direction.
+/// Sine of the angle between dpds and dpdt, projected along the shading normal, below which the surface's area is too
+/// small to determine a direction.
 const MIN_SINE: f64 = 1e-10;
 
-/// How a texture of slopes lies on a surface.
+/// How a texture of slopes is placed on a surface.
 ///
 /// ```
 /// use glam::DVec3;
@@ -51,35 +53,35 @@ pub struct SlopeFrame {
 }
 
 impl SlopeFrame {
-    /// A texture of `texels`, `(width, height)` of level 0, that repeats `repeats` times over a unit of the first set of texture
-    /// coordinates, without a world height.
+    /// A texture of `texels`, `(width, height)` of level 0, that repeats `repeats` times over a unit of the first set
+    /// of texture coordinates, without a world height.
     pub fn new(texels: (usize, usize), repeats: f64) -> Self {
         let texels_per_unit = DVec2::new(texels.0 as f64, texels.1 as f64) * repeats;
         Self { uv_set: 0, texels_per_unit, world_height_per_texel: None }
     }
 
-    /// The same by another set of texture coordinates.
+    /// The same frame with another set of texture coordinates.
     #[must_use]
     pub fn with_uv_set(self, uv_set: usize) -> Self {
         Self { uv_set, ..self }
     }
 
-    /// The same with a size of the bumps: the height of one texel in world space.
+    /// The same frame with bumps of a size: the world-space height that corresponds to one texel of height.
     #[must_use]
     pub fn with_world_height_per_texel(self, height: f64) -> Self {
         Self { world_height_per_texel: Some(height), ..self }
     }
 
-    /// The set of texture coordinates by which the texture lies on the surface.
+    /// The set of texture coordinates that places the texture on the surface.
     pub fn uv_set(&self) -> usize {
         self.uv_set
     }
 
-    /// Takes slopes in the texture's frame, in texels per texel, to slopes in the frame of the hit.
+    /// The matrix that transforms slopes in the texture's frame, in texels per texel, to the frame of the hit.
     ///
     /// Without a world height it is the identity, as in glTF's normal maps: the texture's x and y are the tangent and
-    /// the bitangent, and stretching of the texture does not matter. From behind a bump is a dent, whose slopes
-    /// in the reversed frame are the same numbers.
+    /// the bitangent, and stretching of the texture has no effect. Seen from behind, a bump is a dent, whose slopes in
+    /// the reversed frame are the same numbers.
     ///
     /// Always finite. All slopes become zero if the surface's own parametrization has no area (a pole), if the
     /// shading normal lies in the surface, if the texture coordinates are missing or constant, and
@@ -93,7 +95,7 @@ impl SlopeFrame {
             return [[0.0; 2]; 2];
         }
         let UvPoint { ds, dt, .. } = hit.uv_sets.get(self.uv_set);
-        // Change of the height in world units with u and v, of a slope of one along x and of one along y.
+        // Change of the world-space height with u for a slope of one along x, and with v for a slope of one along y.
         let (along_u, along_v) = (-height * self.texels_per_unit.x, height * self.texels_per_unit.y);
         let slope = |change: DVec2| self.slope_of_gradient(hit, (r1 * change.x + r2 * change.y) / det);
         let x = slope(DVec2::new(ds.x, dt.x) * along_u);
@@ -102,7 +104,8 @@ impl SlopeFrame {
         if matrix.iter().flatten().all(|entry| entry.is_finite()) { matrix } else { [[0.0; 2]; 2] }
     }
 
-    /// The slope, in the frame of the hit, of a surface displaced along the front's normal by heights of this surface gradient.
+    /// The slope, in the frame of the hit, of a surface displaced along the front's normal by heights with this surface
+    /// gradient.
     fn slope_of_gradient(&self, hit: &Hit<'_>, gradient: DVec3) -> DVec2 {
         let towards_slope = match hit.side {
             Side::Front => -gradient,

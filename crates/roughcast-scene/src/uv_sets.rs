@@ -7,14 +7,14 @@ use glam::{DVec2, DVec3, Vec2};
 pub struct UvPoint {
     /// The coordinates.
     pub uv: DVec2,
-    /// Their change with the surface's parameter s.
+    /// Their derivative with respect to the surface's parameter s.
     pub ds: DVec2,
-    /// Their change with the surface's parameter t.
+    /// Their derivative with respect to the surface's parameter t.
     pub dt: DVec2,
 }
 
-/// All sets of texture coordinates at a point of a surface. A set is computed when it is asked for: most sources of bumps ask
-/// for one, and hits are copied often.
+/// All sets of texture coordinates at a point of a surface. Sets are computed on demand, because most sources of bumps
+/// use only one and hits are copied often.
 #[derive(Clone, Copy, Debug)]
 pub struct UvSets<'a>(Source<'a>);
 
@@ -25,7 +25,8 @@ enum Source<'a> {
     Triangle(TrianglePoint<'a>),
 }
 
-/// A point of a triangle, whose parameters s and t run along the edges from its first corner to the second and the third.
+/// A point of a triangle. The parameters s and t run along the edges from its first corner to the second and to the
+/// third.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TrianglePoint<'a> {
     /// Sets of texture coordinates, each with one entry per vertex of the mesh.
@@ -37,7 +38,7 @@ pub(crate) struct TrianglePoint<'a> {
 }
 
 impl Default for UvSets<'_> {
-    /// None.
+    /// No sets.
     fn default() -> Self {
         Self::of_points(&[])
     }
@@ -50,13 +51,13 @@ impl PartialEq for UvSets<'_> {
 }
 
 impl<'a> UvSets<'a> {
-    /// A single set: the parameters s and t of the surface themselves.
+    /// A single set that equals the surface's parameters s and t.
     #[inline]
     pub fn of_parameters(st: DVec2) -> Self {
         Self(Source::Parameters(st))
     }
 
-    /// Known sets.
+    /// Sets that are already known.
     #[inline]
     pub fn of_points(points: &'a [UvPoint]) -> Self {
         Self(Source::Points(points))
@@ -81,7 +82,7 @@ impl<'a> UvSets<'a> {
         self.len() == 0
     }
 
-    /// A set; a missing one is zero everywhere.
+    /// The set with this index; a missing set is zero everywhere.
     #[inline]
     pub fn get(&self, set: usize) -> UvPoint {
         match self.0 {
@@ -107,11 +108,11 @@ impl TrianglePoint<'_> {
     }
 }
 
-/// Texture coordinates of a triangle whose area is smaller than this fraction of the product of its sides do not determine
-/// where u and v grow: single floats do not resolve it.
+/// Minimum texture-space area of a triangle, as a fraction of the product of its sides. Smaller triangles do not
+/// determine the directions of u and v, because single floats cannot resolve them.
 const MIN_UV_SINE: f64 = 1e-7;
 
-/// Two edges of a triangle in texture coordinates; zero if they have no area.
+/// Two edges of a triangle in texture coordinates; zero if they span no area.
 fn edges_with_area([ds, dt]: [DVec2; 2]) -> (DVec2, DVec2) {
     let has_area = ds.perp_dot(dt).abs() > MIN_UV_SINE * ds.length() * dt.length();
     if has_area { (ds, dt) } else { (DVec2::ZERO, DVec2::ZERO) }
@@ -147,7 +148,7 @@ mod tests {
         let sets = UvSets::of_triangle(TrianglePoint { sets: &sets, corners, weights });
         let along = |x: f64, y: f64| DVec2::new(x, y);
         assert_eq!(sets.get(0), UvPoint { uv: along(0.5, 1.5), ds: along(1.0, 0.0), dt: along(0.0, 2.0) });
-        // Without an area it has coordinates, but no derivatives.
+        // Without an area there are coordinates, but no derivatives.
         assert_eq!(sets.get(1), UvPoint { uv: along(1.0, 1.0), ds: DVec2::ZERO, dt: DVec2::ZERO });
         assert_eq!((sets.len(), sets.get(2)), (2, UvPoint::default()));
     }

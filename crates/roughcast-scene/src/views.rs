@@ -1,5 +1,5 @@
 //! Standard views of a shape: the camera position, the size of texels in the picture, and a light whose highlight is
-//! in it.
+//! visible.
 
 use std::f64::consts::FRAC_PI_4;
 use std::sync::Arc;
@@ -12,30 +12,31 @@ use crate::{Camera, Footprint, Hit, Light, Plane, Ray, Scene, Shape};
 roughcast::named_enum! {
     /// A distance, defined by how many texels a pixel spans.
     pub enum View: "view" {
-        /// Texels are magnified: a quarter of one in a pixel.
+        /// Texels are magnified: a quarter of a texel per pixel.
         Near = "near",
         /// Three texels per pixel.
         Mid = "mid",
         /// Twenty-four texels per pixel.
         Far = "far",
-        /// Six texels per pixel across, and many along: a plane up to the horizon, round shapes with the light behind them.
+        /// Six texels per pixel across, and many along: a plane up to the horizon, or round shapes with the light
+        /// behind them.
         Grazing = "grazing",
     }
 }
 
 /// Vertical angle of view.
 const FOV: f64 = 0.61;
-/// Rays along each side for measuring a view.
+/// Rays along each side of the grid that measures a view.
 const GRID: u32 = 24;
-/// The position of the highlight in the picture, right and down, as fractions of its size.
+/// The position of the highlight in the picture, as fractions of its width from the left and its height from the top.
 const HIGHLIGHT: (f64, f64) = (0.46, 0.44);
-/// Shapes other than planes mirror the light where the eye meets them at about this cosine, so that it lights most of what
-/// is visible; in grazing views it is behind them.
+/// On shapes other than planes, the highlight lies where the cosine between the normal and the direction to the eye is
+/// about this, so that the light reaches most of the visible surface. In grazing views the light is behind the shape.
 const FRONTAL_COSINE: f64 = 0.86;
 const GRAZING_COSINE: f64 = 0.45;
 
 impl View {
-    /// Texels that a pixel spans in the middle of the picture.
+    /// Number of texels that a pixel spans in the middle of the picture.
     pub const fn texels_per_pixel(self) -> f64 {
         match self {
             Self::Near => 0.25,
@@ -45,7 +46,8 @@ impl View {
         }
     }
 
-    /// The camera of this view. The size of texels makes a view near or far, so only grazing views differ.
+    /// The camera of this view. Near and far views differ in the size of texels, so only grazing views have another
+    /// camera.
     pub fn camera(self, shape: &Shape) -> Camera {
         let on_plane =
             |plane: &Plane, eye: DVec3, target: DVec3| (eye * plane.half_size(), target * plane.half_size());
@@ -70,7 +72,7 @@ impl View {
     /// The scene of this view: a shape with a map of `texels` a side, in a picture of `size`, with one light whose
     /// highlight is in the picture.
     ///
-    /// A shape that cannot be textured, or that is not in the picture, gets one repeat and a light from above.
+    /// A shape that cannot be textured or is not visible gets one repeat and a light from above.
     pub fn scene(
         self,
         shape: Arc<Shape>,
@@ -80,15 +82,15 @@ impl View {
     ) -> Scene {
         let camera = self.camera(&shape);
         let repeats = repeats(&shape, &camera, texels, size, self.texels_per_pixel());
-        // On closed shapes anything but a whole number would show as a seam.
+        // On closed shapes a fractional number would produce a visible seam.
         let repeats = if matches!(*shape, Shape::Plane(_)) { repeats } else { repeats.round().max(1.0) };
         let lights = vec![default_light(&shape, &camera, size, self)];
         Scene { shape, camera, lights, material, repeats, background: [0.0; 3] }
     }
 }
 
-/// How often a map of `texels` a side must repeat for a pixel to span `texels_per_pixel` of them, in the direction in which it spans
-/// fewer, in the middle (the median) of what `camera` shows.
+/// How often a map of `texels` a side must repeat for a pixel to span `texels_per_pixel` texels in its narrower
+/// direction, in the middle (the median) of what `camera` shows.
 pub fn repeats(
     shape: &Shape,
     camera: &Camera,
@@ -106,11 +108,11 @@ pub fn repeats(
     median(spans.collect()).map_or(1.0, |span| texels_per_pixel / span)
 }
 
-/// The shorter half axis of a footprint, in texels, twice.
+/// Twice the shorter half axis of a footprint, in texels.
 fn narrow_side(footprint: Footprint, (width, height): (usize, usize)) -> f64 {
     let scale = glam::DVec2::new(width as f64, height as f64);
     let (dx, dy) = (footprint.dx * scale, footprint.dy * scale);
-    // The singular values of [dx dy]: their squares' sum and their product.
+    // The singular values of [dx dy], from the sum of their squares and their product.
     let (sum, product) = (dx.length_squared() + dy.length_squared(), dx.perp_dot(dy).abs());
     let larger = (0.5 * (sum + (sum * sum - 4.0 * product * product).max(0.0).sqrt())).sqrt();
     product / larger
@@ -131,7 +133,7 @@ pub fn default_light(shape: &Shape, camera: &Camera, size: (u32, u32), view: Vie
     };
     let cost = |x: f64, y: f64, ray: &Ray, hit: &Hit<'_>| {
         let aside = (x - wanted.0).hypot(y - wanted.1) / f64::from(size.1);
-        // Light from below would look odd.
+        // Light from below would look unnatural.
         let below = if ray.direction.reflect(hit.frame.normal()).y < 0.0 { 10.0 } else { 0.0 };
         let off = cosine.map_or(0.0, |cosine| (hit.frame.normal().dot(-ray.direction) - cosine).abs());
         10.0 * off + aside + below
@@ -186,7 +188,7 @@ mod tests {
                     (towards - ray.direction).normalize().dot(hit.frame.normal())
                 };
                 let best = hits.iter().map(aligned).fold(0.0, f64::max);
-                // Within three degrees, where lobes of exponents up to 400 are bright.
+                // Within three degrees, where lobes with exponents up to 400 are bright.
                 assert!(best > 0.9986, "{shape:?}, {view}: the highlight is off by {best}");
             }
         }
@@ -213,7 +215,8 @@ mod tests {
                 assert!((scene.repeats - wanted).abs() <= rounding || scene.repeats == 1.0, "{view}");
             }
         }
-        // An independent look at the simplest: a plane seen at distance d from 45 degrees has pixels of d * pixel.
+        // An independent check of the simplest case: a plane seen at distance d from 45 degrees has pixels of d *
+        // pixel.
         let scene = View::Far.scene(shapes()[0].clone(), TEXELS, SIZE, Material::default());
         let pixel =
             2.0 * (0.5 * FOV).tan() / f64::from(SIZE.1) * scene.camera.eye.distance(scene.camera.target);

@@ -1,4 +1,5 @@
-//! The interface between sources of bumps and renderers: what baked textures answer is what the slopes themselves do.
+//! The interface between sources of bumps and renderers: baked textures return the same distribution as the slopes
+//! themselves.
 
 use std::sync::Arc;
 
@@ -24,7 +25,7 @@ fn slopes() -> SlopeDetail {
     SlopeDetail::new(SlopeMap::of(&bumps.heights, &bumps.source_options()).expect("a map"), Wrap::Repeat)
 }
 
-/// The bumps in a layout, as floats where it has them.
+/// The bumps baked in a layout, as floats if it supports them.
 fn baked(layout: Layout) -> Vec<TextureArray> {
     let bumps = bumps();
     let bits = *layout.sample_types().last().expect("a layout has sample types");
@@ -34,10 +35,10 @@ fn baked(layout: Layout) -> Vec<TextureArray> {
     bake.run().expect("a map").arrays
 }
 
-/// Points of a plane seen from above, with so many texels a pixel.
+/// Points of a plane seen from above, with this many texels per pixel.
 fn points(texels: f64) -> (Shape, Vec<(Ray, Ray, Ray)>) {
     let plane = Shape::Plane(Plane::default());
-    // Two units of the plane hold the map.
+    // The map spans two units of the plane.
     let pixel = texels * 2.0 / SIDE as f64;
     let down = |x: f64, z: f64| Ray { origin: DVec3::new(x, 1.0, z), direction: DVec3::NEG_Y };
     let rays = (0..40).map(|i| {
@@ -47,7 +48,8 @@ fn points(texels: f64) -> (Shape, Vec<(Ray, Ray, Ray)>) {
     (plane, rays.collect())
 }
 
-/// Mean over the points of the squared distances of mean slopes and of traces, each over the mean square of the reference.
+/// Root of the mean squared error of mean slopes and of traces over the points, each relative to the reference's mean
+/// square.
 fn errors(reference: &dyn Detail, tested: &dyn Detail, texels: f64) -> [f64; 2] {
     let (shape, rays) = points(texels);
     let options = ShadingOptions::default();
@@ -68,7 +70,8 @@ fn errors(reference: &dyn Detail, tested: &dyn Detail, texels: f64) -> [f64; 2] 
 
 #[test]
 fn lean_textures_answer_what_the_slopes_under_the_pixel_are() {
-    /// EWA's Gaussian is that of the pixel filter, on texels that average four each way; what is left is the box of those.
+    /// EWA's Gaussian is the pixel filter's, applied to texels that average four per axis; the box of that average
+    /// remains as error.
     const MEAN: f64 = 0.25;
     const VARIANCE: f64 = 0.15;
     let textures = BakedTextures::new(Wanted::Distribution, &baked(Layout::Lean)).expect("LEAN");
@@ -77,13 +80,14 @@ fn lean_textures_answer_what_the_slopes_under_the_pixel_are() {
         let [mean, variance] = errors(&slopes(), &textures.sampled(sampler), texels);
         assert!(mean < MEAN && variance < VARIANCE, "{texels} texels: {mean} and {variance}");
     }
-    // A map with half of the bumps' height is told apart.
+    // A map with half the bumps' height is detected.
     let flatter = Scaled(textures.sampled(sampler));
     let [mean, variance] = errors(&slopes(), &flatter, 6.0);
     assert!(mean > MEAN && variance > VARIANCE, "{mean} and {variance}");
 }
 
-/// Another source of bumps, with slopes half as steep: the interface is open.
+/// Another source of bumps, with slopes half as steep, which shows that the interface can be implemented outside the
+/// crate.
 struct Scaled<D>(D);
 
 const HALF: [[f32; 2]; 2] = [[0.5, 0.0], [0.0, 0.5]];
@@ -119,16 +123,17 @@ fn every_layout_that_a_sampler_reads_answers_both_questions() {
             let base = roughcast::shading::base_in_map(seen.base(), &options);
             trace += seen.whole().covariance.trace() - 2.0 * base;
         }
-        // Normals are interpolated as normals, and the slopes between them differ from interpolated slopes.
+        // Normals are interpolated as normals, so slopes between texels differ from interpolated slopes.
         assert!(near < 0.02, "{layout}: {near}");
-        // Layouts of variances and of standard deviations leave out what is between texels; trilinear filters cover more than the pixel.
+        // Layouts of variances and of standard deviations omit the variance between texels; trilinear filters cover
+        // more than the pixel.
         let found = trace / rays.len() as f32 / bump_variance();
         assert!((0.25..2.0).contains(&found), "{layout}: {found} of the variance");
     }
     assert!(layouts >= 7, "{layouts}");
 }
 
-/// Mean trace of the covariance under four texels, from the slopes themselves.
+/// Mean trace of the covariance under four texels, computed from the slopes themselves.
 fn bump_variance() -> f32 {
     let (shape, rays) = points(4.0);
     let reference = slopes();
@@ -182,13 +187,13 @@ fn resolved_detail_rendered_once_a_pixel_is_ground_truth_with_one_sample() {
     let truth = Truth { shading: Shading::Lean, detail: &detail, options, samples: 1024 };
     let many = truth.render(&scene, size, &unwatched).expect("a picture");
     let mean = |picture: &Picture| picture.specular.iter().map(|s| f64::from(s[0])).sum::<f64>();
-    /// One sample of each of 1536 pixels against a thousand: noise of a percent.
+    /// One sample for each of 1536 pixels compared with a thousand: noise of about a percent.
     const NOISE: f64 = 0.08;
     assert!((mean(&once) / mean(&many) - 1.0).abs() < NOISE, "{} and {}", mean(&once), mean(&many));
     assert!(once != many);
 }
 
-/// A quad whose second set of texture coordinates runs twice as fast along u and the other way along v.
+/// A quad whose second set of texture coordinates grows twice as fast along u and in the opposite direction along v.
 fn quad() -> Shape {
     let corners = [[-1.0, 0.0], [1.0, 0.0], [1.0, 1.0], [-1.0, 1.0]];
     let mesh = TriangleMesh {
@@ -218,7 +223,7 @@ fn a_placement_by_the_second_set_looks_up_and_turns_slopes_by_it() {
     for (x, y) in [(0.13, 0.4), (-0.7, 0.21), (0.55, 0.83)] {
         let (hit, right, below) = hit_of(&shape, x, y);
         let at = DetailPoint::under_pixel(&hit, 1.0, (0, 0), &right, &below);
-        // u of the second set is x + 1 and v is y, downwards in the texture: a texel is 1/64 of a unit both ways.
+        // In the second set u is x + 1 and v is y, downwards in the texture: a texel is 1/64 of a unit along both axes.
         let stored = texture.at(DVec2::new(x + 1.0, y), Wrap::Repeat, Reconstruction::Linear);
         let found = placed.slope(&at);
         assert!(
@@ -226,7 +231,7 @@ fn a_placement_by_the_second_set_looks_up_and_turns_slopes_by_it() {
             "{found:?} {stored:?}"
         );
         assert_ne!(found, plain.slope(&at));
-        // The distribution is mirrored as the slope is: the mixed term changes its sign.
+        // The distribution is mirrored like the slope: the mixed term changes its sign.
         let (seen, of_texture) = (
             placed.distribution(&at, &ShadingOptions::default()).whole(),
             slopes()

@@ -1,18 +1,18 @@
-//! FLIP against NVIDIA's own, on real pictures.
+//! FLIP compared with NVIDIA's implementation, on real pictures.
 
 use roughcast::Image;
 use roughcast_scene::Picture;
 use roughcast_scene::metrics::{DEFAULT_PIXELS_PER_DEGREE, ldr_flip};
 
-/// Largest difference of a pixel's error. Both compute in f32; the largest that was seen is 7e-5, on dark pictures, where
-/// roots make much of a rounding.
+/// Largest difference of a pixel's error. Both compute in f32; the largest measured difference is 7e-5, on dark
+/// pictures, where roots amplify rounding.
 const PIXEL_TOLERANCE: f32 = 2e-4;
-/// Difference of the mean error; 1e-5 was seen.
+/// Difference of the mean error; 1e-5 was measured.
 const MEAN_TOLERANCE: f64 = 3e-5;
-/// Side of what is compared of each picture.
+/// Side of the part of each picture that is compared.
 const SIDE: usize = 160;
 
-/// A corner of a picture of the test data, as sRGB of 8 bits.
+/// A corner of a picture of the test data, as 8-bit sRGB.
 fn pixels(name: &str, at: (usize, usize)) -> Vec<[u8; 3]> {
     let path = roughcast_testdata::find(name);
     let decoded = roughcast_io::read_image_file(&path, &roughcast_io::ReadOptions::default());
@@ -40,7 +40,7 @@ fn nvidia(reference: &[[u8; 3]], test: &[[u8; 3]]) -> Vec<f32> {
     nv_flip::flip(image(reference), image(test), DEFAULT_PIXELS_PER_DEGREE).to_vec()
 }
 
-/// The largest difference of a pixel and that of the means.
+/// The largest difference of a pixel's error, and the difference of the means.
 fn differences(ours: &[f32], theirs: &[f32]) -> (f32, f64) {
     assert_eq!(ours.len(), theirs.len());
     let mean = |of: &[f32]| of.iter().map(|e| f64::from(*e)).sum::<f64>() / of.len() as f64;
@@ -82,7 +82,7 @@ fn real_pictures_match_nvidias_errors() {
     for pair in pictures().windows(2) {
         means.push(compare(&pixels(pair[0], (10, 10)), &pixels(pair[1], (10, 10))));
     }
-    // The pairs are neither all alike nor all as different as can be.
+    // The pairs are neither all identical nor all as different as possible.
     assert!(means.contains(&0.0) && means.iter().any(|m| *m > 0.3), "{means:?}");
 }
 
@@ -93,7 +93,7 @@ fn the_comparison_detects_a_wrong_error() {
     let mut wrong = theirs.clone();
     wrong[77] += 2.0 * PIXEL_TOLERANCE;
     assert!(differences(&wrong, &theirs).0 > PIXEL_TOLERANCE);
-    // Another distance of the viewer, another order of the channels.
+    // Another viewing distance, and another order of the channels.
     let ours = |pixels_per_degree| {
         ldr_flip(&picture(&test), &picture(&reference), pixels_per_degree).unwrap().errors
     };

@@ -1,4 +1,4 @@
-//! Footprint correction on real maps: what it gains where textures are magnified, and that it changes nothing elsewhere.
+//! Footprint correction on real maps: it reduces errors where textures are magnified and changes nothing elsewhere.
 
 mod common;
 
@@ -16,14 +16,14 @@ use roughcast_scene::{
 
 const SIZE: (u32, u32) = (96, 72);
 
-/// Maps with the direction of their green.
+/// Maps with the direction of their green channel.
 const MAPS: [(&str, Green); 2] =
     [("crops/rock020_normal_256.jpg", Green::Down), ("materials/water_bevy/water_normals.png", Green::Up)];
 
 /// The largest error of LEAN and CLEAN in the near view, relative to conventional bump mapping. Measured: 0.53 and 0.27; with EWA, whose
 /// Gaussian is wider than a bilinear filter, 0.70 and 0.58. benches/materials.py measures all real materials.
 const NEAR: f64 = 0.75;
-/// By how much the correction may change errors where a pixel covers many texels.
+/// How much the correction may change errors if a pixel covers many texels.
 const UNCHANGED: f64 = 0.02;
 
 /// A map in a view, with its ground truth.
@@ -59,7 +59,7 @@ impl Seen {
         truth.render(&self.scene, SIZE, &unwatched).expect("a picture")
     }
 
-    /// Root mean square errors of a model with a filter, corrected and as published.
+    /// Root mean square errors of a model with a filter, with correction and as published.
     fn errors(&self, shading: Shading, filter: Filter, truth: &Picture) -> [f64; 2] {
         let textures = BakedTextures::of_model(shading, &self.maps(shading)).expect("the model's maps");
         let sampler = Sampler::default().with_filter(filter);
@@ -82,7 +82,7 @@ fn lean_beats_conventional_bump_mapping_in_the_near_view() {
             for shading in [Shading::Lean, Shading::Clean] {
                 let [corrected, published] = seen.errors(shading, filter, &off_centre);
                 assert!(corrected < NEAR * plain, "{name}, {filter}, {shading}: {corrected} {plain}");
-                // As published it is worse than what it improves on.
+                // As published it is worse than conventional bump mapping, which it should improve on.
                 assert!(published > plain, "{name}, {filter}, {shading}: {published} {plain}");
             }
         }

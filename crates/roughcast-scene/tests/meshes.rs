@@ -1,4 +1,4 @@
-//! Meshes: every real file, their frames, and shapes made of triangles against their formulas.
+//! Meshes: every real file, their frames, and shapes made of triangles compared with their formulas.
 
 mod common;
 
@@ -8,7 +8,7 @@ use roughcast_io::mesh::load_mesh;
 use roughcast_scene::{Hit, Mesh, MeshFault, Ray, Shape, Sphere, Torus, TriangleMesh};
 use roughcast_testdata::{available, files_in, find};
 
-/// Every model: file, triangles as its nodes show them, whether it has texture coordinates, whether it has tangents.
+/// Every model: file, triangles after applying its nodes, whether it has texture coordinates, whether it has tangents.
 const FILES: &[(&str, usize, bool, bool)] = &[
     ("AnisotropyRotationTest.glb", 13876, true, true),
     ("BoomBox/boombox.glb", 6036, true, false),
@@ -22,8 +22,8 @@ const FILES: &[(&str, usize, bool, bool)] = &[
     ("portal.glb", 2890, true, true),
 ];
 
-/// Files whose tangents are of the other handedness than their texture coordinates: bitangents go along growing v. They are
-/// taken as they are, since glTF lets the file decide; and they show that the comparisons below can fail.
+/// Files whose tangents have the opposite handedness to their texture coordinates: bitangents point along growing v.
+/// They are used unchanged, since glTF lets the file decide; they also show that the comparisons below can fail.
 const OTHER_HANDED: &[&str] = &["TwoSidedPlane.glb", "portal.glb"];
 
 /// Rounding of products of unit vectors.
@@ -33,7 +33,7 @@ fn model(name: &str) -> Mesh {
     load_mesh(find(&format!("models/{name}"))).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The models that are there.
+/// The models whose files exist.
 fn files() -> Vec<(&'static str, usize, bool, bool)> {
     FILES.iter().copied().filter(|row| available(&format!("models/{}", row.0)).is_some()).collect()
 }
@@ -90,7 +90,8 @@ fn check_vertices(name: &str, mesh: &TriangleMesh) {
     }
 }
 
-/// The part of the hits whose frame has its axes on the sides of growing u and falling v; from behind, on the opposite.
+/// The fraction of the hits whose tangent and bitangent point towards growing u and falling v; from behind, away from
+/// them.
 fn agreement_with_uv(hits: &[(Ray, Hit<'_>)]) -> f64 {
     let mapped: Vec<_> = hits.iter().filter(|(_, h)| h.dpdu(0) != DVec3::ZERO).collect();
     let agreeing = mapped.iter().filter(|(_, h)| {
@@ -102,7 +103,7 @@ fn agreement_with_uv(hits: &[(Ray, Hit<'_>)]) -> f64 {
 #[test]
 fn frames_follow_the_texture_coordinates() {
     for &(name, ..) in files().iter().filter(|f| f.2) {
-        // MikkTSpace averages over vertices, so at folds of a map a few points may lean the other way.
+        // MikkTSpace averages over vertices, so at folds of a map a few points may have the opposite orientation.
         let agreement = agreement_with_uv(&hits(&shape(model(name)), 4_000));
         println!("{name}: {agreement}");
         assert!(
@@ -130,7 +131,7 @@ fn tangents_of_files_agree_with_mikktspace() {
                     && same(other.frame.bitangent(), hit.frame.bitangent()),
             );
         }
-        // Exporters may round, weld or split vertices otherwise.
+        // Exporters may round, weld or split vertices differently.
         let share = f64::from(agreeing as u32) / f64::from(all);
         println!("{name}: {share}");
         assert!(if OTHER_HANDED.contains(&name) { share < 0.2 } else { share > 0.95 }, "{name}: {share}");
@@ -157,7 +158,8 @@ fn a_tessellated_shape_matches_its_formula() {
                 // 4e-4 on the torus, and more along an inclined ray.
                 assert!((other.distance - hit.distance).abs() < 2e-3, "{what}");
                 assert!((other.uv(0) - hit.uv(0)).length() < 2e-3, "{what}: {} {}", other.uv(0), hit.uv(0));
-                // Differences over a triangle: the second derivatives, at most 2 pi^2, times its size of 1/96.
+                // Differences over a triangle: the second derivatives, at most 2 pi^2, times the triangle's size of
+                // 1/96.
                 assert!(
                     (other.dpdu(0) - hit.dpdu(0)).length() < 0.25,
                     "{what}: {} {}",
@@ -181,7 +183,7 @@ fn a_tessellated_shape_matches_its_formula() {
     }
 }
 
-/// A unit square in the plane z = 0 that faces +z, with the map as seen from there, or mirrored.
+/// A unit square in the plane z = 0 that faces +z, with the map either as seen from there or mirrored.
 fn square(uvs: [[f32; 2]; 4]) -> TriangleMesh {
     TriangleMesh {
         positions: vec![[0.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]],
@@ -224,9 +226,9 @@ fn the_normals_of_the_file_determine_the_outer_side() {
     let mut inside_out = square(UPRIGHT);
     inside_out.normals = vec![[0.0, 0.0, -1.0]; 4];
     let mesh = Mesh::new(vec![inside_out]).unwrap();
-    // Turned over, so that a rasteriser's front faces agree with the normals.
+    // Reversed, so that a rasteriser's front faces agree with the normals.
     assert_eq!(mesh.triangles().indices, [0, 1, 2, 1, 3, 2]);
-    // Seen from the other side the map is mirrored.
+    // Seen from the other side, the map is mirrored.
     assert!(mesh.triangles().tangents.iter().all(|t| t[3] == -1.0));
 }
 
@@ -240,7 +242,7 @@ fn repeated_triangles_are_dropped_and_backs_are_kept() {
 
 #[test]
 fn triangles_in_one_place_take_no_more_time() {
-    // Different triangles with equal boxes, which a hierarchy splits badly: a faulty one would take minutes.
+    // Different triangles with equal boxes, which a hierarchy splits badly: a faulty hierarchy would take minutes.
     let count = 50_000_u32;
     let aside = |i: u32| i as f32 / count as f32;
     let mut positions = vec![[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]];
@@ -248,7 +250,7 @@ fn triangles_in_one_place_take_no_more_time() {
     let tangents = vec![[1.0, 0.0, 0.0, 1.0]; positions.len()];
     let indices = (0..count).flat_map(|i| [0, 1, i + 2]).collect();
     let mesh = Mesh::new(vec![TriangleMesh { positions, tangents, indices, ..Default::default() }]).unwrap();
-    // The one whose corner is at 0.5 is a line.
+    // The triangle whose corner is at 0.5 degenerates to a line.
     assert_eq!(mesh.triangle_count(), 49_999);
 }
 

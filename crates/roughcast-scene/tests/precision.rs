@@ -1,4 +1,4 @@
-//! The exponent of the LEAN paper's ocean, 13777: 16-bit maps shade as float maps do, and 8-bit maps do not.
+//! The exponent of the LEAN paper's ocean, 13777: 16-bit maps shade like float maps, and 8-bit maps do not.
 
 use std::sync::Arc;
 
@@ -11,12 +11,12 @@ use roughcast_scene::{BakedTextures, Picture, Plane, Sampler, Shape, View};
 
 const SPECULAR_POWER: f32 = 13_777.0;
 const SIZE: (u32, u32) = (160, 120);
-/// Mean FLIP below which two pictures count as the same: a hundredth of the way from one colour to its opposite.
+/// Mean FLIP below which two pictures count as equal: a hundredth of the distance from one colour to its opposite.
 const SAME: f64 = 0.01;
-/// Eight bits hold exponents up to about a hundred for slopes of one: the comparator must see that, by so many times what
-/// it lets pass.
+/// Eight bits support exponents up to about a hundred for slopes of one: the comparator must detect that, by this
+/// factor above its tolerance.
 const DIFFERENT: f64 = 2.0;
-/// Maps of the test data, with slopes beyond one.
+/// Maps of the test data with slopes above one.
 const MAPS: [&str; 2] = ["materials/water_bevy/water_normals.png", "materials/rock020/Rock020_1K_Normal.jpg"];
 
 fn map(name: &str) -> Image {

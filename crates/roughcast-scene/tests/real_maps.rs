@@ -15,8 +15,8 @@ use roughcast_scene::{
 
 const SIZE: (u32, u32) = (64, 48);
 
-/// Maps with bumps that are many to a pixel, and by how much LEAN's error is to be smaller than that of Blinn-Phong with
-/// the same filter. 17, 11 and 1.5 were measured; scratches are few and long, with little under a pixel.
+/// Maps with many bumps per pixel, and the factor by which LEAN's error must be smaller than that of Blinn-Phong with
+/// the same filter. 17, 11 and 1.5 were measured; scratches are few and long, with few under each pixel.
 const MAPS: [(&str, f64); 3] = [
     ("materials/water_bevy/water_normals.png", 8.0),
     ("materials/rock020/Rock020_1K_Normal.jpg", 5.0),

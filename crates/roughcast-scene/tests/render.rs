@@ -1,4 +1,4 @@
-//! Laws of the renderer: methods against their ground truths.
+//! Laws of the renderer: methods compared with their ground truths.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -75,10 +75,10 @@ fn power(specular_power: f32, form: Form) -> ShadingOptions {
     ShadingOptions::default().with_specular_power(specular_power).with_form(form)
 }
 
-/// A plane from above, a highlight in its middle, with this many texels of a map of 256 a pixel.
+/// A plane seen from above, with a highlight in its middle and this many texels of a map of 256 per pixel.
 fn plane(texels_per_pixel: f64) -> Scene {
     let camera = Camera::new(DVec3::new(0.0, 4.0, 3.0), DVec3::ZERO, DVec3::Y, 0.35).unwrap();
-    // At a distance of 5 the picture is about 1.77 high.
+    // At a distance of 5 the picture's height is about 1.77.
     let pixel = 2.0 * (0.175_f64).tan() * 5.0 / f64::from(SIZE.1);
     Scene {
         shape: Arc::new(Shape::Plane(Plane::new(2.0).unwrap())),
@@ -114,7 +114,7 @@ fn flat() -> Map {
 
 #[test]
 fn on_a_flat_map_every_method_matches_its_ground_truth() {
-    // Within a pixel a highlight of s = 32 is nearly even; what the pixel filter rounds off at its top is this much of it.
+    // Within a pixel a highlight of s = 32 is nearly constant; the pixel filter reduces its peak by this fraction.
     const WITHIN_A_PIXEL: f64 = 2e-3;
     let map = flat();
     for form in Form::ALL {
@@ -140,17 +140,17 @@ fn ground_truth_converges_faster_than_random_sampling() {
         |samples| map.truth(Shading::OffCentre, options, samples).render(&scene, SIZE, &unwatched).unwrap();
     let best = render(4096);
     let [few, some, many] = [4, 64, 1024].map(|samples| rmse(&render(samples), &best).unwrap());
-    // Sixteen times the samples: independent ones would have a quarter of the error. 1024 of 4096 share no sample with
-    // the best, whose own error adds to theirs.
+    // Sixteen times the samples: if they were independent, the error would be a quarter. The 1024 samples share none
+    // with the best 4096, whose own error is added to theirs.
     assert!(few > 4.0 * some && some > 4.0 * many, "{few} {some} {many}");
 }
 
 #[test]
 fn ground_truth_is_the_mean_over_the_pixel_filter() {
-    // A plane whose background is seen through no pixel, and one whose edge runs through some: coverage is the integral
-    // of the filter over the half plane, which is the normal distribution.
+    // A plane whose background is visible through no pixel, and one whose edge crosses some pixels: coverage is the
+    // integral of the filter over the half plane, which is the cumulative normal distribution.
     let mut scene = plane(1.0);
-    // Looking straight down, the edge x = 0.5 of a square runs through the picture along a column.
+    // Looking straight down, the edge x = 0.5 of a square crosses the picture along a column.
     scene.shape = Arc::new(Shape::Plane(Plane::new(0.5).unwrap()));
     scene.camera = Camera::new(DVec3::new(0.0, 10.0, 0.0), DVec3::ZERO, DVec3::NEG_Z, 0.2).unwrap();
     let map = flat();
@@ -166,7 +166,7 @@ fn ground_truth_is_the_mean_over_the_pixel_filter() {
         let deviations = (0.5 - centre) / pixel / 0.5;
         let covered = normal_distribution(deviations);
         let got = f64::from(picture.coverage[row + x as usize]);
-        // A row of 32 strata is cut by the edge somewhere within one of them.
+        // The edge cuts a row of 32 strata at some position within one of them.
         assert!((got - covered).abs() < 1.0 / 32.0, "{x}: {got} {covered}");
         partial += usize::from(got > 0.01 && got < 0.99);
     }
@@ -204,9 +204,10 @@ fn far_away_lean_has_smaller_errors_than_conventional_bump_mapping() {
     let ordinary = map.method(&scene, Shading::BlinnPhong, Filter::Trilinear, options);
     let (lean_error, ordinary_error) =
         (rmse(&lean, &off_centre).unwrap(), rmse(&ordinary, &blinn_phong).unwrap());
-    // 13.8 times was measured.
+    // A factor of 13.8 was measured.
     assert!(ordinary_error > 8.0 * lean_error, "{ordinary_error} {lean_error}");
-    // In the normalised form LEAN spreads the highlight's energy and loses none. The picture holds nearly all of it.
+    // In the normalised form LEAN spreads the highlight's energy without losing any. The picture contains nearly all of
+    // it.
     let energy = energy_error(&lean, &off_centre).unwrap();
     assert!(energy.abs() < 0.03, "{energy}");
 }
@@ -221,8 +222,8 @@ fn a_raised_checker_in_the_distance_needs_lean() {
     let unfiltered = error(Shading::BlinnPhong, Filter::Nearest);
     let [trilinear, anisotropic, ewa] =
         [Filter::Trilinear, Filter::Anisotropic, Filter::Ewa].map(|filter| error(Shading::Lean, filter));
-    // 0.12, 0.14 and 0.12 were measured; the rest with the elliptical average, which has exactly the filter of the
-    // ground truth, is LEAN's own error and the noise of the ground truth.
+    // 0.12, 0.14 and 0.12 were measured; with the elliptical average, which has exactly the filter of the ground truth,
+    // the remaining error is LEAN's own and the noise of the ground truth.
     assert!(trilinear.max(anisotropic) < unfiltered / 3.0, "{unfiltered} {trilinear} {anisotropic}");
     assert!(ewa < anisotropic, "{ewa} {anisotropic}");
 }
@@ -252,7 +253,7 @@ fn curved_shapes_give_finite_radiance() {
             shape: Arc::new(shape),
             lights: vec![
                 Light::Point { position: DVec3::new(1.0, 2.0, 2.0), intensity: [3.0; 3] },
-                // From behind, and from straight along a silhouette.
+                // Seen from behind, and exactly along a silhouette.
                 Light::Directional { towards: DVec3::NEG_Z, irradiance: [1.0; 3] },
                 Light::Directional { towards: DVec3::X, irradiance: [1.0; 3] },
             ],
@@ -271,7 +272,7 @@ fn curved_shapes_give_finite_radiance() {
                 );
                 let behind = picture.coverage.iter().position(|c| *c == 0.0);
                 assert!(behind.is_none_or(|i| picture.radiance[i] == [0.5, 0.25, 0.0]));
-                // Specular light is a part of all light.
+                // Specular light is a part of the total light.
                 let parts = picture.specular.as_flattened().iter().zip(picture.radiance.as_flattened());
                 assert!(parts.into_iter().all(|(s, r)| s <= r));
             }
@@ -299,7 +300,7 @@ fn packed_roughness_shades_as_roughness_alone() {
     };
     let (alone, packed) = (picture(RoughnessTexture::Alone), picture(RoughnessTexture::Packed));
     assert_eq!(alone, packed);
-    // The roughness is not the red channel's occlusion of one, with which there would be hardly a highlight.
+    // The roughness is not the red channel's occlusion of one, which would leave hardly any highlight.
     let brightest = packed.specular.iter().map(|s| s[0]).fold(0.0, f32::max);
     assert!(brightest > 0.02, "{brightest}");
 }

@@ -1,4 +1,4 @@
-//! Laws of the shapes that have a formula.
+//! Laws of the shapes defined by a formula.
 
 mod common;
 
@@ -33,7 +33,7 @@ fn residual(shape: &Shape, p: DVec3) -> f64 {
     }
 }
 
-/// The point of a parametrisation, written down independently of the code under test.
+/// The point of a parametrisation, written independently of the code under test.
 fn point(shape: &Shape, uv: DVec2) -> DVec3 {
     let (u, v) = ((uv.x - 0.5) * std::f64::consts::TAU, uv.y * std::f64::consts::PI);
     match shape {
@@ -74,7 +74,8 @@ fn frames_are_orthonormal_and_face_the_viewer() {
         for (ray, hit) in hits(&shape, 5_000) {
             assert!(unorthonormality(&hit) < ORTHONORMAL, "{name}");
             assert!(hit.geometric_normal.dot(ray.direction) <= 0.0, "{name}");
-            // Right, up, out: the tangent along growing u, the bitangent along falling v. From behind all are reversed.
+            // Right, up, out: the tangent points along growing u, the bitangent along falling v. From behind, all are
+            // reversed.
             let side = hit.dpdv(0).cross(hit.dpdu(0)).dot(hit.frame.normal()).signum();
             assert!(hit.dpdu(0).dot(hit.frame.tangent()) * side > 0.0, "{name}");
             assert!(hit.dpdv(0).dot(hit.frame.bitangent()) * side < 0.0, "{name}");
@@ -138,14 +139,14 @@ fn the_nearest_hit_is_the_first_where_the_ray_enters() {
             }
         }
         assert!(met > 100, "{minor}: {met}");
-        // Rays that pass within 1e-10 of the surface, where the march cannot tell: next to none.
+        // Rays that pass within 1e-10 of the surface, where the march cannot decide, are very rare.
         assert!(grazed <= 1, "{minor}: {grazed}");
     }
 }
 
 #[test]
 fn grazing_rays_are_accurate() {
-    // Rays across the top of the torus, at heights just below and just above it.
+    // Rays across the top of the torus, just below and just above it.
     let torus = Shape::Torus(Torus::new(0.4).unwrap());
     for exponent in 1..=14 {
         let depth = 10f64.powi(-exponent);
@@ -169,7 +170,7 @@ fn distant_eyes_are_accurate() {
         let origin = DVec3::new(1.0, 0.7, 0.9) * 1e6;
         let target = point(&shape, DVec2::new(0.55, 0.4));
         let hit = shape.hit(&Ray { origin, direction: (target - origin).normalize() }).unwrap();
-        // Numbers of 1e6 are known to 1e-10.
+        // Values of 1e6 have an absolute precision of 1e-10.
         assert!(residual(&shape, hit.position) < 1e-9, "{name}");
     }
 }
@@ -201,7 +202,7 @@ fn from_inside_and_from_behind() {
 
 #[test]
 fn maps_are_upright_where_the_camera_stands() {
-    // Seen from +z: the picture's right is growing u, its top falling v.
+    // Seen from +z: u grows to the picture's right, v falls towards its top.
     for (name, shape) in shapes().into_iter().skip(1).take(2) {
         let outer = shape.bounds().radius;
         let look = |x: f64, y: f64| {
@@ -289,11 +290,11 @@ fn footprints_agree_with_neighbouring_hits() {
                     .map(|(measured, footprint)| (measured - footprint).length() / measured.length().max(0.1))
             };
             let Some(right) = error(&hit) else { continue };
-            // First order in a step of 1e-5 times the distance of 10, over a radius of curvature of 0.4 and the squared
-            // cosine: 6e-3.
+            // First order: a step of 1e-5 times the distance of 10, divided by a radius of curvature of 0.4 and the
+            // squared cosine: 6e-3.
             assert!(right < 2e-2, "{name}: {right} at {}", hit.uv(0));
             compared += 1;
-            // The comparison can fail: with u and v exchanged it does.
+            // The comparison can fail: it does with u and v exchanged.
             let exchanged = Hit { dpds: hit.dpdt, dpdt: hit.dpds, ..hit };
             noticed += usize::from(error(&exchanged).is_some_and(|wrong| wrong > 2e-2));
         }
@@ -313,7 +314,7 @@ fn footprints_end_at_the_horizon() {
     for y in [-1e-3, -5e-4, -1e-6, -1e-9, 0.0, 1e-3, 0.5] {
         let footprint = hit.footprint(0, &ray, &towards(y));
         assert!(footprint.dx.length() < 1e-9, "{footprint:?}");
-        // Upwards in the picture is farther away: towards -z, falling v.
+        // Upwards in the picture is farther away: towards -z, with falling v.
         assert!(footprint.dy.is_finite() && -footprint.dy.y >= last * 0.5, "{y}: {footprint:?}");
         last = -footprint.dy.y;
     }
@@ -328,7 +329,7 @@ fn footprints_without_texture_coordinates_are_zero() {
     let hit = plane.hit(&ray).unwrap();
     let none = Hit { dpds: DVec3::ZERO, dpdt: DVec3::ZERO, ..hit };
     assert_eq!(none.footprint(0, &aside, &aside).dx, DVec2::ZERO);
-    // Only one of two: the other one's share is kept.
+    // Only one of the two derivatives is zero: the other one's contribution is kept.
     let one = Hit { dpdt: DVec3::ZERO, ..hit };
     assert!((one.footprint(0, &aside, &ray).dx - DVec2::new(0.005, 0.0)).length() < 1e-12);
     let parallel = Hit { dpdt: hit.dpds, ..hit };
@@ -341,7 +342,7 @@ fn triangles(mesh: &TriangleMesh) -> impl Iterator<Item = [usize; 3]> {
     mesh.indices.chunks_exact(3).map(|t| [t[0] as usize, t[1] as usize, t[2] as usize])
 }
 
-/// Largest distance of the triangles' middles from the surface, and the triangles' total area.
+/// Largest distance of the triangles' midpoints from the surface, and the triangles' total area.
 fn error_and_area(shape: &Shape, mesh: &TriangleMesh) -> (f64, f64) {
     let at = |k: usize| Vec3::from(mesh.positions[k]).as_dvec3();
     triangles(mesh).fold((0.0_f64, 0.0), |(worst, area), [a, b, c]| {
@@ -358,7 +359,7 @@ fn tessellations_converge_to_the_shape() {
             let mesh = shape.triangles(detail);
             errors.push(error_and_area(&shape, &mesh).0);
         }
-        // Second order, until f32 positions show.
+        // Second-order convergence, until f32 positions limit it.
         for pair in errors.windows(2) {
             assert!(pair[1] < 0.3 * pair[0] + 1e-6, "{name}: {errors:?}");
         }
@@ -377,7 +378,7 @@ fn tessellations_converge_to_the_shape() {
 
 #[test]
 fn vertices_are_exact_and_fronts_turn_counter_clockwise() {
-    // Single floats: half a unit in the last place of numbers up to 2.5.
+    // Single floats: half a unit in the last place of values up to 2.5.
     const SINGLE: f64 = 5e-7;
     for (name, shape) in shapes() {
         let mesh = shape.triangles(24);

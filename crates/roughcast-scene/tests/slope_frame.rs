@@ -1,4 +1,4 @@
-//! Frames of slopes on sheared, stretched and mirrored surfaces, against the displaced surfaces themselves.
+//! Frames of slopes on sheared, stretched and mirrored surfaces, compared with the displaced surfaces themselves.
 
 mod common;
 
@@ -14,10 +14,10 @@ use roughcast_scene::{
     Sphere, Torus, TriangleMesh, UvPoint, UvSets, pattern,
 };
 
-/// Slopes and matrices are single floats: a few roundings of numbers up to a few units.
+/// Slopes and matrices are single floats: a few roundings of values up to a few units.
 const SINGLE: f64 = 2e-6;
 
-/// The texture of these tests, and how high one texel of its heights is.
+/// The size of these tests' texture, and the height of one texel of its heights.
 const TEXELS: (usize, usize) = (64, 32);
 const WORLD_HEIGHT: f64 = 0.04;
 
@@ -36,7 +36,7 @@ fn texel_of(uv: DVec2) -> DVec2 {
     DVec2::new(TEXELS.0 as f64 * uv.x, -(TEXELS.1 as f64) * uv.y)
 }
 
-/// A parallelogram with corners at `origin`, and from there along `along_a` and `along_b`, and with two affine sets of texture
+/// A parallelogram with a corner at `origin` and sides `along_a` and `along_b`, and with two affine sets of texture
 /// coordinates: `uv = offset + columns * (a, b)`.
 #[derive(Clone, Copy, Debug)]
 struct Quad {
@@ -47,7 +47,8 @@ struct Quad {
 }
 
 impl Quad {
-    /// The unit square in the plane z = 0, with the map upright and in the other set turned, sheared and stretched.
+    /// The unit square in the plane z = 0, with the map upright in one set and turned, sheared and stretched in the
+    /// other.
     fn square() -> Self {
         Self {
             origin: DVec3::ZERO,
@@ -70,7 +71,7 @@ impl Quad {
         }
     }
 
-    /// With u growing the other way.
+    /// The quad with u growing in the opposite direction.
     fn mirrored(self) -> Self {
         let mirror = |[offset, a, b]: [DVec2; 3]| {
             let flip = DVec2::new(-1.0, 1.0);
@@ -79,7 +80,7 @@ impl Quad {
         Self { uv_sets: self.uv_sets.map(mirror), ..self }
     }
 
-    /// As a mirror in the plane x = 0 shows it.
+    /// The quad's mirror image in the plane x = 0.
     fn reflected(self) -> Self {
         let Self { origin, along_a, along_b, .. } = self;
         Self { origin: reflect(origin), along_a: reflect(along_a), along_b: reflect(along_b), ..self }
@@ -87,7 +88,7 @@ impl Quad {
 
     fn normal(&self) -> DVec3 {
         let normal = self.along_a.cross(self.along_b).normalize();
-        // Towards +z, which a reflection keeps.
+        // Towards +z, which the reflection preserves.
         normal * normal.z.signum()
     }
 
@@ -112,7 +113,7 @@ impl Quad {
         Shape::Mesh(Arc::new(Mesh::new(vec![mesh]).expect("a mesh")))
     }
 
-    /// The mesh where it is met from its front, or from behind.
+    /// The hit on the mesh from its front or from behind.
     fn hit<'a>(&self, mesh: &'a Shape, at: DVec2, from: f64) -> Hit<'a> {
         let origin = self.point(at) + self.normal() * from;
         let ray = Ray { origin, direction: -self.normal() * from.signum() };
@@ -121,7 +122,7 @@ impl Quad {
 
     /// The normal of the surface displaced by the heights of a texture on a set, by central differences.
     fn displaced_normal(&self, set: usize, at: DVec2) -> DVec3 {
-        // Its square times third derivatives of 64^3 * 0.3^3 * 0.04 is the error.
+        // The error is its square times third derivatives of 64^3 * 0.3^3 * 0.04.
         const STEP: f64 = 1e-6;
         let displaced =
             |at: DVec2| self.point(at) + self.normal() * WORLD_HEIGHT * height(texel_of(self.uv(set, at)));
@@ -172,7 +173,7 @@ fn slopes_of_a_texture_give_the_normal_of_the_displaced_surface() {
                 let hit = quad.hit(&mesh, at, from);
                 let stored = stored_slope(texel_of(hit.uv(set)));
                 let normal = world_normal(&hit, stored.transformed(frame(set).matrix(&hit)));
-                // What is a bump from the front is a dent from behind.
+                // A bump from the front is a dent from behind.
                 assert!(
                     (normal - wanted * from).length() < SINGLE,
                     "{quad:?} {set} {from}: {normal} {wanted}"
@@ -181,13 +182,13 @@ fn slopes_of_a_texture_give_the_normal_of_the_displaced_surface() {
             }
         }
     }
-    // The comparison can fail: without the frame it does.
+    // The comparison can fail: it does without the frame.
     assert!(ignored_stretch > 0.1, "{ignored_stretch}");
 }
 
 #[test]
 fn on_curved_shapes_slopes_give_the_normal_of_the_displaced_surface() {
-    // Where the height is zero the curvature does not enter; the heights of this test are zero at the hit and linear.
+    // Curvature has no effect where the height is zero; the heights of this test are zero at the hit, and linear.
     const STEP: f64 = 1e-6;
     // Second derivatives of the shapes, at most 40, times the step.
     const CURVATURE: f64 = 1e-4;
@@ -199,7 +200,7 @@ fn on_curved_shapes_slopes_give_the_normal_of_the_displaced_surface() {
             if hit.dpdu(0).length() < 1.0 {
                 continue;
             }
-            // The surface to first order, displaced along its front's normal by heights of this slope.
+            // The surface to first order, displaced along its front normal by heights of this slope.
             let front = hit.frame.normal() * side;
             let change = |d: DVec2| {
                 let texels = texel_of(d);
@@ -217,7 +218,7 @@ fn on_curved_shapes_slopes_give_the_normal_of_the_displaced_surface() {
 
 #[test]
 fn moments_transform_like_their_slopes() {
-    /// Of second moments of slopes of up to ten.
+    /// Tolerance for second moments of slopes up to ten.
     const ROUNDING: f32 = 1e-4;
     let mut numbers = Numbers(17);
     let slopes: Vec<Slope> = (0..64)
@@ -261,7 +262,7 @@ fn square_texels_with_matching_height_keep_their_slopes() {
                 SlopeFrame::new((64, 64), repeats).with_world_height_per_texel(width / (64.0 * repeats));
             assert!(distance(lies.matrix(&hit), IDENTITY) < SINGLE, "{:?}", lies.matrix(&hit));
         }
-        // Without a height it is the identity whatever the stretch.
+        // Without a height it is the identity for any stretch.
         assert_eq!(SlopeFrame::new((64, 7), 2.5).matrix(&hit), IDENTITY);
         // Twice as high is twice as steep; half as many rows along v are half as steep along it.
         let lies = SlopeFrame::new((64, 32), 1.0).with_world_height_per_texel(2.0 * width / 64.0);
@@ -296,7 +297,7 @@ fn degenerate_parametrizations_are_flat() {
     for height in [0.0, f64::NAN, f64::INFINITY] {
         assert_eq!(distance(frame(0).with_world_height_per_texel(height).matrix(&hit), FLAT), 0.0);
     }
-    // Texture coordinates on a line are no fault: heights change along it, and the slope is the one of the surface.
+    // Texture coordinates on a line are valid: heights change along it, and the slope is that of the surface.
     let line = with(&line);
     let slope = Slope { x: 0.4, y: 9.0 }.transformed(frame(0).matrix(&line));
     let rise =
@@ -310,7 +311,7 @@ fn degenerate_parametrizations_are_flat() {
 
 #[test]
 fn every_set_has_its_own_derivatives_and_footprint() {
-    /// Rounding of positions that are single floats.
+    /// Rounding of positions in single floats.
     const ROUNDING: f64 = 1e-6;
     let quad = Quad::sheared();
     let mesh = quad.mesh();
@@ -324,7 +325,7 @@ fn every_set_has_its_own_derivatives_and_footprint() {
     let (dx, dy) = (aside(quad.along_a * 0.1), aside(quad.along_b * 0.1));
     for (set, [_, a, b]) in quad.uv_sets.into_iter().enumerate() {
         assert!((hit.uv(set) - quad.uv(set, points()[1])).length() < ROUNDING);
-        // The chain rule: moving by a side of the quad changes the coordinates by what that side spans of them.
+        // The chain rule: moving along a side of the quad changes the coordinates by what that side spans in them.
         let span = |uv: DVec2| hit.dpdu(set) * uv.x + hit.dpdv(set) * uv.y;
         assert!((span(a) - quad.along_a).length() < ROUNDING, "{set}");
         assert!((span(b) - quad.along_b).length() < ROUNDING, "{set}");
@@ -357,7 +358,7 @@ fn a_mirrored_quad_matches_the_reflected_one() {
     }
 }
 
-/// A quad with bumps under a light, or all of it as a mirror in the plane x = 0 shows it.
+/// A quad with bumps under a light, or the mirror image of the whole scene in the plane x = 0.
 fn picture(quad: Quad, mirror: fn(DVec3) -> DVec3) -> Picture {
     const SIZE: (u32, u32) = (96, 64);
     let bumps = pattern::random_bumps(64, 0.15, 5);
@@ -386,14 +387,14 @@ fn picture(quad: Quad, mirror: fn(DVec3) -> DVec3) -> Picture {
 
 #[test]
 fn the_picture_of_a_mirrored_quad_matches_the_reflected_picture() {
-    /// Of radiance around one: single floats, after a lobe that multiplies their roundings by its exponent.
+    /// Tolerance for radiance around one: single floats, after a lobe that multiplies their roundings by its exponent.
     const ROUNDING: f32 = 1e-3;
     let quad = Quad::sheared();
     let (plain, mirrored) = (picture(quad, |v| v), picture(quad.reflected(), reflect));
     let (mut compared, mut unequal) = (0, 0);
     for (row, mirrored) in plain.radiance.chunks(plain.width).zip(mirrored.radiance.chunks(plain.width)) {
         for (a, b) in row.iter().zip(mirrored.iter().rev()) {
-            // A pixel's centre may lie so close to an edge that rounding decides.
+            // A pixel's centre may be so close to an edge that rounding decides.
             let close = a.iter().zip(b).all(|(a, b)| (a - b).abs() < ROUNDING * (1.0 + a.abs()));
             compared += usize::from(a[0] > 0.0);
             unequal += usize::from(!close);
@@ -401,7 +402,7 @@ fn the_picture_of_a_mirrored_quad_matches_the_reflected_picture() {
     }
     assert!(compared > 1_000, "{compared}");
     assert!(unequal <= 1, "{unequal} of {compared}");
-    // The comparison can fail: unreflected, the pictures differ.
+    // The comparison can fail: without the reflection the pictures differ.
     let same = plain.radiance.iter().zip(&mirrored.radiance).filter(|(a, b)| a == b && a[0] > 0.0).count();
     assert!(same * 10 < compared, "{same} of {compared}");
 }

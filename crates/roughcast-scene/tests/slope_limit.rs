@@ -1,4 +1,4 @@
-//! With default options LEAN is as good as stored variance: the few steep texels of real maps must not spoil the range.
+//! With default options LEAN is as good as stored variance: the few steep texels of real maps must not waste the range.
 
 mod common;
 
@@ -33,7 +33,7 @@ impl Far {
         Self::of(path, green, &[])
     }
 
-    /// With these texels instead of some of its own.
+    /// The map with some of its texels replaced by these.
     fn of(path: &str, green: Green, texels: &[[u8; 3]]) -> Self {
         let decoded = picture(path);
         let (range, mut image) = (guess_range(&decoded.image), decoded.image);
@@ -116,7 +116,7 @@ fn lean_is_as_good_as_variance_on_every_real_map() {
 /// The counterpart of the test above: a map that needs the limit.
 #[test]
 fn five_steep_texels_spoil_lean_only_without_the_limit() {
-    // z is the smallest that 8 bits can represent above zero.
+    // z is the smallest value above zero that 8 bits can represent.
     let steep = [[255, 128, 128], [128, 0, 128], [20, 60, 128], [200, 200, 128], [60, 255, 128]];
     let far = Far::of("crops/rock020_normal_256.jpg", Green::Down, &steep);
     let (variance, (lean, report)) = (far.error(1, MaxSlope::Auto).0, far.error(0, MaxSlope::Auto));

@@ -1,14 +1,15 @@
-//! Finds the fixtures of the tests: the small set in the repository, and the extended corpus beside it.
+//! Finds the test fixtures: the small set in the repository, and the extended corpus next to it.
 //!
-//! - The **small set** is `testdata/`: real files, small and licensed, on which every kind of test runs. It always exists.
-//! - The **extended corpus** is `../shared/data`, beside the repository: hundreds of larger files. If it exists, the same
-//!   tests run over it too; with `CI=true` in the environment it must exist.
+//! - The **small set** is `testdata/`: real files, small and licensed. Every kind of test runs on it. It always
+//!   exists.
+//! - The **extended corpus** is `../shared/data`, next to the repository: hundreds of larger files. If it exists, the
+//!   same tests run on it too; with `CI=true` in the environment it must exist.
 //!
-//! Both have the same folders and a `MANIFEST.tsv` with the same columns. A file is identified by its path below the corpus, such as
-//! `materials/cheese/texture_cheese_normal.png`; if both have it, the two are equal.
+//! Both have the same folders and a `MANIFEST.tsv` with the same columns. A file is identified by its path within the
+//! corpus, such as `materials/cheese/texture_cheese_normal.png`; if both have it, the two files are equal.
 //!
-//! A test that asks for fixtures while the extended corpus is missing runs on the small set only. Its name is then appended to
-//! the file that the environment variable [`SMALL_SET_LOG`] names, so that `./check` can count such tests.
+//! A test that asks for fixtures while the extended corpus is missing runs on the small set only. Its name is then
+//! appended to the file that the environment variable [`SMALL_SET_LOG`] names, so that `./check` can count such tests.
 
 #![forbid(unsafe_code)]
 
@@ -16,10 +17,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// The environment variable with the path of the file that lists the tests which ran on the small set only.
+/// The environment variable with the path of the file that lists the tests that ran on the small set only.
 pub const SMALL_SET_LOG: &str = "ROUGHCAST_SMALL_SET_LOG";
 
-/// A row of a manifest, by the names of its columns.
+/// A row of a manifest: values by column name.
 pub type Row = BTreeMap<String, String>;
 
 fn small_set() -> PathBuf {
@@ -43,7 +44,7 @@ fn extended() -> Option<PathBuf> {
     None
 }
 
-/// Notes that the running test has the small set only.
+/// Records that the running test has only the small set.
 fn log_small_set() {
     let Some(log) = std::env::var_os(SMALL_SET_LOG) else { return };
     let program = std::env::current_exe().ok();
@@ -51,7 +52,7 @@ fn log_small_set() {
     let program = program.as_deref().and_then(Path::file_stem).and_then(|stem| stem.to_str()).unwrap_or("?");
     let program = program.rsplit_once('-').map_or(program, |(name, _)| name);
     let thread = std::thread::current();
-    // Threads that a test starts have no names; the test itself has called this before.
+    // Threads that a test starts have no names; the test's own thread has already called this.
     let Some(test) = thread.name() else { return };
     let line = format!("{program} {test}\n");
     let file = std::fs::OpenOptions::new().create(true).append(true).open(&log);
@@ -64,12 +65,12 @@ pub fn corpora() -> Vec<PathBuf> {
     [Some(small_set()), extended()].into_iter().flatten().collect()
 }
 
-/// Whether the extended corpus exists. Without it, fewer files than usual are no reason to fail.
+/// Whether the extended corpus exists. Without it, tests must not fail because they find fewer files.
 pub fn is_extended() -> bool {
     extended().is_some()
 }
 
-/// A fixture.
+/// The path of a fixture.
 ///
 /// # Panics
 /// If no corpus has it.
@@ -78,12 +79,12 @@ pub fn find(path: &str) -> PathBuf {
     available(path).unwrap_or_else(|| panic!("{path} is not in testdata/, and ../shared/data is not there"))
 }
 
-/// A fixture, or `None` if it belongs to the extended corpus and that is missing.
+/// The path of a fixture, or `None` if it belongs to the extended corpus and the corpus is missing.
 ///
-/// For the rows of tables; a test of one file uses [`find`], with a file of the small set.
+/// Intended for rows of tables; a test of a single file uses [`find`] with a file of the small set.
 ///
 /// # Panics
-/// If the extended corpus exists and does not have it either.
+/// If the extended corpus exists and does not have the fixture either.
 #[track_caller]
 pub fn available(path: &str) -> Option<PathBuf> {
     let small = small_set().join(path);
@@ -98,7 +99,7 @@ pub fn available(path: &str) -> Option<PathBuf> {
 /// The rows of a table whose files exist.
 ///
 /// # Panics
-/// As [`available`], and if none is left: a test without cases cannot fail.
+/// As [`available`], and if no row is left, because a test without cases cannot fail.
 #[track_caller]
 pub fn rows_with_files<T>(rows: impl IntoIterator<Item = T>, path: impl Fn(&T) -> &str) -> Vec<T> {
     let rows: Vec<T> = rows.into_iter().filter(|row| available(path(row)).is_some()).collect();
@@ -106,7 +107,7 @@ pub fn rows_with_files<T>(rows: impl IntoIterator<Item = T>, path: impl Fn(&T) -
     rows
 }
 
-/// The rows of all manifests; a file that several corpora have appears once.
+/// The rows of all manifests. A file in several corpora appears once.
 ///
 /// # Panics
 /// If a manifest cannot be read.
@@ -127,7 +128,7 @@ fn rows_of(manifest: &Path) -> Vec<Row> {
     lines.map(row).collect()
 }
 
-/// The paths of all files of a folder and of those below it, in all corpora, sorted.
+/// The sorted paths of all files in a folder and its subfolders, in all corpora.
 ///
 /// # Panics
 /// If no corpus has the folder.

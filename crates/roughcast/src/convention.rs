@@ -3,7 +3,7 @@
 use crate::named::named_enum;
 
 named_enum! {
-    /// What the pixels of an input are.
+    /// What the pixels of an input represent.
     pub enum Kind: "kind of map" {
         /// Normals, three channels or two.
         Normal = "normal",
@@ -33,9 +33,9 @@ named_enum! {
 }
 
 named_enum! {
-    /// The numbers by which a normal's components are stored.
+    /// The range in which a normal's components are stored.
     pub enum NormalRange: "range" {
-        /// 0 ..= 1 stands for -1 ..= 1.
+        /// 0 ..= 1 represents -1 ..= 1.
         Unorm = "unorm",
         /// The components themselves.
         Signed = "signed",
@@ -43,7 +43,7 @@ named_enum! {
 }
 
 impl NormalRange {
-    /// The component that a stored value stands for.
+    /// Decodes a stored value into a component.
     #[inline(always)]
     pub fn component_from_stored(self, stored: f32) -> f32 {
         match self {
@@ -57,21 +57,21 @@ named_enum! {
     /// Which channels hold a normal's components.
     #[non_exhaustive]
     pub enum NormalChannels: "choice of channels" {
-        /// Red, green, blue: x, y, z. Used by direction; the length does not matter.
+        /// Red, green, blue: x, y, z. Only the direction is used; the length does not matter.
         Xyz = "xyz",
-        /// The first two: x, y; z follows. BC5, and RG textures.
+        /// The first two: x, y; z is computed. BC5, and RG textures.
         Xy = "xy",
-        /// Alpha and green: x, y; z follows. "DXT5nm", BC3n, and Doom 3's RXGB.
+        /// Alpha and green: x, y; z is computed. "DXT5nm", BC3n, and Doom 3's RXGB.
         Ag = "ag",
-        /// The first two: y, x; z follows. The older order of 3Dc and ATI2.
+        /// The first two: y, x; z is computed. The older order of 3Dc and ATI2.
         Yx = "yx",
-        /// Red and alpha: x, y; z follows. KTX's normal mode, which repeats x in red, green and blue.
+        /// Red and alpha: x, y; z is computed. KTX's normal mode, which repeats x in red, green and blue.
         Ra = "ra",
     }
 }
 
 impl NormalChannels {
-    /// Indices of the channels with x, y and, where it is stored, z.
+    /// Indices of the channels with x, y and, if stored, z.
     pub fn indices(self) -> (usize, usize, Option<usize>) {
         match self {
             NormalChannels::Xyz => (0, 1, Some(2)),
@@ -82,7 +82,7 @@ impl NormalChannels {
         }
     }
 
-    /// Channels that a map must have.
+    /// Minimum number of channels that a map must have.
     pub fn needed(self) -> usize {
         let (x, y, z) = self.indices();
         1 + x.max(y).max(z.unwrap_or(0))
@@ -90,7 +90,7 @@ impl NormalChannels {
 }
 
 named_enum! {
-    /// Which way heights go.
+    /// Whether white is high or deep.
     pub enum HeightSense: "sense of heights" {
         /// White is high.
         WhiteHigh = "white-high",
@@ -100,12 +100,12 @@ named_enum! {
 }
 
 named_enum! {
-    /// What lies beyond the edge of a map; for gradients and for filters wider than the box.
+    /// What lies beyond the edge of a map, for gradients and for filters wider than the box.
     pub enum Wrap: "wrap mode" {
         /// The map repeats.
         Repeat = "repeat",
-        /// The edge texel goes on, for gradients. The pyramid's filters mirror the map, as for [`Wrap::Mirror`]: an edge
-        /// texel that went on for ever would count more than the others, and means would drift from level to level.
+        /// The edge texel is repeated, for gradients. The pyramid's filters mirror the map, as for [`Wrap::Mirror`]: an
+        /// edge texel repeated without end would count more than the others, and means would drift from level to level.
         Clamp = "clamp",
         /// The map is mirrored at the edge.
         Mirror = "mirror",

@@ -1,20 +1,22 @@
-//! The distribution of slopes under a footprint: the result of every source of bumps, and the input of every shading model.
+//! The distribution of slopes under a footprint: the result of every source of bumps, and the input of every shading
+//! model.
 //!
-//! One Gaussian describes the bumps of LEAN and its relatives; a mixture of up to four describes bumps of several kinds under one
-//! footprint. The filtered normal is kept beside them: diffuse light needs its length, which the Gaussians do not determine.
+//! One Gaussian describes the bumps of LEAN and related methods; a mixture of up to four describes several kinds of
+//! bumps under one footprint. The filtered normal is stored in addition: diffuse light needs its length, which the
+//! Gaussians do not determine.
 
 use crate::moments::{Covariance, Moments, SlopeMatrix};
 use crate::roughness::Base;
 use crate::slope::{LEAST_NORMAL_Z, Normal, Slope, normal_from_slope};
 
-/// The most Gaussians of a distribution.
+/// The maximum number of Gaussians in a distribution.
 pub const MAX_GAUSSIANS: usize = 4;
 
 /// One Gaussian of a distribution of slopes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WeightedGaussian {
-    /// Its weight, 0 to 1.
+    /// Weight, 0 to 1.
     pub weight: f32,
     /// Mean slope.
     pub mean: Slope,
@@ -46,7 +48,7 @@ pub struct Distribution {
     gaussians: [WeightedGaussian; MAX_GAUSSIANS],
 }
 
-/// A distribution as it is serialized: without room for Gaussians that are not there.
+/// The serialized form of a distribution, without unused Gaussians.
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Parts {
@@ -76,26 +78,26 @@ impl TryFrom<Parts> for Distribution {
 }
 
 impl Distribution {
-    /// A single slope, without hidden bumps.
+    /// A single slope without unresolved bumps.
     pub fn of_slope(slope: Slope) -> Self {
         Self::gaussian(slope, Covariance::default())
     }
 
-    /// The slope of a filtered normal of any length, without any spread: the conventional method, which loses the bumps. A normal that is
-    /// flatter than [`LEAST_NORMAL_Z`] counts as that steep.
+    /// The slope of a filtered normal of any length, without any spread. This is the conventional method, which loses
+    /// the bumps. A z below [`LEAST_NORMAL_Z`] is raised to it.
     #[inline]
     pub fn of_normal(normal: Normal) -> Self {
         let z = normal.z.max(LEAST_NORMAL_Z);
         Self::new(normal, Slope { x: normal.x / z, y: normal.y / z }, Covariance::default())
     }
 
-    /// One Gaussian, whose filtered normal is the unit normal of the mean slope.
+    /// One Gaussian; the filtered normal is the unit normal of the mean slope.
     #[inline]
     pub fn gaussian(mean: Slope, covariance: Covariance) -> Self {
         Self::new(normal_from_slope(mean), mean, covariance)
     }
 
-    /// One Gaussian beside a filtered normal of any length. The base roughness is not in it.
+    /// One Gaussian and a filtered normal of any length, without the base roughness.
     #[inline]
     pub fn new(normal: Normal, mean: Slope, covariance: Covariance) -> Self {
         let mut gaussians = [WeightedGaussian::default(); MAX_GAUSSIANS];
@@ -103,8 +105,8 @@ impl Distribution {
         Self { normal, base: Base::None, count: 1, gaussians }
     }
 
-    /// A mixture, with weights as given: they should sum to 1. The filtered normal is the unit normal of the mean slope. `None`
-    /// for no Gaussian, and for more than [`MAX_GAUSSIANS`].
+    /// A mixture with the given weights, which should sum to 1. The filtered normal is the unit normal of the mean
+    /// slope. `None` for no Gaussians or more than [`MAX_GAUSSIANS`].
     pub fn mixture(gaussians: &[WeightedGaussian]) -> Option<Self> {
         if !(1..=MAX_GAUSSIANS).contains(&gaussians.len()) {
             return None;
@@ -115,13 +117,13 @@ impl Distribution {
         Some(mixture.with_normal(normal_from_slope(mixture.moments().mean)))
     }
 
-    /// The distribution with another filtered normal.
+    /// Replaces the filtered normal.
     #[must_use]
     pub fn with_normal(self, normal: Normal) -> Self {
         Self { normal, ..self }
     }
 
-    /// The distribution with another statement of where the base roughness is: [`Base::Baked`] if the covariances already contain it.
+    /// Sets where the base roughness is: [`Base::Baked`] if the covariances already contain it.
     #[must_use]
     pub fn with_base(self, base: Base) -> Self {
         Self { base, ..self }
@@ -132,7 +134,7 @@ impl Distribution {
         self.base
     }
 
-    /// The filtered normal for diffuse light, at the length that averaging has left it.
+    /// The filtered normal for diffuse light, with its length after averaging.
     pub fn normal(&self) -> Normal {
         self.normal
     }
@@ -143,13 +145,13 @@ impl Distribution {
         &self.gaussians[..self.count]
     }
 
-    /// The Gaussians, to change them.
+    /// The Gaussians, for modification.
     #[inline]
     pub fn gaussians_mut(&mut self) -> &mut [WeightedGaussian] {
         &mut self.gaussians[..self.count]
     }
 
-    /// The Gaussian with the mean and the covariance of the whole.
+    /// A single Gaussian with the mean and the covariance of the whole distribution.
     #[inline]
     pub fn whole(&self) -> WeightedGaussian {
         if self.count == 1 {
@@ -164,15 +166,15 @@ impl Distribution {
         WeightedGaussian { weight: 1.0, mean, covariance }
     }
 
-    /// The moments of the whole.
+    /// The moments of the whole distribution.
     pub fn moments(&self) -> Moments {
         self.gaussians().iter().fold(Moments::default(), |sum, gaussian| {
             sum + Moments::from_mean_and_covariance(gaussian.mean, gaussian.covariance) * gaussian.weight
         })
     }
 
-    /// The distribution in another frame of the same tangent plane. The filtered normal keeps its length; its direction is that of
-    /// its transformed slope.
+    /// The distribution in another frame of the same tangent plane. The filtered normal keeps its length; its direction
+    /// becomes that of its transformed slope.
     #[must_use]
     pub fn transformed(mut self, matrix: SlopeMatrix) -> Self {
         for gaussian in &mut self.gaussians[..self.count] {
@@ -192,7 +194,7 @@ impl Distribution {
 mod tests {
     use super::*;
 
-    /// A few f32 roundings of numbers near one.
+    /// A few f32 rounding errors of numbers near one.
     const ROUNDING: f32 = 1e-6;
 
     #[test]

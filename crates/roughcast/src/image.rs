@@ -11,14 +11,15 @@ pub enum Samples {
     U8(Vec<u8>),
     /// 16-bit unsigned normalised: 0 ..= 65535 stands for 0 ..= 1.
     U16(Vec<u16>),
-    /// Half float, the value itself.
+    /// Half float, stored as is.
     F16(Vec<f16>),
-    /// Single float, the value itself.
+    /// Single float, stored as is.
     F32(Vec<f32>),
 }
 
 named_enum! {
-    /// The storage type of samples, without the samples. Its names are numbers of bits where these say it all.
+    /// The storage type of samples, without the samples. A variant is named by its number of bits if that is
+    /// unambiguous.
     pub enum SampleType: "number of bits" {
         /// 8-bit unsigned normalised.
         U8 = "8",
@@ -41,7 +42,7 @@ impl SampleType {
         }
     }
 
-    /// Whether the samples are floats, that is, need no scale and bias to hold signed values.
+    /// Whether the samples are floats, which hold signed values without scale and bias.
     pub fn is_float(self) -> bool {
         matches!(self, SampleType::F16 | SampleType::F32)
     }
@@ -68,7 +69,7 @@ impl Samples {
         }
     }
 
-    /// How they are stored.
+    /// The storage type.
     pub fn sample_type(&self) -> SampleType {
         match self {
             Samples::U8(_) => SampleType::U8,
@@ -88,7 +89,7 @@ impl Samples {
         }
     }
 
-    /// Whether there are none.
+    /// Whether there are no samples.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -126,7 +127,7 @@ pub struct Image {
     samples: Samples,
 }
 
-/// Why samples do not make an image.
+/// The reason why samples do not form an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 #[non_exhaustive]
 pub enum ImageError {
@@ -159,10 +160,10 @@ pub enum ImageError {
 }
 
 impl Image {
-    /// Makes an image of samples, in rows from the top.
+    /// Creates an image from samples, in rows from the top.
     ///
     /// # Errors
-    /// [`ImageError`] where a side is zero or the number of samples is not `width * height * channels`.
+    /// [`ImageError`] if a side is zero or the number of samples is not `width * height * channels`.
     pub fn new(width: usize, height: usize, channels: usize, samples: Samples) -> Result<Self, ImageError> {
         check_length(width, height, channels, samples.len())?;
         Ok(Self { width, height, channels, samples })
@@ -171,7 +172,7 @@ impl Image {
     /// An image of zeros.
     ///
     /// # Panics
-    /// Where a side or the number of channels is zero.
+    /// If a side or the number of channels is zero.
     pub fn zeros(width: usize, height: usize, channels: usize, sample_type: SampleType) -> Self {
         let samples = Samples::zeros(sample_type, width * height * channels);
         Self::new(width, height, channels, samples).expect("the length is computed from the size")
@@ -207,7 +208,7 @@ impl Image {
         }
     }
 
-    /// The samples, to write to. Their number and their type stay.
+    /// The samples, for writing. Their number and type cannot change.
     pub fn samples_mut(&mut self) -> SamplesMut<'_> {
         match &mut self.samples {
             Samples::U8(v) => SamplesMut::U8(v),
@@ -217,7 +218,7 @@ impl Image {
         }
     }
 
-    /// The samples, taken out.
+    /// Consumes the image and returns its samples.
     pub fn into_samples(self) -> Samples {
         self.samples
     }
@@ -228,7 +229,7 @@ impl Image {
     }
 }
 
-/// Whether so many samples are rows of an image of this size.
+/// Checks that the number of samples matches the size of the image.
 fn check_length(width: usize, height: usize, channels: usize, got: usize) -> Result<(), ImageError> {
     let expected =
         width.checked_mul(height).and_then(|pixels| pixels.checked_mul(channels)).unwrap_or(usize::MAX);
@@ -248,14 +249,14 @@ pub enum SamplesView<'a> {
     U8(&'a [u8]),
     /// 16-bit unsigned normalised: 0 ..= 65535 stands for 0 ..= 1.
     U16(&'a [u16]),
-    /// Half float, the value itself.
+    /// Half float, stored as is.
     F16(&'a [f16]),
-    /// Single float, the value itself.
+    /// Single float, stored as is.
     F32(&'a [f32]),
 }
 
 impl SamplesView<'_> {
-    /// How they are stored.
+    /// The storage type.
     pub fn sample_type(self) -> SampleType {
         match self {
             SamplesView::U8(_) => SampleType::U8,
@@ -275,7 +276,7 @@ impl SamplesView<'_> {
         }
     }
 
-    /// Whether there are none.
+    /// Whether there are no samples.
     pub fn is_empty(self) -> bool {
         self.len() == 0
     }
@@ -283,7 +284,7 @@ impl SamplesView<'_> {
     /// Sample `index` as a float: unsigned types as 0 ..= 1, floats as they are.
     ///
     /// # Panics
-    /// Where there is no such sample.
+    /// If there is no such sample.
     pub fn get(self, index: usize) -> f32 {
         match self {
             SamplesView::U8(v) => f32::from(v[index]) / 255.0,
@@ -304,21 +305,21 @@ impl SamplesView<'_> {
     }
 }
 
-/// The samples of an [`Image`], to write to.
+/// The samples of an [`Image`], for writing.
 #[derive(Debug, PartialEq)]
 pub enum SamplesMut<'a> {
     /// 8-bit unsigned normalised: 0 ..= 255 stands for 0 ..= 1.
     U8(&'a mut [u8]),
     /// 16-bit unsigned normalised: 0 ..= 65535 stands for 0 ..= 1.
     U16(&'a mut [u16]),
-    /// Half float, the value itself.
+    /// Half float, stored as is.
     F16(&'a mut [f16]),
-    /// Single float, the value itself.
+    /// Single float, stored as is.
     F32(&'a mut [f32]),
 }
 
 impl SamplesMut<'_> {
-    /// How they are stored.
+    /// The storage type.
     pub fn sample_type(&self) -> SampleType {
         match self {
             SamplesMut::U8(_) => SampleType::U8,
@@ -329,10 +330,10 @@ impl SamplesMut<'_> {
     }
 }
 
-/// An [`Image`] whose samples belong to someone else: an array of NumPy, the memory of a browser, another library's picture. Whatever
-/// reads images takes views, and `&Image` is one by [`Into`].
+/// An [`Image`] with borrowed samples: a NumPy array, a browser's memory, another library's picture.
 ///
-/// Rows lie one after the other, without gaps.
+/// All functions that read images take views, and `&Image` converts to one by [`Into`]. Rows are contiguous, without
+/// gaps.
 ///
 /// ```
 /// use roughcast::{Bake, ImageView, SamplesView};
@@ -353,10 +354,10 @@ pub struct ImageView<'a> {
 }
 
 impl<'a> ImageView<'a> {
-    /// Sees an image in samples, in rows from the top.
+    /// Creates a view of samples, in rows from the top.
     ///
     /// # Errors
-    /// [`ImageError`] where a side is zero or the number of samples is not `width * height * channels`.
+    /// [`ImageError`] if a side is zero or the number of samples is not `width * height * channels`.
     pub fn new(
         width: usize,
         height: usize,
@@ -390,7 +391,7 @@ impl<'a> ImageView<'a> {
     /// One sample as a float: unsigned types as 0 ..= 1, floats as they are.
     ///
     /// # Panics
-    /// Where there is no such sample.
+    /// If there is no such sample.
     pub fn get(&self, x: usize, y: usize, channel: usize) -> f32 {
         self.samples.get((y * self.width + x) * self.channels + channel)
     }

@@ -1,4 +1,5 @@
-//! Moments of the slopes under a footprint: their mean, and the spread of the lost bumps, which is roughness with a direction.
+//! Moments of the slopes under a footprint: their mean, and the spread of the lost bumps, which is a directional
+//! roughness.
 //!
 //! Source: LEAN mapping, Eq. 2 to 5. Order of second moments everywhere: xx, yy, xy.
 
@@ -6,7 +7,7 @@ use std::ops::{Add, Mul, Sub};
 
 use crate::slope::Slope;
 
-/// Mean slope and raw second moments. Linear: any non-negative filter may average them.
+/// Mean slope and raw second moments. They are linear: any non-negative filter may average them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Moments {
@@ -20,7 +21,7 @@ pub struct Moments {
     pub xy: f32,
 }
 
-/// Covariance of slopes, `M - B B^T`: the variance per axis and its mixed term.
+/// Covariance of slopes, `M - B B^T`: the variance per axis and the mixed term.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Covariance {
@@ -48,15 +49,15 @@ impl Moments {
         }
     }
 
-    /// The covariance (LEAN Eq. 5), made positive semidefinite: rounding of stored moments must not turn into a lobe
-    /// of negative width.
+    /// The covariance (LEAN Eq. 5), made positive semidefinite: rounding of stored moments must not produce a lobe of
+    /// negative width.
     pub fn covariance(self) -> Covariance {
         self.covariance_as_stored().positive_semidefinite()
     }
 
-    /// The covariance as it comes out of the subtraction: rounding of stored moments may have made it invalid.
+    /// The covariance as subtracted, without repair: rounding of stored moments may have made it invalid.
     pub fn covariance_as_stored(self) -> Covariance {
-        // The products are exact in f64, so that only the rounding of the stored numbers themselves is left.
+        // The products are exact in f64, so only the rounding of the stored numbers themselves remains.
         let (x, y) = (f64::from(self.mean.x), f64::from(self.mean.y));
         Covariance {
             xx: (f64::from(self.xx) - x * x) as f32,
@@ -76,14 +77,14 @@ impl Covariance {
     #[inline]
     pub fn positive_semidefinite(self) -> Self {
         let (xx, yy) = (self.xx.max(0.0), self.yy.max(0.0));
-        // Exact in f64.
+        // The product is exact in f64.
         let product = f64::from(xx) * f64::from(yy);
         if f64::from(self.xy) * f64::from(self.xy) <= product {
             return Self { xx, yy, xy: self.xy };
         }
         // Infinity times zero is NaN: an axis without variance has no correlation.
         let mut limit = product.sqrt().max(0.0) as f32;
-        // The root may have been rounded up, and then the determinant would be below zero after all.
+        // The root may have been rounded up, which would make the determinant negative.
         if f64::from(limit) * f64::from(limit) > product {
             limit = limit.next_down().max(0.0);
         }
@@ -103,19 +104,19 @@ impl Covariance {
         (mean + radius, mean - radius)
     }
 
-    /// Unit vector along the larger variance, x >= 0; x axis where both are equal.
+    /// Unit vector along the larger variance, x >= 0; the x axis if both variances are equal.
     pub fn main_direction(self) -> Slope {
         let angle = 0.5 * (2.0 * self.xy).atan2(self.xx - self.yy);
         Slope { x: angle.cos(), y: angle.sin() }
     }
 }
 
-/// A 2x2 matrix, row by row, that takes slopes from one frame to another: `new = matrix * old`.
+/// A 2x2 matrix in row order that transforms slopes from one frame to another: `new = matrix * old`.
 pub type SlopeMatrix = [[f32; 2]; 2];
 
 impl Moments {
-    /// The moments of the transformed slopes: `A B` and `A M Aᵀ`. Exact for any distribution, since a change of frame is
-    /// linear in slopes.
+    /// The moments of the transformed slopes: `A B` and `A M Aᵀ`. Exact for any distribution, since a change of frame
+    /// is linear in the slopes.
     #[must_use]
     pub fn transformed(self, matrix: SlopeMatrix) -> Self {
         let second = Covariance { xx: self.xx, yy: self.yy, xy: self.xy }.transformed(matrix);
@@ -187,14 +188,14 @@ mod tests {
 
     #[test]
     fn a_change_of_frame_transforms_every_slope() {
-        /// A few f32 roundings of numbers near one.
+        /// A few f32 rounding errors of numbers near one.
         const ROUNDING: f32 = 1e-6;
         let slopes = [Slope { x: 0.3, y: -0.2 }, Slope { x: -0.7, y: 0.4 }, Slope { x: 0.1, y: 0.9 }];
         let mean_of = |slopes: &[Slope]| {
             let sum = slopes.iter().fold(Moments::default(), |sum, slope| sum + Moments::of_slope(*slope));
             sum * (1.0 / slopes.len() as f32)
         };
-        // A shear, a mirror, and a turn with a stretch.
+        // A shear, a reflection, and a rotation with a stretch.
         for matrix in [[[1.0, 0.7], [0.0, 1.0]], [[-1.0, 0.0], [0.0, 1.0]], [[0.8, -0.6], [1.2, 1.6]]] {
             let one_by_one = mean_of(&slopes.map(|slope| slope.transformed(matrix)));
             let together = mean_of(&slopes).transformed(matrix);
@@ -232,7 +233,7 @@ mod tests {
         {
             let repaired = Covariance { xx, yy, xy }.positive_semidefinite();
             assert!(repaired.xx >= 0.0 && repaired.yy >= 0.0, "{repaired:?}");
-            // Infinity times zero, NaN, allows nothing.
+            // Infinity times zero is NaN, which leaves no room for a mixed term.
             let product = f64::from(repaired.xx) * f64::from(repaired.yy);
             let limit = if product.is_nan() { 0.0 } else { product.sqrt() };
             assert!(f64::from(repaired.xy).abs() <= limit, "{repaired:?} of {:?}", (xx, yy, xy));

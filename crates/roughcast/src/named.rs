@@ -1,8 +1,7 @@
-//! Enums whose variants have a name: the one that the command line, the files' metadata and Python all use.
+//! Enums whose variants have a name, which the command line, the files' metadata and Python share.
 
-/// Declares an enum with `ALL`, `name()`, `Display` and `FromStr`, from one list of variants; with the feature `serde` it is
-/// serialized by its names. For the crates of this
-/// workspace, so that all names that a user types behave alike.
+/// Declares an enum with `ALL`, `name()`, `Display` and `FromStr` from one list of variants. With the feature `serde`
+/// it is serialized by name. All crates of this workspace use it, so that all names a user types behave alike.
 #[macro_export]
 macro_rules! named_enum {
     (
@@ -19,7 +18,7 @@ macro_rules! named_enum {
             /// Every variant, in the order of declaration.
             pub const ALL: &'static [Self] = &[ $( Self::$variant ),+ ];
 
-            /// The name by which the command line, the metadata of files and Python know it.
+            /// The name used by the command line, the metadata of files and Python.
             pub const fn name(self) -> &'static str {
                 match self { $( Self::$variant => $name ),+ }
             }
@@ -56,7 +55,7 @@ macro_rules! named_enum {
     };
 }
 
-/// Serializes a named enum by its names.
+/// Serializes a named enum by name.
 #[cfg(feature = "serde")]
 #[doc(hidden)]
 #[macro_export]
@@ -77,7 +76,7 @@ macro_rules! __serde_by_name {
     };
 }
 
-/// Nothing: the feature `serde` is off.
+/// Does nothing: the feature `serde` is off.
 #[cfg(not(feature = "serde"))]
 #[doc(hidden)]
 #[macro_export]
@@ -90,19 +89,19 @@ pub trait Named: Copy + 'static {
     /// Every variant, in the order of declaration.
     fn all() -> &'static [Self];
 
-    /// The name by which the command line, the metadata of files and Python know it.
+    /// The name used by the command line, the metadata of files and Python.
     fn name(self) -> &'static str;
 }
 
-/// A name that stands for no variant.
+/// A name that matches no variant.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 #[error("no {what} is called '{got}': choose one of {known}")]
 pub struct UnknownName {
-    /// What was looked for.
+    /// The kind of item that was requested.
     pub what: &'static str,
     /// The name given.
     pub got: String,
-    /// The names there are.
+    /// The known names.
     pub known: String,
 }
 

@@ -1,4 +1,4 @@
-//! How to read and filter a map. The command line, Python and the GPU use these as they are.
+//! Options for reading and filtering a map. The command line, Python and the GPU use them unchanged.
 
 use crate::SampleType;
 use crate::convention::{Green, HeightSense, Kind, NormalChannels, NormalRange, Red, Wrap};
@@ -8,9 +8,10 @@ use crate::setters::setters;
 use crate::texture::{Blocks, Layout, PbrOptions};
 
 named_enum! {
-    /// How a height map's gradient is estimated. All are in texels of level 0.
+    /// How a height map's gradient is estimated. All gradients are in texels of level 0.
     ///
-    /// Closed, since whoever makes slopes by other means, such as a GPU, has to know them all.
+    /// This enum is exhaustive, because other implementations that compute slopes, such as one on a GPU, must know all
+    /// variants.
     pub enum Gradient: "gradient" {
         /// The 8-tap Sobel filter divided by 8.
         Sobel = "sobel",
@@ -22,20 +23,21 @@ named_enum! {
 }
 
 named_enum! {
-    /// The kernel that makes a level from the previous one. All are non-negative: with lobes below zero the covariance
-    /// would stop being one.
+    /// The kernel that computes a level from the previous one. All kernels are non-negative: with negative lobes the
+    /// result would no longer be a covariance.
     #[non_exhaustive]
     pub enum PyramidFilter: "filter" {
         /// Exact area average.
         Box = "box",
-        /// Tent over two texels of the coarser level each way.
+        /// Tent that extends over two texels of the coarser level each way.
         Triangle = "triangle",
-        /// The B-spline of order three, a Gaussian's shape with a standard deviation of half a texel of the coarser level.
+        /// The B-spline of order three, similar to a Gaussian with a standard deviation of half a texel of the coarser
+        /// level.
         Gaussian = "gaussian",
     }
 }
 
-/// How a map is turned into slopes.
+/// How a map is converted to slopes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -44,28 +46,28 @@ named_enum! {
 )]
 #[non_exhaustive]
 pub struct SourceOptions {
-    /// What the pixels are.
+    /// What the pixels represent.
     pub kind: Kind,
     /// Direction of a normal map's green channel.
     pub green: Green,
     /// Direction of a normal map's red channel.
     pub red: Red,
-    /// Factor of a normal's x and y, which is that of the slope: glTF's `normalTexture.scale`. Heights have
-    /// [`SourceOptions::height_scale`].
+    /// Factor of a normal's x and y, which also scales the slope: glTF's `normalTexture.scale`. Height maps use
+    /// [`SourceOptions::height_scale`] instead.
     pub normal_scale: f32,
-    /// Numbers by which a normal's components are stored.
+    /// The range in which a normal's components are stored.
     pub range: NormalRange,
-    /// Channels of a normal's components.
+    /// The channels that hold a normal's components.
     pub normal_channels: NormalChannels,
-    /// A height value v means `v * height_scale * width` texels.
+    /// A height value v represents `v * height_scale * width` texels.
     pub height_scale: f32,
-    /// Which way heights go.
+    /// Whether white is high or deep.
     pub height_sense: HeightSense,
-    /// Estimate of the gradient of heights.
+    /// How the gradient of heights is estimated.
     pub gradient: Gradient,
     /// What lies beyond the edge.
     pub wrap: Wrap,
-    /// Largest length of a slope; steeper ones are scaled back to it, direction kept, and counted.
+    /// Maximum length of a slope. Steeper slopes are scaled back to it, with their direction kept, and counted.
     pub max_slope: MaxSlope,
 }
 
@@ -83,31 +85,33 @@ setters!(SourceOptions {
     with_max_slope(max_slope: MaxSlope),
 });
 
-/// The largest length that a slope may have.
+/// The maximum length of a slope.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum MaxSlope {
-    /// [`MaxSlope::OF_ANY_MAP`], or less where a few steep texels make the range of unsigned texels much larger than the rest
-    /// needs: where the steepest 0.1 % cost more than a factor of 4 in usable specular power, the limit is the slope that they
-    /// exceed, though at least [`MaxSlope::LEAST_AUTOMATIC`].
+    /// [`MaxSlope::OF_ANY_MAP`], or less if a few steep texels make the range of unsigned texels much larger than the
+    /// rest needs. If the steepest 0.1 % cost more than a factor of 4 in usable specular power, the limit is the slope
+    /// that they exceed, but at least [`MaxSlope::LEAST_AUTOMATIC`].
     ///
-    /// It is only lowered where the layout stores slopes or variances over a range that follows from the map. Float texels, and
-    /// layouts that store normals and roughness, have no such range and keep every slope up to [`MaxSlope::OF_ANY_MAP`].
+    /// It is only lowered if the layout stores slopes or variances over a range that depends on the map. Float texels,
+    /// and layouts that store normals and roughness, have no such range and keep every slope up to
+    /// [`MaxSlope::OF_ANY_MAP`].
     Auto,
-    /// This one: above 0, at most [`MaxSlope::LARGEST`].
+    /// A fixed limit: above 0, at most [`MaxSlope::LARGEST`].
     Limit(f32),
 }
 
 impl MaxSlope {
-    /// The largest slope where nothing else is known: 89.55 degrees.
+    /// The default maximum slope: 89.55 degrees.
     pub const OF_ANY_MAP: f32 = 128.0;
-    /// The smallest limit that [`MaxSlope::Auto`] chooses, 45 degrees: steep texels of a gentle map may be few and still be what
-    /// the map is about, such as the screws of a panel. With it 16 bits carry specular powers above 25 000.
+    /// The smallest limit that [`MaxSlope::Auto`] chooses, 45 degrees. The steep texels of a gentle map may be few and
+    /// still be its most important feature, such as the screws of a panel. With this limit 16 bits support specular
+    /// powers above 25 000.
     pub const LEAST_AUTOMATIC: f32 = 1.0;
-    /// The largest limit that can be asked for. The square of a slope has to be a number.
+    /// The largest limit that can be set. The square of a slope must be finite.
     pub const LARGEST: f32 = 1e9;
 
-    /// The limit before anything is known of the map.
+    /// The limit before the map has been analysed.
     pub fn before_a_look(self) -> f32 {
         match self {
             MaxSlope::Auto => Self::OF_ANY_MAP,
@@ -117,10 +121,10 @@ impl MaxSlope {
 }
 
 impl SourceOptions {
-    /// Default height of a full-range height map, as a part of its width.
+    /// Default height of a full-range height map, as a fraction of its width.
     pub const DEFAULT_HEIGHT_SCALE: f32 = 0.02;
 
-    /// The factors of x and y of a normal, as read.
+    /// The factors by which x and y of a normal are multiplied when it is read.
     pub fn normal_factors(&self) -> [f32; 2] {
         let x = if self.red == Red::Left { -self.normal_scale } else { self.normal_scale };
         let y = if self.green == Green::Down { -self.normal_scale } else { self.normal_scale };
@@ -147,13 +151,13 @@ impl Default for SourceOptions {
     }
 }
 
-/// The range of slopes that unsigned texels cover: found or given, and nothing else.
+/// The range of slopes that unsigned texels cover: found automatically or fixed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum ScaleChoice {
-    /// The smallest that holds every texel.
+    /// The smallest range that holds every texel.
     Auto,
-    /// This one; steeper texels are scaled back to it and counted.
+    /// A fixed range. Steeper texels are scaled back to it and counted.
     Fixed(f32),
 }
 
@@ -176,9 +180,9 @@ pub struct BakeOptions {
     pub base: Base,
     /// The reflectance function that the roughness is meant for.
     pub brdf: Brdf,
-    /// The choices of [`Layout::Pbr`]; no other layout reads them.
+    /// Options for [`Layout::Pbr`]; other layouts ignore them.
     pub pbr: PbrOptions,
-    /// Shaped for block compression or not.
+    /// Whether the texture is shaped for block compression.
     pub blocks: Blocks,
     /// The kernel of the pyramid.
     pub filter: PyramidFilter,
@@ -196,7 +200,7 @@ setters!(BakeOptions {
 });
 
 impl Default for BakeOptions {
-    /// LEAN in 16 bits with the smallest safe scale, without base roughness, box filter. `pbr` is as glTF reads it.
+    /// LEAN in 16 bits with the smallest safe scale, without base roughness, box filter. `pbr` is as glTF expects it.
     fn default() -> Self {
         Self {
             layout: Layout::Lean,

@@ -1,12 +1,13 @@
-//! Pieces of work, shared by the threads of the rayon pool in which they are asked for. Without the feature `rayon` the calling
-//! thread does them one after the other. Results come in the order of the pieces either way, so nothing depends on the threads.
+//! Distributes work over the threads of the current rayon pool. Without the feature `rayon`, the calling thread
+//! processes the items one after the other. Results are in the order of the items in both cases, so they do not depend
+//! on the threads.
 
-/// What `work` makes of each item.
+/// Applies `work` to each item and returns the results.
 pub(crate) fn map<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
     map_with(items, || (), |(), item| work(item))
 }
 
-/// As [`map`], with something that a thread makes once and uses for many items.
+/// Like [`map`], with scratch state that a thread creates once and reuses for many items.
 #[cfg(feature = "rayon")]
 pub(crate) fn map_with<T: Send, S, R: Send>(
     items: Vec<T>,
@@ -17,7 +18,7 @@ pub(crate) fn map_with<T: Send, S, R: Send>(
     items.into_par_iter().map_init(scratch, work).collect()
 }
 
-/// As [`map`], with something that is made once and used for all items.
+/// Like [`map`], with scratch state that is created once and reused for all items.
 #[cfg(not(feature = "rayon"))]
 pub(crate) fn map_with<T: Send, S, R: Send>(
     items: Vec<T>,
@@ -28,7 +29,7 @@ pub(crate) fn map_with<T: Send, S, R: Send>(
     items.into_iter().map(|item| work(&mut scratch, item)).collect()
 }
 
-/// Does `work` with each item.
+/// Applies `work` to each item.
 pub(crate) fn for_each<T: Send>(items: Vec<T>, work: impl Fn(T) + Sync + Send) {
     map(items, work);
 }

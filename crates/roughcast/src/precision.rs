@@ -1,7 +1,7 @@
-//! The precision of a storage type: measured and bounded error of the variance, and the exponents that it allows.
+//! The precision of a storage type: measured and bounded error of the variance, and the exponents that it supports.
 //!
-//! Source: "Shiny and CLEAN", with the error of the mean counted in full. With `V = M - B²`, texels of half a code's error
-//! over their range give `e_V = e_M + 2 |B| e_B + e_B²`, and the lobe is safe while `1/s > e_V`.
+//! Source: "Shiny and CLEAN", with the error of the mean counted in full. With `V = M - B²`, texels with an error of
+//! half a code over their range give `e_V = e_M + 2 |B| e_B + e_B²`, and the lobe is safe while `1/s > e_V`.
 
 use crate::bake::{Bake, BakeError, Baked};
 use crate::options::{BakeOptions, MaxSlope, SourceOptions};
@@ -31,13 +31,13 @@ pub struct Precision {
     pub sample_type: SampleType,
     /// Range of the stored slopes; 1 for floats.
     pub scale: f32,
-    /// The largest slope allowed. Where it was lowered for this type, errors are those of what is left.
+    /// The maximum slope. If it was lowered for this type, the errors refer to the limited slopes.
     pub max_slope: f32,
-    /// Largest error that the type can make with this map.
+    /// Upper bound of the error of the type for this map.
     pub bound: Bounds,
-    /// Largest error that it made, over all texels of all levels, of a variance along an axis.
+    /// Largest measured error of a variance along an axis, over all texels of all levels.
     pub measured_variance: f32,
-    /// The same of the smaller eigenvalue of the covariance, mixed term included.
+    /// Largest measured error of the smaller eigenvalue of the covariance, which includes the mixed term.
     pub measured_eigenvalue: f32,
 }
 
@@ -47,13 +47,13 @@ impl Precision {
         self.bound.usable_specular_power()
     }
 
-    /// Largest exponent that this map, as it is, allows.
+    /// Largest exponent that the measured error allows for this map.
     pub fn measured_specular_power(&self) -> f32 {
         1.0 / self.measured_variance.max(f32::MIN_POSITIVE)
     }
 }
 
-/// Stores a map as LEAN in every type and compares the variances that come back with those of the pyramid.
+/// Stores a map as LEAN in every type and compares the decoded variances with those of the pyramid.
 ///
 /// # Errors
 /// As [`Bake::run`], for any of the types.
@@ -70,7 +70,7 @@ pub fn measure<'a>(
             .options(BakeOptions { sample_type: *bits, ..BakeOptions::default() })
             .run()?;
         let limit = baked.report.max_slope;
-        // A type's own limit of slopes is no error of the type.
+        // A slope limit specific to a type does not count as an error of the type.
         if !references.iter().any(|(of_limit, _)| *of_limit == limit) {
             references.push((limit, reference(image, source, limit)?));
         }
@@ -80,7 +80,8 @@ pub fn measure<'a>(
     Ok(measured)
 }
 
-/// The pyramid's own covariance, before any subtraction: the square of a standard deviation is exact to f32.
+/// The pyramid's own covariance, before any subtraction. It is stored as standard deviations, whose squares are exact
+/// to f32.
 fn reference(
     image: ImageView<'_>,
     source: &SourceOptions,
@@ -117,7 +118,7 @@ fn larger_of_both(a: (f32, f32), b: (f32, f32)) -> (f32, f32) {
     (a.0.max(b.0), a.1.max(b.1))
 }
 
-/// Errors of a texel's variances and of its smaller eigenvalue, before anything is repaired.
+/// Errors of a texel's variances and of its smaller eigenvalue, before any repair.
 fn errors_at(
     stored: &TextureArray,
     reference: &TextureArray,
@@ -144,7 +145,7 @@ fn raw_covariance(moments: Moments) -> [f64; 3] {
     [f64::from(moments.xx) - x * x, f64::from(moments.yy) - y * y, f64::from(moments.xy) - x * y]
 }
 
-/// The maximum slope, per component, at which a type still represents an exponent: the inverse of the bound.
+/// The maximum slope, per component, at which a type still supports an exponent: the inverse of the bound.
 pub fn maximum_slope(bits: SampleType, specular_power: f32) -> f32 {
     let allowed = |slope: f32| {
         let scale = if bits.is_float() { 1.0 } else { slope };
@@ -152,7 +153,7 @@ pub fn maximum_slope(bits: SampleType, specular_power: f32) -> f32 {
         let peaks = Peaks { component: slope, slope, variance: 0.0 };
         texture::bounds(&info, bits, &peaks).usable_specular_power() >= specular_power
     };
-    // The error grows with the slope, so halving the interval finds the last that is allowed.
+    // The error grows with the slope, so bisection finds the largest slope that is allowed.
     let (mut safe, mut unsafe_slope) = (0.0_f32, 1024.0_f32);
     if allowed(unsafe_slope) {
         return unsafe_slope;
@@ -164,7 +165,7 @@ pub fn maximum_slope(bits: SampleType, specular_power: f32) -> f32 {
     safe
 }
 
-/// The cheapest type that represents an exponent with this map; `None` if none does.
+/// The cheapest type that supports an exponent with this map; `None` if none does.
 pub fn recommend(measured: &[Precision], specular_power: f32) -> Option<SampleType> {
     let order = [SampleType::U8, SampleType::U16, SampleType::F16, SampleType::F32];
     order.into_iter().find(|bits| {
@@ -172,7 +173,7 @@ pub fn recommend(measured: &[Precision], specular_power: f32) -> Option<SampleTy
     })
 }
 
-/// The exponent that unsigned texels carry where the components of slopes reach `slope`, with the scale that fits.
+/// The exponent that unsigned texels support if the components of slopes reach `slope` and the scale is set to match.
 pub fn unorm_specular_power(bits: SampleType, slope: f32) -> f32 {
     let info = TextureInfo { scale: slope, ..TextureInfo::new(Layout::Lean, Part::Whole) };
     let peaks = Peaks { component: slope, slope, variance: 0.0 };
@@ -185,8 +186,8 @@ mod tests {
 
     #[test]
     fn the_published_figures_are_reproduced() {
-        // 0.4 % for the paper's rounding step of R / 2^(n+1), where an 8-bit code's is R / (2 (2^n - 1)); 3 % for the f32
-        // arithmetic on the way into a code of 16 bits, which the bound counts too.
+        // 0.4 % because the paper's rounding step is R / 2^(n+1), whereas that of an 8-bit code is R / (2 (2^n - 1)); 3
+        // % for the f32 arithmetic of encoding 16-bit codes, which the bound also counts.
         const NOT_COUNTED_IN_THE_TEXT: f32 = 0.035;
         for (bits, slope, power) in [
             (SampleType::U8, 0.5, 409.0),

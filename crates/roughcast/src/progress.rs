@@ -1,17 +1,17 @@
-//! How far a bake is, and whether it is to stop.
+//! Progress and cancellation of a bake.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Hears which fraction of a bake is done, 0 ..= 1, and may stop it. It is called from any thread that works on the bake, also from
-/// several at once, and then perhaps out of order.
+/// Receives the fraction of a bake that is done, 0 ..= 1, and may stop the bake. It is called from any thread that
+/// works on the bake, possibly from several at once and out of order.
 pub type BakeWatch<'a> = dyn Fn(f32) -> ControlFlow<()> + Sync + 'a;
 
 /// The bake was stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Stopped;
 
-/// Counts the texels that are done. It is asked once for each band of rows, so that it costs nothing beside the work.
+/// Counts the texels that are done. It is called once per band of rows, so its cost is negligible.
 pub(crate) struct Progress<'a> {
     watch: Option<&'a BakeWatch<'a>>,
     total: u64,
@@ -20,12 +20,12 @@ pub(crate) struct Progress<'a> {
 }
 
 impl<'a> Progress<'a> {
-    /// The progress of work on so many texels.
+    /// Progress of work on `total` texels.
     pub fn of(total: u64, watch: Option<&'a BakeWatch<'a>>) -> Self {
         Self { watch, total, done: AtomicU64::new(0), stopped: AtomicBool::new(false) }
     }
 
-    /// Counts texels as done, and tells the watch.
+    /// Counts texels as done and notifies the watch.
     pub fn advance(&self, texels: usize) {
         let Some(watch) = self.watch else { return };
         let texels = texels as u64;
@@ -35,17 +35,17 @@ impl<'a> Progress<'a> {
         }
     }
 
-    /// Counts as done what turned out not to be needed, so that `left` texels remain.
+    /// Counts work that turned out to be unnecessary as done, so that `left` texels remain.
     pub fn skip_to_last(&self, left: u64) {
         self.done.fetch_max(self.total.saturating_sub(left), Ordering::Relaxed);
     }
 
-    /// Whether the rest of the work is to be left undone.
+    /// Whether the remaining work should be skipped.
     pub fn is_stopped(&self) -> bool {
         self.stopped.load(Ordering::Relaxed)
     }
 
-    /// The same as an error.
+    /// Returns an error if the work was stopped.
     pub fn check(&self) -> Result<(), Stopped> {
         if self.is_stopped() { Err(Stopped) } else { Ok(()) }
     }

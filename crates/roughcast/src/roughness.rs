@@ -1,13 +1,15 @@
-//! Conventions of roughness: the reflectance function it is meant for, how and where it is stored, and whether the moments contain it.
+//! Conventions of roughness: the reflectance function it is meant for, how and where it is stored, and whether the
+//! moments contain it.
 //!
-//! Every roughness is a slope variance per axis in this crate; see the table of conventions in the [crate's](crate) documentation.
+//! In this crate every roughness is a slope variance per axis; see the table of conventions in the [crate's](crate)
+//! documentation.
 
 use crate::named::named_enum;
 
 named_enum! {
-    /// Whether the base roughness of the material is in the second moments already.
+    /// Whether the second moments already contain the base roughness of the material.
     pub enum Base: "base" {
-        /// Not in: add it once, at shading.
+        /// Not contained: add it once, at shading.
         None = "none",
         /// Folded in when the map was made (LEAN Eq. 6): add nothing at shading.
         Baked = "baked",
@@ -15,7 +17,7 @@ named_enum! {
 }
 
 named_enum! {
-    /// The lobe for which a stored roughness is meant.
+    /// The lobe that a stored roughness is meant for.
     #[non_exhaustive]
     pub enum Brdf: "BRDF" {
         /// GGX, by the convention `alpha^2 = alpha0^2 + 2 sigma^2`: it has no finite slope variance of its own.
@@ -28,7 +30,7 @@ named_enum! {
 }
 
 named_enum! {
-    /// The quantity by which a roughness is stored. `alpha` is the width of the lobe.
+    /// The quantity that represents a stored roughness. `alpha` is the width of the lobe.
     #[non_exhaustive]
     pub enum RoughnessStored: "way to store roughness" {
         /// glTF's perceptual roughness, `sqrt(alpha)`.
@@ -49,27 +51,27 @@ named_enum! {
     pub enum Anisotropy: "lobe" {
         /// One roughness for every direction.
         Isotropic = "isotropic",
-        /// Two roughnesses and a direction, as KHR_materials_anisotropy has them.
+        /// Two roughnesses and a direction, as in KHR_materials_anisotropy.
         Anisotropic = "anisotropic",
     }
 }
 
 named_enum! {
-    /// In which channels `pbr` stores roughness. The names are those of the channels.
+    /// The channels in which `pbr` stores roughness. The variants are named after the channels.
     #[non_exhaustive]
     pub enum RoughnessTexture: "roughness layout" {
-        /// One channel: BC4, and renderers that read one number.
+        /// One channel: BC4, and renderers that read a single value.
         Alone = "r",
         /// Green, where glTF and three.js read it, with an occlusion of 1 in red and a metalness of 0 in blue.
         Green = "g",
-        /// glTF's packed texture: occlusion in red, roughness in green, metalness in blue; all three from a picture where there
-        /// is one.
+        /// glTF's packed texture: occlusion in red, roughness in green, metalness in blue; all three come from an input
+        /// texture if there is one.
         Packed = "orm",
     }
 }
 
 impl RoughnessTexture {
-    /// Channels of the texture.
+    /// Number of channels of the texture.
     pub const fn channels(self) -> usize {
         match self {
             RoughnessTexture::Alone => 1,
@@ -86,7 +88,7 @@ impl RoughnessTexture {
     }
 }
 
-/// Slope variance per axis of a roughness as stored: `alpha^2 / 2`, as Beckmann's lobe has it.
+/// Slope variance per axis of a stored roughness: `alpha^2 / 2`, as for Beckmann's lobe.
 pub fn variance_from_stored(value: f32, stored: RoughnessStored) -> f32 {
     let alpha_squared = match stored {
         RoughnessStored::Perceptual => value.powi(4),
@@ -98,7 +100,7 @@ pub fn variance_from_stored(value: f32, stored: RoughnessStored) -> f32 {
     0.5 * alpha_squared
 }
 
-/// The inverse of [`variance_from_stored`]. A variance of zero has no specular power: it gives infinity.
+/// The inverse of [`variance_from_stored`]. A variance of zero has no finite specular power: the result is infinite.
 pub fn stored_from_variance(variance: f32, stored: RoughnessStored) -> f32 {
     let alpha_squared = 2.0 * variance;
     match stored {
@@ -120,7 +122,7 @@ mod tests {
         for stored in RoughnessStored::ALL {
             for variance in [1e-4_f32, 0.02, 0.3] {
                 let back = variance_from_stored(stored_from_variance(variance, *stored), *stored);
-                // Gloss loses digits in `1 - r`, which the fourth power multiplies.
+                // Gloss loses digits in `1 - r`, and the fourth power amplifies the error.
                 let tolerance = if *stored == RoughnessStored::Gloss { 20.0 * ROUNDING } else { ROUNDING };
                 assert!((back / variance - 1.0).abs() < tolerance, "{stored}: {variance} -> {back}");
             }

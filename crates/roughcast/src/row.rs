@@ -1,11 +1,11 @@
-//! A row of texels on its way through the pyramid, plane by plane.
+//! A row of texels in the pyramid, stored as planes.
 //!
 //! The pyramid carries the mean slope and the *covariance*, not the raw second moments. Both are equivalent, but the
 //! covariance of a footprint is a sum of squares (law of total covariance, Schilling's recursion), so it is positive
-//! semidefinite by construction and keeps its precision where slopes are steep and bumps are small; `M = Σ + B Bᵀ`
-//! is formed once, when a level is stored.
+//! semidefinite by construction and keeps its precision even if slopes are steep and bumps are small; `M = Σ + B Bᵀ` is
+//! computed once, when a level is stored.
 
-/// A further quantity that is averaged beside the slopes, for the layouts that store it.
+/// An additional quantity that is averaged along with the slopes, for the layouts that store it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Extra {
     /// x of the unit normal.
@@ -24,7 +24,7 @@ pub(crate) enum Extra {
     Metalness,
 }
 
-/// The most extras that one layout asks for.
+/// The maximum number of extras of a layout.
 pub(crate) const MAX_EXTRAS: usize = 4;
 
 /// Number of planes that every row has: the mean slope and the covariance.
@@ -33,7 +33,7 @@ pub(crate) const CORE_PLANES: usize = 5;
 /// One row, or a stretch of one.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Row {
-    /// Mean slope x, y; covariance xx, yy, xy; then the extras in the order asked for.
+    /// Mean slope x, y; covariance xx, yy, xy; then the extras in the requested order.
     pub planes: Vec<Vec<f32>>,
 }
 
@@ -63,7 +63,7 @@ pub(crate) struct RowView<'a> {
 }
 
 impl<'a> RowView<'a> {
-    /// Texels `start .. start + len` of planes that hold rows one after the other.
+    /// Texels `start .. start + len` of planes that hold consecutive rows.
     pub fn new(planes: &'a [Vec<f32>], start: usize, len: usize) -> Self {
         let plane = |index: usize| planes.get(index).map_or(&[][..], |p| &p[start..start + len]);
         Self {
@@ -81,22 +81,22 @@ impl<'a> RowView<'a> {
     }
 }
 
-/// The source of level 0: slopes, computed on demand and never stored as a whole image.
+/// The source of level 0: slopes computed on demand, never stored as a whole image.
 pub(crate) trait RowSource: Sync {
     fn width(&self) -> usize;
     fn height(&self) -> usize;
     /// The extras that `fill` writes, in order.
     fn extras(&self) -> &[Extra];
-    /// Whether level 0 has a covariance: a base roughness that is folded in. If not, `fill` leaves the planes of the
-    /// covariance alone, which are zeros in a new row.
+    /// Whether level 0 has a covariance, from a base roughness that is folded in. If not, `fill` does not write the
+    /// covariance planes, which are zero in a new row.
     fn has_covariance(&self) -> bool;
-    /// Writes the texels of row `y` from column `x` on, as many as `row` holds.
+    /// Writes the texels of row `y` starting at column `x`, as many as `row` holds.
     fn fill(&self, x: usize, y: usize, row: &mut Row, scratch: &mut SourceScratch) -> crate::SourceCounts;
 }
 
-/// Reused buffers of a source.
+/// Reusable buffers of a source.
 #[derive(Default)]
 pub(crate) struct SourceScratch {
-    /// Decoded components, or rows of heights above, at and below, each with a texel on either side.
+    /// Decoded components, or the rows of heights above, at and below, each extended by a texel on either side.
     pub planes: [Vec<f32>; 3],
 }

@@ -5,7 +5,7 @@ use std::ops::{Add, AddAssign, Mul, Neg, Sub};
 
 use crate::moments::SlopeMatrix;
 
-/// The slope of a surface element, `(N.x / N.z, N.y / N.z)`; for a height field minus its gradient. No unit.
+/// The slope of a surface element, `(N.x / N.z, N.y / N.z)`; minus the gradient for a height field. Dimensionless.
 ///
 /// Source: LEAN mapping, Eq. 3.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -57,7 +57,7 @@ impl Mul<f32> for Slope {
     }
 }
 
-/// A direction out of the surface; unit length where a function says so.
+/// A direction out of the surface. It has unit length only if a function says so.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Normal {
@@ -75,7 +75,7 @@ impl Normal {
         [self.x, self.y, self.z]
     }
 
-    /// The length: 1, or what averaging has left of it.
+    /// The length: 1, or less after averaging.
     pub fn length(self) -> f32 {
         (self.x * self.x + self.y * self.y + self.z * self.z).sqrt()
     }
@@ -87,7 +87,7 @@ impl From<[f32; 3]> for Normal {
     }
 }
 
-/// Filtered normals are not flatter than this: steeper than any slope that an eight-bit normal can tell from horizontal.
+/// Minimum z of filtered normals. This is steeper than any slope that an 8-bit normal can distinguish from horizontal.
 pub const LEAST_NORMAL_Z: f32 = 1.0 / 512.0;
 
 /// The slope of a normal with `z > 0`; its length does not matter.
@@ -101,22 +101,23 @@ pub fn normal_from_slope(slope: Slope) -> Normal {
     Normal { x: slope.x * z, y: slope.y * z, z }
 }
 
-/// The repairs made while slopes were read: a bad texel must not spread through the levels, and every repair is counted.
+/// Counts of the repairs made while slopes were read. Bad texels are repaired so that they do not spread through the
+/// levels.
 ///
-/// A broken normal is made *neutral*: it gets the mean slope of those of its eight neighbours that are not broken, or a flat
-/// one where all of them are. Beyond an edge lie the texels that the wrap mode specifies; where the map does not repeat, those of
-/// the edge once more.
+/// A broken normal is made *neutral*: it gets the mean slope of those of its eight neighbours that are not broken, or a
+/// flat one if all are broken. Neighbours beyond an edge follow the wrap mode; if the map does not repeat, the edge
+/// texels are repeated once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SourceCounts {
-    /// Texels steeper than the largest slope, scaled back to it, direction kept.
+    /// Texels steeper than the maximum slope, scaled back to it with their direction kept.
     pub clamped: u64,
     /// Normals that point into the surface (z <= 0), made neutral.
     pub behind: u64,
-    /// Texels that give no direction at all, made neutral: two-channel normals far outside the unit disc, zero vectors,
+    /// Texels without any direction, made neutral: two-channel normals far outside the unit disc, zero vectors, and
     /// normals straight into the surface.
     pub invalid: u64,
-    /// NaN or infinite texels: normals are made neutral, heights flat.
+    /// NaN or infinite texels: normals are made neutral, heights are made flat.
     pub non_finite: u64,
 }
 
@@ -126,7 +127,7 @@ impl SourceCounts {
         self.behind + self.invalid + self.non_finite
     }
 
-    /// All texels that were changed.
+    /// All repaired texels.
     pub fn total(self) -> u64 {
         self.clamped + self.broken()
     }
@@ -157,14 +158,14 @@ impl Sum for SourceCounts {
     }
 }
 
-/// The slope of a vector that may be no usable normal, scaled back to `max_slope` where it is longer, direction kept; `None`
-/// where the vector points into the surface or is not finite. Counts the faults.
+/// The slope of a vector that may not be a valid normal, scaled back to `max_slope` if it is steeper, with its
+/// direction kept. `None` if the vector points into the surface or is not finite. Counts the faults.
 pub fn repaired_slope(x: f32, y: f32, z: f32, max_slope: f32, counts: &mut SourceCounts) -> Option<Slope> {
     if !(x.is_finite() && y.is_finite() && z.is_finite()) {
         counts.non_finite += 1;
         return None;
     }
-    // In f64 the square of any finite f32 is finite and not zero unless the number is.
+    // In f64 the square of any finite f32 is finite, and zero only for zero.
     let length = (f64::from(x).powi(2) + f64::from(y).powi(2)).sqrt();
     if z <= 0.0 {
         if length == 0.0 {

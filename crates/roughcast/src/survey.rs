@@ -1,4 +1,4 @@
-//! A pass over every slope of level 0, before anything is stored: it finds the smallest safe scale.
+//! A pass over every slope of level 0 that finds the smallest safe scale before anything is stored.
 
 use crate::parallel;
 use crate::progress::{Progress, Stopped};
@@ -6,20 +6,21 @@ use crate::pyramid::{largest, largest_component_and_square};
 use crate::row::{Row, RowSource, SourceScratch};
 use crate::texture::Peaks;
 
-/// The slopes of level 0.
+/// Statistics of the slopes of level 0.
 #[derive(Clone, Debug)]
 pub(crate) struct Survey {
     /// The largest magnitudes.
     pub peaks: Peaks,
-    /// Counts of a sample of the squared lengths.
+    /// Histogram of a sample of the squared lengths.
     histogram: Vec<u32>,
 }
 
-/// Squared lengths are counted by their float's exponent and leading five bits: bins up to 3.1 % wide, 1.6 % in the length.
+/// Squared lengths are binned by the exponent and the leading five mantissa bits of the float: bins up to 3.1 % wide,
+/// or 1.6 % in the length.
 const BIN_SHIFT: u32 = 18;
 const BINS: usize = 1 << (31 - BIN_SHIFT);
 
-/// Texels sampled for the histogram, about: plenty for a quantile of 0.1 %.
+/// Approximate number of texels sampled for the histogram: plenty for a quantile of 0.1 %.
 const SAMPLE: usize = 1 << 20;
 
 const BAND_ROWS: usize = 64;
@@ -29,8 +30,8 @@ impl Survey {
         Self { peaks: Peaks::default(), histogram: vec![0; BINS] }
     }
 
-    /// The length that all but one in so many texels stay below, to within 1.6 % above; from a sample of a million
-    /// texels where there are more.
+    /// The slope length that only one in `many` texels exceeds, overestimated by at most 1.6 %. Maps of more than a
+    /// million texels are sampled.
     pub fn slope_exceeded_by_one_in(&self, many: u64) -> f32 {
         let sampled: u64 = self.histogram.iter().map(|count| u64::from(*count)).sum();
         let allowed = sampled / many;
@@ -54,14 +55,15 @@ impl Survey {
     }
 }
 
-/// Every so many columns of a row the automatic limit of slopes takes a sample, and row y begins at column y modulo this.
-/// Whoever wants the same limit by other means, such as a GPU, takes the same sample.
+/// Column stride at which the automatic slope limit samples each row; row y starts at column y modulo the stride.
+///
+/// Another implementation, such as one on a GPU, must take the same sample to get the same limit.
 pub fn survey_stride(width: usize, height: usize) -> usize {
-    // Odd, so that a pattern of even period is not always met at the same place.
+    // Odd, so that a pattern of even period is not always sampled at the same phase.
     (width * height / SAMPLE) | 1
 }
 
-/// Looks at every slope of level 0.
+/// Surveys every slope of level 0.
 pub(crate) fn survey(source: &dyn RowSource, progress: &Progress<'_>) -> Result<Survey, Stopped> {
     let stride = survey_stride(source.width(), source.height());
     let bands = parallel::map((0..source.height().div_ceil(BAND_ROWS)).collect(), |band| {
@@ -80,10 +82,10 @@ pub(crate) fn survey(source: &dyn RowSource, progress: &Progress<'_>) -> Result<
     Ok(whole)
 }
 
-/// Rows of a sample of level 0.
+/// Number of rows in a sample of level 0.
 const SAMPLED_ROWS: usize = 64;
 
-/// Looks at some rows of level 0 alone, spread over all of it: enough for the histogram, not for the peaks.
+/// Surveys only some rows, spread over all of level 0: enough for the histogram, not for the peaks.
 pub(crate) fn survey_of_some_rows(source: &dyn RowSource) -> Survey {
     let step = source.height().div_ceil(SAMPLED_ROWS);
     let rows: Vec<usize> = (0..source.height()).skip(step / 2).step_by(step).collect();

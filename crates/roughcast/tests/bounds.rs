@@ -1,4 +1,4 @@
-//! The stated bounds of every layout in every type: kept on every texel of every level, and not too loose.
+//! The stated bounds of every layout in every type hold on every texel of every level, and are not too loose.
 
 mod common;
 
@@ -12,10 +12,10 @@ use roughcast::{
     PyramidFilter, RoughnessTexture, SampleType, SourceOptions,
 };
 
-/// Float moments are made in single floats: this many roundings of a texel's rms come on top of a bound.
+/// Moments are computed in single floats: this many roundings of a texel's rms are added to a bound.
 const AVERAGING: f64 = 24.0;
 
-/// `M = Σ + B Bᵀ` is rounded to single floats when decoded: each of its three numbers once or twice.
+/// `M = Σ + B Bᵀ` is rounded to single floats when decoded: each of its three components once or twice.
 const SEMIDEFINITE: f64 = 4.0;
 
 struct Map {
@@ -33,7 +33,7 @@ fn maps() -> Vec<Map> {
     let steep: Vec<[f64; 2]> = (0..64 * 64).map(|_| steep(&mut random)).collect();
     let (steep, steep_source) = maps::slope_map(64, 64, &steep);
     let (flat, flat_source) = maps::slope_map(16, 12, &[[0.0, 0.0]; 16 * 12]);
-    // Brushed metal: hardly any variance across, where the root of a rounding is what counts.
+    // Brushed metal: hardly any variance across the grooves, where the square root amplifies rounding.
     let mut groove = |x: usize| [if x.is_multiple_of(2) { 0.6 } else { -0.6 }, 0.002 * random.signed()];
     let grooves: Vec<[f64; 2]> = (0..48 * 48).map(|i| groove(i % 48)).collect();
     let (grooves, grooves_source) = maps::slope_map(48, 48, &grooves);
@@ -57,7 +57,7 @@ fn maps() -> Vec<Map> {
     ]
 }
 
-/// One way to bake.
+/// A set of bake options and a base.
 #[derive(Clone, Copy, Debug)]
 struct Case {
     options: BakeOptions,
@@ -111,15 +111,16 @@ fn material_cases(options: BakeOptions) -> Vec<Case> {
     cases
 }
 
-/// What a layout promises to give back of a texel: mean slope, then the numbers that the bound on variances speaks of.
+/// What a layout guarantees for a texel: its mean slope, then the values that the bound on variances applies to.
 struct Promise {
     slope: [f64; 2],
     variances: Vec<f64>,
-    /// The whole covariance, where the layout keeps it.
+    /// The full covariance, if the layout stores it.
     covariance: Option<[f64; 3]>,
 }
 
-/// Widths above one cannot be stored in 0 ..= 1; the bounds speak of what can.
+/// Limits a variance to what can be stored. Widths above one do not fit into 0 ..= 1, and the bounds cover only
+/// storable values.
 fn storable(case: &Case, variance: f64) -> f64 {
     let unlimited = case.options.pbr.roughness_stored == RoughnessStored::SpecularPower;
     if unlimited { variance } else { variance.min(0.5) }
@@ -137,7 +138,7 @@ fn promised(case: &Case, texel: Texel, normal: [f64; 3]) -> Promise {
         Layout::Clean => plain(vec![half_trace], None),
         Layout::SchillingIsotropic => plain(vec![eigenvalues(c).0], None),
         Layout::Pbr if case.options.pbr.anisotropy.is_none() => plain(vec![storable(case, half_trace)], None),
-        // Strength is a ratio of widths up to one.
+        // Strength is a ratio of widths, which are at most one.
         Layout::Pbr if eigenvalues(c).0 <= 0.5 => plain(vec![c[0], c[1]], Some(c)),
         Layout::Pbr => plain(vec![], None),
         Layout::Toksvig => {
@@ -149,7 +150,7 @@ fn promised(case: &Case, texel: Texel, normal: [f64; 3]) -> Promise {
     }
 }
 
-/// The same numbers of a decoded texel.
+/// The same values of a decoded texel.
 fn given(case: &Case, texel: Texel, promise: &Promise) -> Vec<f64> {
     let c = texel.covariance();
     match case.options.layout {
@@ -159,7 +160,7 @@ fn given(case: &Case, texel: Texel, promise: &Promise) -> Vec<f64> {
     }
 }
 
-/// Worst errors, in what was allowed.
+/// Worst errors, as fractions of the allowed error.
 #[derive(Clone, Copy, Debug, Default)]
 struct Worst {
     slope: f64,
@@ -185,7 +186,7 @@ fn check(
             let what =
                 || format!("{} {case:?} level {number} texel {index}: {got:?} for {wanted:?}", map.name);
             let keep = |error: f64, bound: f32, name: &str| {
-                // The float pyramid's own rounding; M's is at most twice the slope's of B, times B.
+                // The float pyramid's own rounding. M's rounding is at most twice that of B's slope, times B.
                 let allowed = f64::from(bound) + rounding * (1.0 + wanted.rms());
                 assert!(error <= allowed, "{name} off by {error:e} > {allowed:e}, {}", what());
                 error / allowed
@@ -208,19 +209,20 @@ fn check(
     worst
 }
 
-/// Factors by which bounds may exceed the worst error on some map, each at most twice what is measured.
+/// Factors by which bounds may exceed the worst error on a map, each at most twice the measured one.
 fn loosest(case: &Case) -> Worst {
     let BakeOptions { sample_type: bits, layout, pbr, .. } = case.options;
     let slope = match bits {
-        // Some texel is half a code off.
+        // Some texel is off by half a code.
         SampleType::U8 => 1.1,
-        // The bound counts roundings of the float pyramid, too.
+        // The bound also includes roundings of the float pyramid.
         SampleType::U16 => 1.5,
-        // A half float's rounding follows the value; the bound is that of the largest that the scale allows.
+        // A half float's rounding is proportional to the value; the bound assumes the largest value that the scale
+        // allows.
         SampleType::F16 | SampleType::F32 => 3.0,
     };
     let variance = match (layout, bits) {
-        // The bound on a variance adds those of all that it is computed of; no texel has all of them at once.
+        // The bound on a variance adds the errors of all its inputs; no texel has all of them at once.
         (Layout::Pbr, _) => material_variance(&pbr, bits),
         (_, SampleType::F16 | SampleType::F32) => 4.0,
         _ => 2.5,
@@ -229,22 +231,24 @@ fn loosest(case: &Case) -> Worst {
     Worst { slope, variance, eigenvalue: 4.0 }
 }
 
-/// The bounds of a material take the roughness between zero and one that is off most, which no map here has on its own.
+/// The bounds of a material assume the roughness between zero and one that has the largest error, which no map here
+/// reaches by itself.
 fn material_variance(pbr: &PbrOptions, bits: SampleType) -> f64 {
     let half = matches!(bits, SampleType::F16 | SampleType::F32);
     match (pbr.anisotropy, pbr.roughness_stored) {
-        // The bound takes a half float's coarsest rounding, near a gloss of one, and the fastest change of the variance,
-        // near zero. No gloss has both.
+        // The bound combines a half float's coarsest rounding, near a gloss of one, with the fastest change of the
+        // variance, near zero. No gloss has both.
         (None, RoughnessStored::Gloss) if half => 12.0,
         (None, _) => 4.5,
-        // The bound takes the root of a half float's rounding, which only the width of a mirror is off by.
+        // The bound assumes the square root of a half float's rounding, an error that only the width of a mirror
+        // reaches.
         (Some(_), RoughnessStored::AlphaSquared) if half => 20.0,
         (Some(_), RoughnessStored::SpecularPower) => 12.0,
         (Some(_), _) => 7.0,
     }
 }
 
-/// The bound that is too wide for the worst error, which is given in parts of it.
+/// The name of a bound that is too wide for the worst error; `worst` is given as fractions of the bounds.
 fn wide_bound(case: &Case, worst: Worst) -> Option<&'static str> {
     let loosest = loosest(case);
     let has_eigenvalues = matches!(case.options.layout, Layout::Lean | Layout::Schilling);
@@ -269,7 +273,7 @@ fn too_wide_bounds_are_detected() {
             wide_bound(&case, Worst { slope: 1.0, variance: f64::NAN, eigenvalue: 1.0 }),
             Some("variance")
         );
-        // A bound of twice the error is found where half a code is what counts.
+        // A bound twice as large as the error is detected in types whose error is dominated by half a code.
         let doubled = Worst { slope: 0.5, variance: 0.5, eigenvalue: 0.5 };
         if case.options.sample_type == SampleType::U8 {
             assert_eq!(wide_bound(&case, doubled), Some("slope"), "{case:?}");
@@ -277,7 +281,7 @@ fn too_wide_bounds_are_detected() {
     }
 }
 
-/// The covariance along every direction, mixed term included, before the decoder makes it semidefinite.
+/// Checks the covariance along every direction, including the mixed term, before the decoder makes it semidefinite.
 fn check_before_mending(baked: &Baked, case: &Case, wanted: &[Level]) {
     let raw = match case.options.layout {
         Layout::Lean => raw_lean(baked),

@@ -1,4 +1,4 @@
-//! Invalid normals: the mean of their neighbours replaces them, so that a few of them change no map.
+//! Invalid normals are replaced by the mean of their neighbours, so that a few of them do not change a map.
 
 mod common;
 
@@ -8,15 +8,15 @@ use roughcast::{Image, NormalRange, PyramidFilter, SampleType, Samples, SourceCo
 
 /// A real map in the small set.
 const MAP: &str = "crops/rock020_normal_256.jpg";
-/// Broken texels a million in the map that this was found on.
+/// Broken texels per million in the map on which this problem was found.
 const PARTS_IN_A_MILLION: f64 = 6.0;
 
-/// Codes of normals that point into the surface: straight, to a side, and barely.
+/// Codes of normals that point into the surface: straight down, sideways, and barely.
 const INTO_THE_SURFACE: [[u8; 3]; 3] = [[128, 128, 0], [255, 60, 20], [20, 128, 127]];
-/// A normal that is steep but none of those.
+/// A steep normal that is still valid.
 const STEEP: [u8; 3] = [20, 128, 128];
 
-/// The map repeated to some millions of texels, so that so few of them can be broken, with these texels in it.
+/// The map repeated to several million texels, so that very few of them can be broken, with these texels inserted.
 fn map_with(texels: &[[u8; 3]]) -> (Image, usize) {
     let map = real_files::read(MAP);
     let Samples::U8(crop) = map.samples() else { panic!("{MAP} has 8 bits") };
@@ -26,7 +26,7 @@ fn map_with(texels: &[[u8; 3]]) -> (Image, usize) {
     let count = samples.len() / 3;
     let broken = (count as f64 * PARTS_IN_A_MILLION * 1e-6) as usize;
     for (i, texel) in texels.iter().cycle().take(broken).enumerate() {
-        // Anywhere, each at some distance from the others.
+        // Scattered, with some distance between them.
         let at = 3 * (i * 160_001 + 777);
         samples[at..at + 3].copy_from_slice(texel);
     }
@@ -34,7 +34,8 @@ fn map_with(texels: &[[u8; 3]]) -> (Image, usize) {
     (Image::new(size, size, 3, Samples::U8(samples)).expect("as many"), broken)
 }
 
-/// The standard deviation of the slopes of the whole map, which is the roughness from far, and what was repaired.
+/// The standard deviation of the slopes of the whole map, which is its roughness from far away, and the number of
+/// repaired texels.
 fn far_roughness(image: &Image) -> (f64, SourceCounts) {
     let baked = baked(image, &SourceOptions::default(), &float_moments(PyramidFilter::Box));
     let levels = decode(&baked.arrays).expect("moments");
@@ -44,21 +45,22 @@ fn far_roughness(image: &Image) -> (f64, SourceCounts) {
 
 #[test]
 fn a_few_broken_texels_do_not_change_a_distant_real_map() {
-    /// A few texels of a million that are not their own any more.
+    /// Tolerated relative change, as a few texels per million are replaced.
     const UNCHANGED: f64 = 1e-4;
     let (sound, _) = far_roughness(&map_with(&[]).0);
     let (image, broken) = map_with(&INTO_THE_SURFACE);
     let (repaired, counts) = far_roughness(&image);
     assert_eq!(counts, SourceCounts { behind: broken as u64, ..Default::default() });
     assert!((repaired / sound - 1.0).abs() < UNCHANGED, "{repaired} and {sound}");
-    // Such a share of texels does matter where they are as steep as can be.
+    // The same share of texels does matter if they are as steep as possible.
     let (image, _) = map_with(&[STEEP]);
     let (steep, counts) = far_roughness(&image);
     assert_eq!(counts, SourceCounts { clamped: broken as u64, ..Default::default() });
     assert!(steep / sound > 1.1, "{steep} and {sound}");
 }
 
-/// A map of one slope with broken texels is that slope everywhere, in every wrap mode and wherever they are.
+/// A map of constant slope with broken texels has that slope everywhere, in every wrap mode and wherever the broken
+/// texels are.
 #[test]
 fn broken_texels_of_a_constant_slope_get_that_slope() {
     const ROUNDING: f32 = 4.0 * f32::EPSILON;
@@ -66,7 +68,7 @@ fn broken_texels_of_a_constant_slope_get_that_slope() {
     let good = [0.25_f32, -0.5, 1.0];
     let source = SourceOptions::default().with_range(NormalRange::Signed);
     for bad in [[0.3, 0.1, -1.0], [f32::NAN, 0.0, 1.0], [0.0; 3], [0.2, 0.0, f32::INFINITY]] {
-        // Corners, edges, neighbours of each other, the middle.
+        // Corners, edges, adjacent texels, the middle.
         for broken in [vec![0], vec![8, 45, 53], vec![3, 4, 12], vec![30], vec![0, 1, 9]] {
             for wrap in Wrap::ALL {
                 let texel = |i: usize| if broken.contains(&i) { bad } else { good };
@@ -84,8 +86,8 @@ fn broken_texels_of_a_constant_slope_get_that_slope() {
     }
 }
 
-/// Tiles of the fused pass are 512 columns wide: a broken texel at their edge has neighbours in the next, and at the map's own
-/// edge in the first.
+/// Tiles of the fused pass are 512 columns wide: a broken texel at a tile's edge has neighbours in the next tile, and
+/// at the map's edge in the first.
 #[test]
 fn neighbours_come_from_other_tiles_and_from_beyond_the_edge() {
     const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;

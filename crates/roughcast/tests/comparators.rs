@@ -1,4 +1,5 @@
-//! Every comparator of these tests fails when it should, at the texel that is wrong, and passes just below.
+//! Every comparator of these tests fails when it should, at the texel that is wrong, and passes just below its
+//! tolerance.
 
 mod common;
 
@@ -15,7 +16,7 @@ fn levels() -> Vec<Level> {
     pyramid_oracle::bump_moments(&slopes, PyramidFilter::Box, Wrap::Repeat)
 }
 
-/// The levels with one number of one texel moved by so much.
+/// The levels with one value of one texel changed by this amount.
 fn perturbed(levels: &[Level], level: usize, plane: usize, texel: usize, by: f64) -> Vec<Level> {
     let mut levels = levels.to_vec();
     levels[level].planes[plane][texel] += by;
@@ -67,7 +68,7 @@ fn the_tolerance_allows_only_rounding() {
     }
 }
 
-/// The library against the oracle: a real result with one texel off by two tolerances.
+/// The library against the oracle: a real result in which one texel is off by two tolerances.
 #[test]
 fn a_wrong_baked_texel_is_detected() {
     let (image, source) = maps::slope_map(24, 20, &maps::slopes(24, 20, 71));
@@ -77,7 +78,7 @@ fn a_wrong_baked_texel_is_detected() {
     assert!(compare_rounded(&got, &wanted, rounding).is_ok());
     let by = 2.0 * rounding.second(wanted[1].texel(9));
     assert!(compare_rounded(&perturbed(&got, 1, 2, 9, by), &wanted, rounding).is_err());
-    // And a whole level by another filter, another wrap mode or another gradient is far off.
+    // A whole level computed with another filter, wrap mode or gradient is far off.
     let other = pyramid_oracle::bump_moments(
         &slope_oracle::slopes(&image, &source),
         PyramidFilter::Triangle,
@@ -127,7 +128,7 @@ fn drifting_means_are_detected() {
 #[test]
 fn invalid_covariances_are_detected() {
     let levels = levels();
-    // The oracle's own level 0 has a covariance of f64 rounding.
+    // The covariance of the oracle's own level 0 is only f64 rounding.
     assert!(check_semidefinite(&levels, 1.0).is_ok());
     let texel = levels[0].texel(3);
     let trace = texel.m[0] + texel.m[1];

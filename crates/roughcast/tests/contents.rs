@@ -1,4 +1,4 @@
-//! The contents of each layout's files, read from their samples by hand: the formulas, channel by channel, in floats.
+//! The contents of each layout's files, checked sample by sample: the formulas, channel by channel, in floats.
 
 mod common;
 
@@ -9,10 +9,10 @@ use common::{baked, baked_with, float_moments, options, oracle_of, pyramid_oracl
 use roughcast::texture::{Base, Layout, RoughnessStored};
 use roughcast::{BaseRoughness, Image, PyramidFilter, RoughnessMap, SampleType, Samples, SourceOptions};
 
-/// Averaging alone: some four roundings a level.
+/// Averaging alone: about four roundings per level.
 const AVERAGING: Rounding = Rounding { count: 24.0, floor: 0.0 };
 
-/// Sizes on and off the fused pass.
+/// Sizes that use the fused pass, and sizes that do not.
 const SIZES: [(usize, usize); 3] = [(64, 64), (53, 37), (96, 40)];
 
 #[test]
@@ -35,7 +35,7 @@ fn a_uniform_base_adds_its_variance_to_every_second_moment() {
             expect(compare_rounded(&raw_moments(&with), &wanted, AVERAGING), &(width, height, power));
             let info = with.arrays[0].info;
             assert_eq!((info.base, info.base_variance), (Base::Baked, 1.0 / power));
-            // Not folded in, it is only written down.
+            // The base is not included in the moments, only recorded in the metadata.
             let kept_apart = baked_with(&image, &source, base, &float_moments(PyramidFilter::Box));
             assert!(raw_moments(&kept_apart) == raw_moments(&without));
             let info = kept_apart.arrays[0].info;
@@ -63,7 +63,7 @@ fn a_mapped_base_adds_the_mean_of_its_variance() {
             let base = Some(BaseRoughness::Map(RoughnessMap { image: map.view(), channel, stored }));
             let folded = float_moments(PyramidFilter::Box).with_base(Base::Baked);
             let got = baked_with(&image, &source, base, &folded);
-            // Gloss is one minus a roughness: that difference's rounding, four times over.
+            // Gloss is one minus a roughness; that difference's rounding is multiplied by four.
             let rounding = Rounding { floor: 0.1, ..AVERAGING };
             expect(compare_rounded(&raw_moments(&got), &wanted, rounding), &(width, height, stored));
             assert!(
@@ -127,7 +127,7 @@ fn toksvigs_factor_follows_from_the_averaged_normal() {
                 let s = 1.0 / variance;
                 length / (length + s * (1.0 - length))
             });
-            // d(factor)/d(length) is at most s, and the length is off by its own rounding.
+            // d(factor)/d(length) is at most s, and the length has its own rounding error.
             let smallest = 5e-4; // variance of the smoothest texel of the map: 0.2^4 / 2 = 8e-4
             let result = compare_planes(&stored(texture, "A"), &factor, |_| 8.0 * EPS / smallest);
             expect(result.map(|_| ()), &(width, height));
@@ -135,7 +135,7 @@ fn toksvigs_factor_follows_from_the_averaged_normal() {
     }
 }
 
-/// The unit normals of level 0, averaged and not renormalised.
+/// The averaged unit normals of level 0, not renormalised.
 fn averaged_normals(image: &Image, source: &SourceOptions) -> [Vec<Plane>; 3] {
     let slopes = slope_oracle::slopes(image, source);
     std::array::from_fn(|component| {
@@ -162,7 +162,7 @@ fn lean_and_schilling_store_the_averaged_normal() {
     }
 }
 
-/// s grows to the right, t downwards: ∂h/∂s = -B.x, ∂h/∂t = +B.y, and the mixed moment turns its sign.
+/// s grows to the right, t downwards: ∂h/∂s = -B.x, ∂h/∂t = +B.y, and the mixed moment changes its sign.
 #[test]
 fn bump_slopes_are_derivatives_with_t_downwards() {
     let (heights, height_source) = maps::height_map(53, 37, SampleType::U16, 38);
@@ -193,7 +193,7 @@ fn bump_slopes_are_derivatives_with_t_downwards() {
             &"b0_h",
         );
     }
-    // A ramp that rises to the right and falls downwards, away from its edges.
+    // A ramp that rises to the right and falls downwards, tested away from the map's edges.
     let values = (0..64).map(|i| ((i % 8) as f32) - 2.0 * ((i / 8) as f32)).collect();
     let image = maps::image(8, 8, 1, Samples::F32(values));
     let source = height_source.with_height_scale(1.0 / 8.0);

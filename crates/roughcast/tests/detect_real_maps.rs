@@ -8,7 +8,7 @@ use roughcast::detect::{
 use roughcast::{Image, Kind, NormalChannels, NormalRange, Samples};
 use roughcast_testdata::{Row, find, is_extended, manifest};
 
-/// Slopes are derived from normals with z no smaller than this.
+/// Slopes are derived from normals whose z is at least this.
 const MIN_Z: f32 = 0.02;
 
 /// The rows of MANIFEST.tsv of one kind whose file is an ordinary picture.
@@ -21,8 +21,8 @@ fn is_picture(path: &str) -> bool {
     [".png", ".jpg", ".webp", ".tga", ".exr", ".hdr"].iter().any(|ending| path.ends_with(ending))
 }
 
-/// The image as stored, and the names of its channels. `None` for the EXR files whose compression or channels
-/// the decoder of these tests does not read.
+/// The image as stored, and the names of its channels. `None` for EXR files whose compression or channels these tests'
+/// decoder does not support.
 fn load(path: &str) -> Option<(Image, Vec<&'static str>)> {
     let mut reader = image::ImageReader::open(find(path)).unwrap_or_else(|e| panic!("{path}: {e}"));
     reader.no_limits();
@@ -74,7 +74,7 @@ fn guess(path: &str) -> Option<KindGuess> {
     Some(guess_kind(&image, &channels, guess_range(&image)))
 }
 
-/// The fewest files that must be read, with the extended corpus and in the small set alone.
+/// The minimum number of files that must be read, with the extended corpus and with the small set alone.
 struct Fewest {
     extended: usize,
     small: usize,
@@ -86,7 +86,7 @@ impl Fewest {
     }
 }
 
-/// Checks that every file of a kind is guessed as `expected`, and that enough of them could be read.
+/// Checks that every file of a kind is classified as `expected`, and that enough of them could be read.
 fn assert_kind(kind: &str, expected: Kind, fewest: Fewest) {
     let fewest = fewest.here();
     let guesses: Vec<_> =
@@ -106,7 +106,7 @@ fn height_maps_are_heights() {
     assert_kind("height", Kind::Height, Fewest { extended: 20, small: 9 });
 }
 
-/// No pixel tells a roughness map from a height map; the guess is the same for both.
+/// Pixels cannot distinguish a roughness map from a height map; the guess is the same for both.
 #[test]
 fn grey_maps_of_other_kinds_count_as_heights() {
     assert_kind("roughness", Kind::Height, Fewest { extended: 4, small: 0 });
@@ -137,8 +137,8 @@ fn other_pictures_in_colour_are_doubtful() {
     );
 }
 
-/// Blue holds z in all of the maps but two: one keeps z there without scale and bias, one 255 nearly
-/// throughout.
+/// Blue contains z in all of the maps except two: one stores z without scale and bias, and one has a blue of 255 nearly
+/// everywhere.
 #[test]
 fn blue_without_z_is_detected() {
     for row in rows("normal") {
@@ -166,8 +166,8 @@ fn the_range_of_float_normals_is_detected() {
     assert_eq!(guess_kind(&as_signed, &channels, NormalRange::Signed), KindGuess::Certain(Kind::Normal));
 }
 
-/// The direction that MANIFEST.tsv states, which was measured in another way: against the height map of the
-/// same material, or by the curl of the whole map.
+/// The direction that MANIFEST.tsv states, which was measured independently: against the height map of the same
+/// material, or by the curl of the whole map.
 fn stated_direction(row: &Row) -> Option<GreenVerdict> {
     let convention = row["convention"].as_str();
     match convention.split_whitespace().next() {
@@ -177,8 +177,8 @@ fn stated_direction(row: &Row) -> Option<GreenVerdict> {
     }
 }
 
-/// JPEG has destroyed the red channel of this map: it has nothing to do with the height map any more
-/// (correlation 0.07, green's is 0.94), so no curl can be measured. Undecided is the right answer.
+/// JPEG has destroyed this map's red channel: its correlation with the height map is only 0.07 (green's is 0.94), so no
+/// curl can be measured. Undecided is the right answer.
 const RED_IS_LOST: &str = "materials/woodfloor043/WoodFloor043_1K_Normal.jpg";
 
 #[test]

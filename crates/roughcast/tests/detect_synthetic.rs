@@ -1,4 +1,4 @@
-//! The detection of `roughcast::detect` on maps that are made here, each with one property of interest.
+//! The detection of `roughcast::detect` on synthetic maps, each with one property of interest.
 
 use roughcast::detect::{GreenVerdict, KindGuess, guess_channels, guess_kind, guess_range, test_green};
 use roughcast::{Image, Kind, NormalChannels, NormalRange, Samples};
@@ -9,7 +9,7 @@ const RGBA: [&str; 4] = ["R", "G", "B", "A"];
 const NORMAL: KindGuess = KindGuess::Certain(Kind::Normal);
 const HEIGHT: KindGuess = KindGuess::Certain(Kind::Height);
 
-/// A hash of a pixel, as a number in -1 .. 1: noise that is the same on every run.
+/// A hash of a pixel, as a number in -1 .. 1: noise that is identical on every run.
 fn noise(x: usize, y: usize, seed: u64) -> f32 {
     let mut bits = (x as u64) << 40 ^ (y as u64) << 16 ^ seed.wrapping_mul(0x9e37_79b9_7f4a_7c15);
     for _ in 0..3 {
@@ -52,7 +52,7 @@ fn guess(image: &Image, channels: &[&str]) -> KindGuess {
     guess_kind(image, channels, guess_range(image))
 }
 
-/// The reason of a doubtful guess.
+/// The reason for a doubtful guess.
 fn doubt(image: &Image, channels: &[&str]) -> String {
     match guess(image, channels) {
         KindGuess::Doubtful { reason } => reason,
@@ -80,12 +80,12 @@ fn the_number_of_channels_decides_where_it_can() {
 
 #[test]
 fn grey_is_a_height_in_three_channels_too() {
-    // Within 3/255 of each other: what a lossy codec leaves of grey.
+    // Within 3/255 of each other: grey after lossy compression.
     let grey = bytes(SIZE, SIZE, |x, y| {
         [1, 2, 3].map(|seed| 0.5 + 0.4 * noise(x / 8, y / 8, 0) + noise(x, y, seed) * 1.5 / 255.0)
     });
     assert_eq!(guess(&grey, &RGB), HEIGHT);
-    // Brown, so dark that its channels are as close as those of a noisy grey.
+    // Brown, so dark that its channels are as close to each other as those of a noisy grey.
     let brown = bytes(SIZE, SIZE, |x, y| {
         let shade = 0.06 + 0.03 * noise(x / 4, y / 4, 0);
         [shade, 0.7 * shade, 0.5 * shade]
@@ -127,7 +127,7 @@ fn three_components_are_found_in_each_range() {
     assert_eq!(guess_range(&signed), NormalRange::Signed);
     assert_eq!(guess(&signed, &RGB), NORMAL);
     assert_eq!(guess_range(&floats(|x, y| wave_normal(x, y).map(stored))), NormalRange::Unorm);
-    // Flat: no negative value gives the signed map away.
+    // Flat: no negative value reveals that the map is signed.
     assert_eq!(guess_range(&floats(|_, _| [0.0, 0.0, 1.0])), NormalRange::Signed);
     assert_eq!(guess_range(&floats(|_, _| [0.5, 0.5, 1.0])), NormalRange::Unorm);
     assert_eq!(guess_range(&floats(|x, y| [wave_normal(x, y)[0], 0.0])), NormalRange::Signed);
@@ -163,12 +163,12 @@ fn x_and_y_are_found_beside_a_constant_blue() {
         });
         assert_eq!(guess(&image, &RGB), NORMAL, "blue {blue}");
         assert_eq!(guess_channels(&image, &RGB, NormalRange::Unorm), NormalChannels::Xy, "blue {blue}");
-        // The same values, but no slopes of any surface.
+        // The same values, but not the slopes of any surface.
         let shuffled =
             bytes(SIZE, SIZE, |x, y| [0.5 + 0.3 * noise(x, y, 8), 0.5 + 0.3 * noise(x, y, 9), blue]);
         assert!(doubt(&shuffled, &RGB).contains("slopes of a surface"), "blue {blue}");
     }
-    // Occlusion, roughness and no metalness.
+    // Occlusion, roughness and zero metalness.
     let orm =
         bytes(SIZE, SIZE, |x, y| [0.95 + 0.05 * noise(x, y, 10), 0.6 + 0.3 * noise(x / 4, y / 4, 11), 0.0]);
     assert!(doubt(&orm, &RGB).contains("not grey"));
@@ -228,8 +228,8 @@ fn verdict(width: usize, height: usize, slope: impl Fn(usize, usize) -> [f32; 2]
     test_green(&bx, &by, width, height).map(|test| test.verdict())
 }
 
-/// Central differences of a sinusoid of frequency w fall short of its derivative by the factor sin(w)/w, at
-/// most 2 % apart between the two axes of the waves: their products come within this of their energies.
+/// Central differences of a sinusoid of frequency w are smaller than its derivative by the factor sin(w)/w, which
+/// differs by at most 2 % between the two axes of the waves: their products differ from their energies by at most this.
 const WAVE_TOLERANCE: f64 = 1e-2;
 
 #[test]
@@ -243,7 +243,7 @@ fn a_surface_without_noise_correlates_fully() {
 
 #[test]
 fn outliers_do_not_outvote_a_surface() {
-    // One texel in 200 is near the horizon, in some direction; some are broken altogether.
+    // One texel in 200 is near the horizon, in various directions; some are broken.
     let spoilt = |x: usize, y: usize| {
         if noise(x, y, 12) > 0.99 {
             [100.0 * noise(x, y, 13), 100.0 * noise(x, y, 14)]
@@ -262,7 +262,7 @@ fn unrelated_slopes_are_undecided() {
     for (seed, size) in (0..200).zip([16, 24, 64, 200].into_iter().cycle()) {
         let white = |x, y| [noise(x, y, 2 * seed), noise(x, y, 2 * seed + 1)];
         assert_eq!(verdict(size, size, white), Some(GreenVerdict::Undecided), "seed {seed}, size {size}");
-        // Smooth over 3 texels, so that neighbours are not independent.
+        // Smoothed over 3 texels, so that neighbours are not independent.
         let smooth = |x: usize, y: usize| {
             let around = (0..9).map(|i| white(x + i % 3, y + i / 3));
             around.fold([0.0, 0.0], |sum: [f32; 2], slope| [sum[0] + slope[0], sum[1] + slope[1]])

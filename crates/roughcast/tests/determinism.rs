@@ -1,4 +1,5 @@
-//! The same input gives the same textures and the same report for any number of threads, and whoever owns its memory.
+//! The same input gives the same textures and report for any number of threads, whether the library owns the input's
+//! memory or not.
 
 mod common;
 
@@ -19,14 +20,14 @@ fn check(image: &Image, source: &SourceOptions, options: &BakeOptions) {
     let one = with_threads(1, || baked_with(image, source, base, options));
     for threads in [2, 3, 8] {
         let many = with_threads(threads, || baked_with(image, source, base, options));
-        // The whole of it: every sample, every sum of the report.
+        // Compares everything: every sample, every sum of the report.
         assert!(one == many, "{threads} threads, {}x{}, {options:?}", image.width(), image.height());
     }
 }
 
 #[test]
 fn the_number_of_threads_makes_no_difference() {
-    // Several bands of the fused pass, of the general one, and of both after each other.
+    // Several bands of the fused pass, of the general one, and of both in sequence.
     for (width, height) in [(640, 427), (1088, 192), (514, 258)] {
         let (normals, normal_source) = maps::plain_normal_map(width, height, 61);
         let (heights, height_source) = maps::height_map(width, height, SampleType::U16, 62);
@@ -38,7 +39,7 @@ fn the_number_of_threads_makes_no_difference() {
     }
 }
 
-/// The automatic limit of slopes follows from counts of all of them.
+/// The automatic limit of slopes depends on counts over the whole map.
 #[test]
 fn threads_make_no_difference_to_a_limit() {
     let (width, height) = (514, 258);
@@ -65,7 +66,7 @@ fn threads_make_no_difference_to_any_layout() {
     }
 }
 
-/// A map and a roughness map that are parts of one larger array, as another program may have them.
+/// A map and a roughness map that are parts of one larger array, as another program may store them.
 #[test]
 fn borrowed_memory_gives_the_same_as_images() {
     let (width, height) = (48, 33);
@@ -77,7 +78,7 @@ fn borrowed_memory_gives_the_same_as_images() {
         let base = BaseRoughness::Map(RoughnessMap { image, channel, stored });
         let Baked { arrays, report } =
             Bake::of(map).source(source).roughness(base).options(options).run().expect("a map");
-        // Not the metadata, where a base that varies is not a number.
+        // The metadata is excluded: its base variance is NaN for a varying base.
         (arrays.into_iter().map(|array| array.layers).collect::<Vec<_>>(), report)
     };
     let owned = Image::new(width, height, 1, Samples::F32(roughness.clone())).expect("whole rows");

@@ -1,5 +1,5 @@
-//! How often the green test is right, silent or wrong: on the real maps as they are, spoilt in several ways, without any
-//! direction, and beside their height maps.
+//! How often the green test is right, undecided or wrong: on the real maps unchanged, degraded in several ways, without
+//! any direction, and together with their height maps.
 
 mod common;
 
@@ -9,10 +9,10 @@ use image::{ExtendedColorType, ImageFormat};
 use roughcast::detect::{GreenVerdict, test_green, test_green_against_height, test_green_of_map};
 use roughcast::{Green, Image, Samples, SourceOptions};
 
-/// The part of a map that is looked at, in texels.
+/// The part of a map that is tested, in texels.
 const SIDE: usize = 1024;
 
-/// Maps are read as the test reads any: three channels with scale and bias.
+/// Maps are read as the test reads any map: three channels with scale and bias.
 fn options(green: Green) -> SourceOptions {
     SourceOptions::default().with_green(green)
 }
@@ -20,7 +20,7 @@ fn options(green: Green) -> SourceOptions {
 /// Red, green and blue of a map in 8 bits.
 struct Map {
     path: String,
-    /// What the manifest says, which was measured in another way.
+    /// The direction that the manifest states, which was measured in another way.
     direction: Option<GreenVerdict>,
     width: usize,
     height: usize,
@@ -49,7 +49,7 @@ fn maps() -> Vec<Map> {
     entries("normal").into_iter().map(of_entry).collect()
 }
 
-/// Scrambled bits, the same on every run.
+/// Scrambled bits, identical on every run.
 fn scrambled(index: u64) -> u64 {
     let mut z = index.wrapping_mul(0x9e37_79b9_7f4a_7c15);
     z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -57,7 +57,7 @@ fn scrambled(index: u64) -> u64 {
     z ^ z >> 31
 }
 
-/// Adds noise of this standard deviation, in steps of 8 bits: the sum of twelve even numbers is nearly Gaussian.
+/// Adds noise of this standard deviation, in steps of 8 bits: the sum of twelve uniform numbers is nearly Gaussian.
 fn noisy(rgb: &[u8], deviation: f32) -> Vec<u8> {
     let gaussian = |i: usize| {
         let even = |k: u64| (scrambled(i as u64 * 12 + k) >> 40) as f32 / (1 << 24) as f32;
@@ -69,7 +69,7 @@ fn noisy(rgb: &[u8], deviation: f32) -> Vec<u8> {
         .collect()
 }
 
-/// As a JPEG of this quality would keep it.
+/// The pixels after compression as a JPEG of this quality.
 fn through_jpeg(map: &Map, rgb: &[u8], quality: u8) -> Vec<u8> {
     let mut file = Vec::new();
     JpegEncoder::new_with_quality(&mut file, quality)
@@ -88,7 +88,7 @@ fn flattened(rgb: &[u8]) -> Vec<u8> {
     rgb.as_chunks::<3>().0.iter().flat_map(|texel| flat(*texel)).collect()
 }
 
-/// The maps of which the direction is known, by what the test makes of them.
+/// The results of the test on the maps whose direction is known.
 #[derive(Debug, Default)]
 struct Score {
     right: usize,
@@ -110,7 +110,7 @@ fn score(maps: &[Map], spoilt: impl Fn(&Map) -> Vec<u8>) -> Score {
     score
 }
 
-/// Of the maps with a known direction this share must be decided when spoilt; measured on 36 maps: 33, 33 and 32.
+/// The share of maps with a known direction that must be decided when degraded; measured on 36 maps: 33, 33 and 32.
 const DECIDED_WHEN_SPOILT: f64 = 0.8;
 
 #[test]

@@ -1,5 +1,5 @@
-//! Height maps with texels that have no height: those and the texels whose gradient needs them are flat and counted, and
-//! nothing else changes.
+//! Height maps with texels that have no height: those texels, and the ones whose gradient needs them, are flat and
+//! counted, and nothing else changes.
 
 mod common;
 
@@ -8,12 +8,12 @@ use roughcast::texture::{Layout, TextureArray};
 use roughcast::{Gradient, Image, Kind, SampleType, Samples, SourceOptions, Wrap};
 
 const SIZE: usize = 16;
-/// Where the hole is.
+/// The position of the hole.
 const HOLE: (usize, usize) = (6, 9);
-/// Height in texels by which a column is higher than the one before, and a row than the one above.
+/// Height in texels by which each column is above the previous one, and each row above the one above it.
 const RISE: (f32, f32) = (0.5, -0.25);
 
-/// What f32 adds to the slopes and averages of numbers near 1.
+/// The rounding that f32 adds to slopes and averages of values near 1.
 const ROUNDING: f32 = 1e-5;
 
 /// A plane far above zero, in texels, with a hole.
@@ -42,7 +42,7 @@ fn slope(array: &TextureArray, x: usize, y: usize) -> [f32; 2] {
 #[test]
 fn a_hole_and_its_neighbours_are_flat_and_all_others_keep_their_slope() {
     let (hx, hy) = HOLE;
-    // A texel's own height has no part in the first two.
+    // The first two gradients do not use a texel's own height.
     let sobel: Vec<_> = (0..9).map(|i| (hx + i % 3 - 1, hy + i / 3 - 1)).collect();
     let central = vec![HOLE, (hx - 1, hy), (hx + 1, hy), (hx, hy - 1), (hx, hy + 1)];
     let forward = vec![HOLE, (hx - 1, hy), (hx, hy + 1)];

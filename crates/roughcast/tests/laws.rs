@@ -12,7 +12,7 @@ use roughcast::{
     Gradient, Green, Image, NormalRange, PyramidFilter, SampleType, Samples, SamplesMut, SourceOptions, Wrap,
 };
 
-/// Averaging alone: some four roundings a level, eleven levels.
+/// Averaging alone: about four roundings per level, eleven levels.
 const AVERAGING: Rounding = Rounding { count: 24.0, floor: 0.0 };
 
 #[test]
@@ -31,7 +31,7 @@ fn means_of_all_moments_are_the_same_on_every_level() {
     }
 }
 
-/// A constant stays one to the last bit, and no variance comes of it.
+/// A constant stays exactly constant and produces no variance.
 #[test]
 fn a_constant_slope_stays_exactly_constant() {
     for (width, height) in SIZES {
@@ -58,10 +58,10 @@ fn a_constant_slope_stays_exactly_constant() {
     }
 }
 
-/// Schilling's recursion gives the covariance of the whole footprint, with the weights of all levels composed.
+/// Schilling's recursion gives the covariance of the whole footprint, with the weights of all levels combined.
 #[test]
 fn the_roughness_pyramid_holds_the_covariance_of_the_whole_footprint() {
-    /// Roundings of a variance, and of the slopes whose differences it is made of.
+    /// Roundings of a variance, and of the slopes from whose differences it is computed.
     const ROUNDINGS: f64 = 24.0;
     for (width, height) in [(53, 37), (64, 64), (96, 40), (130, 66), (1, 7)] {
         let slopes = maps::slopes(width, height, 22);
@@ -112,7 +112,7 @@ fn schilling_levels(baked: &roughcast::Baked) -> Vec<Vec<Texel>> {
         .collect()
 }
 
-/// Mean slope and covariance (in `m`) of each texel of each level, straight from level 0.
+/// Mean slope and covariance (in `m`) of each texel of each level, computed directly from level 0.
 fn footprints(
     level_0: &slope_oracle::Slopes,
     levels: usize,
@@ -142,17 +142,17 @@ fn footprints(
     all
 }
 
-/// How a symmetry of the map moves its texels and turns its moments.
+/// How a symmetry of the map moves its texels and transforms its moments.
 struct Symmetry {
     name: &'static str,
     /// The size of the moved map.
     size: fn(usize, usize) -> (usize, usize),
-    /// For a texel of the moved map the texel of the first one; arguments are x, y, and the first map's size.
+    /// The texel of the original map for a texel of the moved one; arguments are x, y, and the original map's size.
     from: fn(usize, usize, usize, usize) -> (usize, usize),
     turn: fn(Texel) -> Texel,
 }
 
-/// Counter-clockwise by 90 degrees, and two mirrors.
+/// A counter-clockwise rotation by 90 degrees, and two mirrors.
 const SYMMETRIES: [Symmetry; 3] = [
     Symmetry {
         name: "rotated",
@@ -238,7 +238,7 @@ fn turning_a_height_map_turns_its_moments() {
                 let levels = bake_heights(&heights, width, height, scale);
                 for symmetry in &SYMMETRIES {
                     let (w, h) = (symmetry.size)(width, height);
-                    // Heights are parts of the width, and that may be another one now.
+                    // Heights are fractions of the width, which may differ in the moved map.
                     let got = bake_heights(
                         &symmetry.moved(&heights, width, height),
                         w,
@@ -273,7 +273,7 @@ fn with_green_turned(image: &Image, range: NormalRange) -> Image {
     turned
 }
 
-/// A DirectX and an OpenGL version of one map give the same files, bit for bit.
+/// A DirectX and an OpenGL version of one map produce identical files.
 #[test]
 fn green_up_and_green_down_are_the_same_map() {
     for (sample_type, range) in [
@@ -289,7 +289,7 @@ fn green_up_and_green_down_are_the_same_map() {
             let bake_options = options(layout, SampleType::F32);
             let one = baked(&image, &up, &bake_options);
             assert!(one == baked(&turned, &down, &bake_options), "{sample_type:?} {layout}");
-            // And the direction of green does matter.
+            // The direction of green does matter.
             assert!(one != baked(&image, &down, &bake_options), "{sample_type:?} {layout}");
         }
     }
@@ -312,7 +312,7 @@ fn scaled_heights_have_scaled_slopes() {
         let source = source.with_height_scale(source.height_scale * k as f32);
         let got = raw_moments(&baked(&image, &source, &float_moments(PyramidFilter::Box)));
         if exact {
-            // Powers of two leave every digit alone.
+            // Multiplying by a power of two is exact.
             expect(compare_levels(&got, &scaled, |_| (0.0, 0.0)).map(|_| ()), &k);
         } else {
             expect(compare_rounded(&got, &scaled, Rounding { floor, ..AVERAGING }), &k);
@@ -320,7 +320,7 @@ fn scaled_heights_have_scaled_slopes() {
     }
 }
 
-/// Depth maps are height maps upside down: slopes turn, second moments do not.
+/// Depth maps are inverted height maps: slopes change sign, second moments do not.
 #[test]
 fn the_sense_of_heights_turns_slopes_and_leaves_second_moments() {
     let (image, up) = maps::height_map(64, 64, SampleType::U8, 27);
@@ -334,7 +334,7 @@ fn the_sense_of_heights_turns_slopes_and_leaves_second_moments() {
     }
 }
 
-/// What the decoder hands out is what was stored, except for the repair of covariances.
+/// The decoder returns what was stored, except for the repair of covariances.
 #[test]
 fn the_decoder_returns_the_stored_moments() {
     let (image, source) = maps::plain_normal_map(53, 37, 28);
@@ -348,7 +348,7 @@ fn the_decoder_returns_the_stored_moments() {
                 |l: &Level| Plane { width: l.width, height: l.height, values: l.planes[plane].clone() };
             levels.iter().map(plane).collect()
         };
-        // The repair moves a second moment by its own rounding, at slopes up to 2.
+        // The repair changes a second moment by its own rounding, at slopes up to 2.
         let result =
             compare_planes(
                 &planes(&decoded),

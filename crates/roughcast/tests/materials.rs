@@ -12,13 +12,13 @@ use roughcast::{
     RoughnessMap, RoughnessTexture, SampleType,
 };
 
-/// Roundings of averaging.
+/// Relative rounding of averaging.
 const AVERAGING: f64 = 24.0;
 
-/// Sizes on and off the fused pass.
+/// Sizes that use the fused pass, and sizes that do not.
 const SIZES: [(usize, usize); 3] = [(64, 64), (53, 37), (96, 40)];
 
-/// Floats that hold all numbers as they are, with roughness in a texture of its own.
+/// Floats that hold all values exactly, with roughness in a separate texture.
 fn floats() -> BakeOptions {
     with_choices(
         SampleType::F32,
@@ -43,10 +43,10 @@ fn part(arrays: &[TextureArray], part: Part) -> &TextureArray {
     arrays.iter().find(|array| array.info.part == part).unwrap_or_else(|| panic!("no file is the {part}"))
 }
 
-/// `α² = α0² + 2σ²` with `2σ² = tr Σ`, in every way to store it.
+/// `α² = α0² + 2σ²` with `2σ² = tr Σ`, for every way to store it.
 #[test]
 fn the_roughness_of_a_material_includes_base_and_bumps() {
-    /// Up to four roots and powers of a sum, relative; the pyramid's own roundings beside them.
+    /// Up to four roots and powers of a sum, relative, in addition to the pyramid's own roundings.
     const ROUNDINGS: f64 = 60.0;
     for (width, height) in SIZES {
         let (image, source) = gentle_map(width, height);
@@ -73,8 +73,8 @@ fn the_roughness_of_a_material_includes_base_and_bumps() {
                     RoughnessStored::SpecularPower => 2.0 / r,
                     other => panic!("say what {other} means"),
                 });
-                // Gloss holds one minus the root of the width: its rounding is absolute, and the smallest widths have
-                // their fourth power's worth of it.
+                // Gloss stores one minus the square root of the width: its rounding is absolute, and α² is the fourth
+                // power of that root, which matters for the smallest widths.
                 let allowed = |a: f64| ROUNDINGS * EPS * (a + a.max(EPS).powf(0.75));
                 expect(compare_planes(&alpha_squared, &wanted, allowed).map(|_| ()), &(width, height, form));
                 assert_eq!(file.info.base, if base.is_some() { Base::Baked } else { Base::None });
@@ -97,10 +97,10 @@ fn check_normals(arrays: &[TextureArray], wanted: &[Level]) {
     }
 }
 
-/// Roughness across, strength and direction, by KHR_materials_anisotropy's rule, give Σ back.
+/// Larger roughness, strength and direction reproduce Σ by KHR_materials_anisotropy's rule.
 #[test]
 fn an_anisotropic_material_gives_both_eigenvalues_and_the_direction_back() {
-    /// Roots of differences of eigenvalues: roundings of the larger one, and of the slopes' squares.
+    /// Roots of differences of eigenvalues: roundings of the larger eigenvalue and of the squared slopes.
     const TOLERANCE: f64 = 100.0 * EPS;
     for (width, height) in SIZES {
         let (image, source) = gentle_map(width, height);
@@ -119,7 +119,8 @@ fn an_anisotropic_material_gives_both_eigenvalues_and_the_direction_back() {
         let by = |f: fn((f64, f64)) -> f64| planes(&wanted, move |t| f(eigenvalues(t.covariance())));
         expect(compare_planes(&larger, &by(|e| e.0), |_| TOLERANCE).map(|_| ()), &"larger");
         expect(compare_planes(&smaller, &by(|e| e.1), |_| TOLERANCE).map(|_| ()), &"smaller");
-        // Σ = λ2 I + (λ1 - λ2) d dᵀ: the direction, without its sign and without trouble where both are equal.
+        // Σ = λ2 I + (λ1 - λ2) d dᵀ, which tests the direction without its sign, and without ambiguity if both
+        // eigenvalues are equal.
         for (k, name) in ["xx", "yy", "xy"].iter().enumerate() {
             let rebuilt = combined([along.clone(), across.clone(), x.clone(), y.clone()], |[a, b, x, y]| {
                 let (larger, smaller) = (a * a / 2.0, b * b / 2.0);
@@ -176,7 +177,7 @@ fn a_packed_texture_keeps_occlusion_and_metalness() {
         expect(compare_planes(&got, &wanted, |_| AVERAGING * EPS).map(|_| ()), &channel);
     }
     assert!(one.iter().all(|plane| plane.values.iter().all(|v| *v == 1.0)));
-    // Where nothing says otherwise nothing is occluded and nothing is metal.
+    // Without further data nothing is occluded and nothing is metallic.
     let grey = maps::image(53, 37, 1, maps::samples(&maps::heights(53, 37, 35), SampleType::U8));
     for base in
         [None, Some(BaseRoughness::Variance(0.1)), Some(map(grey.view(), 0)), Some(map(material.view(), 0))]
@@ -187,7 +188,7 @@ fn a_packed_texture_keeps_occlusion_and_metalness() {
     }
 }
 
-/// glTF and three.js read roughness from green; a file of one channel gives them 0, a mirror.
+/// glTF and three.js read roughness from green; a one-channel file would give them 0, a mirror.
 #[test]
 fn roughness_is_in_the_channel_of_its_layout() {
     let (image, source) = gentle_map(16, 16);
@@ -217,7 +218,7 @@ fn roughness_is_in_the_channel_of_its_layout() {
     }
 }
 
-/// Mitsuba, Blender and glTF's tools read `n / 2 + 1/2` also from floats.
+/// Mitsuba, Blender and glTF's tools read `n / 2 + 1/2` from floats, too.
 #[test]
 fn floats_store_normals_in_the_range_of_their_metadata() {
     let (image, source) = gentle_map(16, 16);
@@ -229,7 +230,7 @@ fn floats_store_normals_in_the_range_of_their_metadata() {
         };
         let (unorm, signed) = (baked(NormalRange::Unorm), baked(NormalRange::Signed));
         assert_eq!(PbrOptions::default().normal_range, NormalRange::Unorm);
-        // Three roundings to the type's 11 or 24 bits: of both stored numbers, and of half of one.
+        // Three roundings to the type's 11 or 24 bits: of both stored values, and of half of one.
         let rounding = if bits == SampleType::F16 { 1.5 / 1024.0 } else { 3.0 * f32::EPSILON };
         for name in [Part::Normal, Part::Anisotropy] {
             let levels = |arrays| part(arrays, name).layers[0].levels.clone();
@@ -243,7 +244,7 @@ fn floats_store_normals_in_the_range_of_their_metadata() {
             }
         }
         assert_eq!(part(&unorm, Part::Normal).info.normal_range, NormalRange::Unorm);
-        // The slope of a stored normal moves by 1 + b² of its component's error, b = 1 at most in this map.
+        // The slope of a stored normal changes by 1 + b² times its component's error; b is at most 1 in this map.
         let (from_unorm, from_signed) = (decode(&unorm).expect("parts"), decode(&signed).expect("parts"));
         for (a, b) in from_unorm.iter().zip(&from_signed).flat_map(|(a, b)| a.moments.iter().zip(&b.moments))
         {
@@ -281,7 +282,7 @@ fn widths_along_the_axes_match_the_variances() {
     }
 }
 
-/// A bilinear lookup at a point of the unit square, without wrapping: the tests stay clear of the edge.
+/// A bilinear lookup at a point of the unit square, without wrapping: the tests stay away from the edge.
 fn bilinear(image: &Image, u: f64, v: f64) -> [f64; 2] {
     let (x, y) = (u * image.width() as f64 - 0.5, v * image.height() as f64 - 0.5);
     let (x0, y0) = (x.floor(), y.floor());
@@ -293,16 +294,17 @@ fn bilinear(image: &Image, u: f64, v: f64) -> [f64; 2] {
     })
 }
 
-/// Circular brushing: its axis turns slowly all around, so that no reference axis serves everywhere. Between any texels, and
-/// between levels, a filter must find the axis there.
+/// Circular brushing: its axis turns slowly through all directions, so that no single reference axis works everywhere.
+/// A filter must find the axis between any texels, and between levels.
 #[test]
 fn directions_of_a_brushed_disc_survive_filtering() {
     const SIDE: usize = 128;
-    /// Texels of the coarser level between the middle and a lookup: the axis turns by an eighth of a radian a texel there.
+    /// Minimum distance of a lookup from the middle, in texels of the coarser level: there the axis turns by an eighth
+    /// of a radian per texel.
     const CLEAR: f64 = 8.0;
-    /// A texel's turn, what unequal slopes under it add, and a code of eight bits.
+    /// The turn within a texel, the effect of unequal slopes under it, and one 8-bit code.
     const TOLERANCE_DEGREES: f64 = 9.0;
-    /// Unit vectors within an eighth of a radian of each other lose next to nothing of their length when averaged.
+    /// Averaging unit vectors within an eighth of a radian of each other hardly shortens them.
     const LEAST_LENGTH: f64 = 0.95;
     let radial = |u: f64, v: f64| (0.5 - v).atan2(u - 0.5);
     // Slopes of both signs along the radius.
@@ -323,7 +325,7 @@ fn directions_of_a_brushed_disc_survive_filtering() {
         let mut looked_up = 0;
         for pair in levels.windows(2) {
             let texel = 1.0 / pair[1].width() as f64;
-            // Points between the texels of the finer level, two of them a texel.
+            // Points between the texels of the finer level, two per texel.
             let steps = 2 * pair[0].width();
             for (i, j) in (0..steps).flat_map(|j| (0..steps).map(move |i| (i, j))) {
                 let (u, v) = (i as f64 / steps as f64, j as f64 / steps as f64);
@@ -349,8 +351,8 @@ fn directions_of_a_brushed_disc_survive_filtering() {
     }
 }
 
-/// Toksvig's factor was baked for one exponent, which is in the file; where the exponent varies, compressed textures hold the
-/// length of the normal beside the factor.
+/// Toksvig's factor is baked for one exponent, which is stored in the file; if the exponent varies, compressed textures
+/// store the length of the normal as well as the factor.
 #[test]
 fn the_variance_of_toksvig_is_decoded_from_its_parts_for_any_base() {
     use roughcast::Blocks;

@@ -1,4 +1,4 @@
-//! Level 0: slopes of every kind of map against the oracle, and what is counted.
+//! Level 0: slopes of every kind of map against the oracle, and the counts.
 
 mod common;
 
@@ -15,7 +15,7 @@ const TYPES: [SampleType; 4] = [SampleType::U8, SampleType::U16, SampleType::F16
 /// Roundings from a pixel to a level of moments: decoding, z, the quotient, and two for each of up to eleven levels.
 const ROUNDINGS: f64 = 40.0;
 
-/// A normal's components are rounded at the size of one.
+/// A normal's components are rounded at the magnitude of one.
 const NORMALS: Rounding = Rounding { count: ROUNDINGS, floor: 1.0 };
 
 /// Bakes a map's moments and compares all levels and the counts with the oracle.
@@ -31,12 +31,12 @@ fn check(image: &Image, source: &SourceOptions, rounding: Rounding) -> (f64, Bak
     (worst, got.report)
 }
 
-/// Every way to store a normal in this type, with the number of channels that goes with it.
+/// All ways to store a normal in this type, each with its number of channels.
 fn normal_options(sample_type: SampleType) -> Vec<(SourceOptions, usize)> {
     let ranges: &[NormalRange] = if sample_type.is_float() {
         NormalRange::ALL
     } else {
-        // Unsigned samples are 0 ..= 1 whatever the options say: the oracle reads them so for both.
+        // Unsigned samples are 0 ..= 1 with either option, and the oracle reads them that way.
         &[NormalRange::Unorm, NormalRange::Signed]
     };
     let channels = [
@@ -94,11 +94,11 @@ fn the_maximum_and_the_rms_slope_are_reported() {
     assert!((report.rms_slope / rms - 1.0).abs() < ROUNDING);
 }
 
-/// Random bytes: every rule for bad normals applies somewhere.
+/// Random bytes: every rule for invalid normals applies somewhere.
 #[test]
 fn random_pixels_are_repaired_and_counted_by_the_rules() {
-    /// Random pixels of two channels lie as close to the rim of the unit disc as 16 bits can say; there z is the root
-    /// of a small difference, and a rounding becomes (1 + b²) roundings of the slope b <= 8.
+    /// Random pixels of two channels lie as close to the rim of the unit disc as 16 bits can represent. There z is the
+    /// root of a small difference, and one rounding becomes (1 + b²) roundings of the slope b <= 8.
     const NEAR_THE_RIM: Rounding = Rounding { count: ROUNDINGS, floor: 64.0 };
     let mut random = Random(3);
     let mut total = SourceCounts::default();
@@ -187,7 +187,7 @@ fn heights_by_every_gradient_wrap_sense_and_scale() {
     }
 }
 
-/// The same at the edges of the fused pass's tiles and bands, and with other channels beside the heights.
+/// The same at the edges of the fused pass's tiles and bands, and with other channels besides the heights.
 #[test]
 fn heights_across_tiles_and_beside_other_channels() {
     let (width, height) = (1088, 192);

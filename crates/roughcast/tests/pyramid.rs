@@ -1,4 +1,4 @@
-//! Every level of every size, by every filter, against explicit weights.
+//! Every level of every size, by every filter, compared with explicit weights.
 
 mod common;
 
@@ -7,7 +7,7 @@ use common::maps::{self, SIZES};
 use common::{baked, float_moments, level, pyramid_oracle, slope_oracle};
 use roughcast::{PyramidFilter, SampleType, Wrap, level_sizes};
 
-/// Slopes are given as they are here, so only averaging rounds: some four times a level, eleven levels.
+/// Slopes are given directly here, so only averaging rounds: about four times per level, eleven levels.
 const AVERAGING: Rounding = Rounding { count: 24.0, floor: 0.0 };
 
 #[test]
@@ -22,7 +22,7 @@ fn levels_halve_down_to_one_texel() {
     }
 }
 
-/// The oracle's own weights: first principles have to agree with what is known in closed form.
+/// The oracle's own weights: they must agree with the known closed forms.
 #[test]
 fn the_weights_of_the_oracle_match_the_textbooks() {
     const EXACT: f64 = 1e-12; // f64 rounding
@@ -65,11 +65,11 @@ fn every_level_of_every_size_by_every_filter_and_wrap() {
             }
         }
     }
-    // The allowance is no blank cheque: the worst error comes within a factor of twenty of it.
+    // The tolerance is not too loose: the worst error is within a factor of twenty of it.
     assert!(worst > 0.05, "{worst}");
 }
 
-/// Heights with filters wider than the box: the wrap mode applies to gradient and filter alike.
+/// Heights with filters wider than the box: the wrap mode applies to both the gradient and the filter.
 #[test]
 fn heights_by_every_filter_and_wrap() {
     for (width, height) in [(53, 37), (96, 40)] {

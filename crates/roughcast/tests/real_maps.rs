@@ -12,11 +12,11 @@ use roughcast::{
     SourceOptions,
 };
 
-/// How many maps there are at least; fewer means that the manifest was not understood.
+/// Minimum number of maps; fewer means that the manifest was misread.
 const NORMAL_MAPS: usize = 10;
 const HEIGHT_MAPS: usize = 5;
 
-/// Larger maps are cut to this, so that their levels in f64 take neither much memory nor much time.
+/// Larger maps are cropped to this size, which limits the memory and time for their levels in f64.
 const LARGEST_SIDE: usize = 768;
 
 /// A pyramid of eleven levels costs some roundings of a footprint's rms slope.
@@ -25,9 +25,9 @@ const ROUNDINGS: f64 = 24.0;
 /// Decoded moments are rounded to single floats.
 const SEMIDEFINITE: f64 = 4.0;
 
-/// Every law that a real map has to keep.
+/// Every law that a real map must obey.
 fn check(name: &str, image: &Image, source: &SourceOptions) -> SourceCounts {
-    // The rules by which slopes are read, to which a limit that follows from all of them does not belong.
+    // The rules for reading slopes, without the automatic limit, which depends on the whole map.
     let source = &(*source).with_max_slope(MaxSlope::Limit(MaxSlope::OF_ANY_MAP));
     let moments = baked(image, source, &float_moments(PyramidFilter::Box));
     let lean = baked(image, source, &options(Layout::Lean, SampleType::U16));
@@ -35,14 +35,14 @@ fn check(name: &str, image: &Image, source: &SourceOptions) -> SourceCounts {
     let wanted = slope_oracle::slopes(image, source);
     assert_eq!(lean.report.counts, wanted.counts, "{name}");
     let levels = raw_moments(&moments);
-    // The mean of all squares is the oracle's, on level 0 and so, by what follows, on every level.
+    // The mean of all squares is the oracle's on level 0 and, by the laws below, on every level.
     let squares: f64 = wanted.texels.iter().map(|b| b[0] * b[0] + b[1] * b[1]).sum();
     let rms = (squares / wanted.texels.len() as f64).sqrt();
     let rounding = ROUNDINGS * EPS * (rms + 1.0);
     let top = levels[0].mean(2) + levels[0].mean(3);
     assert!((top.sqrt() - rms).abs() <= rounding, "{name}: {} instead of {rms}", top.sqrt());
     expect(check_means(&levels, (rounding, 2.0 * rms * rounding)), &name);
-    // Sixteen bits: half a code, twice that where the range is signed.
+    // Sixteen bits: half a code, or twice that if the range is signed.
     let sc = f64::from(lean.report.scale);
     let code = 1.0 / 65535.0;
     let allowed = (sc * code + 2.0 * EPS * sc, sc * sc * code + 4.0 * EPS * sc * sc);
@@ -83,12 +83,12 @@ fn height_maps() {
     }
 }
 
-/// The manifest's `slope_rms` was measured with z, as stored, raised to at least 0.1: its own way to tame steep
-/// texels. It is the root of the mean of the squared length, with three decimals.
+/// The manifest's `slope_rms` was measured with the stored z raised to at least 0.1, its own way to limit steep texels.
+/// It is the root mean square of the length, with three decimals.
 #[test]
 fn rms_slopes_match_the_manifest() {
     const SMALLEST_Z: f32 = 0.1;
-    /// Half of the last decimal, and a little for the way in which it was rounded.
+    /// Half of the last decimal, and a margin for the way in which it was rounded.
     const DECIMALS: f64 = 0.0006;
     let entries = real_files::entries("normal");
     let mut compared = 0;
@@ -109,7 +109,7 @@ fn rms_slopes_match_the_manifest() {
     assert!(compared >= NORMAL_MAPS, "only {compared} maps have an rms slope");
 }
 
-/// A map and its twin of the other convention are one map.
+/// A map and its copy in the other convention give the same result.
 #[test]
 fn both_conventions_of_green_give_the_same_textures() {
     for path in [

@@ -1,4 +1,4 @@
-//! Scales of unsigned texels: smallest safe, fixed, advised; and the options that are refused.
+//! Scales of unsigned texels: smallest safe, fixed, advised; and the options that are rejected.
 
 mod common;
 
@@ -17,7 +17,7 @@ const UNSIGNED: [SampleType; 2] = [SampleType::U8, SampleType::U16];
 /// The scale is a root or a square of a maximum of single floats: a few roundings.
 const ROUNDINGS: f64 = 8.0;
 
-/// Largest magnitude of B's components, of M's diagonal and of Σ's, and larger eigenvalue, over all levels.
+/// Largest magnitude of B's components, of M's diagonal and of Σ's, and the larger eigenvalue, over all levels.
 struct Needs {
     slope: f64,
     second: f64,
@@ -46,7 +46,7 @@ fn close(got: f32, wanted: f64) {
     assert!((f64::from(got) / wanted - 1.0).abs() <= ROUNDINGS * EPS, "{got} instead of {wanted}");
 }
 
-/// Nothing saturates, and nothing smaller would do.
+/// Nothing saturates, and no smaller scale would be sufficient.
 #[test]
 fn the_chosen_scale_is_the_smallest_that_holds_every_texel() {
     let maps = [
@@ -62,7 +62,7 @@ fn the_chosen_scale_is_the_smallest_that_holds_every_texel() {
                     let options = options(layout, bits).with_base(folded);
                     baked_with(image, source, Some(BaseRoughness::Variance(variance)), &options).report
                 };
-                // Level 0 has the largest of all, so what the scale needs is what a texel reaches.
+                // Level 0 has the largest values, so the scale must be what some texel reaches.
                 for layout in [Layout::Lean, Layout::Clean] {
                     let report = report(layout);
                     close(report.scale, needs.second.sqrt());
@@ -75,7 +75,7 @@ fn the_chosen_scale_is_the_smallest_that_holds_every_texel() {
                     close(report.scale, needs.slope);
                     close(report.spread_scale, scale);
                 }
-                // Its eigenvalue is bounded by the sum of two variances, not known beforehand.
+                // The eigenvalue is bounded by the sum of two variances; it is not known beforehand.
                 let scale = f64::from(report(Layout::SchillingIsotropic).spread_scale);
                 let needed = needs.eigenvalue.sqrt();
                 assert!(
@@ -97,7 +97,7 @@ impl MapScale for Vec<[f64; 2]> {
     }
 }
 
-/// A flat map has no need at all, and still decodes as flat.
+/// A flat map needs no range, and still decodes as flat.
 #[test]
 fn flat_maps_bake_and_stay_flat() {
     let values = vec![128_u8; 12 * 7];
@@ -120,7 +120,7 @@ fn flat_maps_bake_and_stay_flat() {
             for level in decoded(&baked.arrays) {
                 for texel in level.texels() {
                     let c = texel.covariance();
-                    // A material's roughness holds the base; everything else is flat.
+                    // A material's roughness contains the base; everything else is flat.
                     let wanted = if *layout == Layout::Pbr { 0.01 } else { 0.0 };
                     let slope = f64::from(report.bounds.slope);
                     let variance = f64::from(report.bounds.variance) + 4.0 * EPS;
@@ -133,7 +133,7 @@ fn flat_maps_bake_and_stay_flat() {
     }
 }
 
-/// A fixed scale limits slopes before they are averaged, and says how many.
+/// A fixed scale clamps slopes before they are averaged, and counts them.
 #[test]
 fn a_fixed_scale_clamps_slopes_and_counts_them() {
     let (image, source) = maps::slope_map(53, 37, &maps::slopes(53, 37, 54));
@@ -152,7 +152,7 @@ fn a_fixed_scale_clamps_slopes_and_counts_them() {
             (Some(BaseRoughness::Variance(0.09)), f64::from(0.09_f32), vec![f64::from(0.09_f32); 53 * 37]),
             (Some(BaseRoughness::Map(map)), f64::from(0.1_f32), map_variances.clone()),
         ] {
-            // The base takes its part of the range of the second moments.
+            // The base takes up part of the range of the second moments.
             let room =
                 if holds_squares { f64::from(scale).powi(2) - largest } else { f64::from(scale).powi(2) };
             let limited = source.with_max_slope(MaxSlope::Limit(room.sqrt() as f32));
@@ -167,7 +167,7 @@ fn a_fixed_scale_clamps_slopes_and_counts_them() {
             assert_eq!(got.report.counts, slopes.counts, "{layout}, base up to {largest}");
             let bound = f64::from(got.report.bounds.slope) + ROUNDINGS * EPS;
             let levels = decoded(&got.arrays);
-            // Second moments are compared for the layout that gives all of them.
+            // Second moments are compared for the layout that stores all of them.
             let second = |texel: common::level::Texel| match layout {
                 Layout::Lean => f64::from(got.report.bounds.eigenvalue) + 2.0 * texel.rms() * bound,
                 _ => f64::INFINITY,
@@ -177,12 +177,12 @@ fn a_fixed_scale_clamps_slopes_and_counts_them() {
     }
 }
 
-/// A gentle map with so many steep texels, in parts of a thousand.
+/// A gentle map with this many steep texels per thousand.
 fn with_steep_texels(thousandths: f64, direction: [f64; 2]) -> (Image, SourceOptions) {
     steep_texels_among(0.1, thousandths, direction)
 }
 
-/// The same of a map whose slopes are so large.
+/// The same for a map with slopes of this size.
 fn steep_texels_among(size: f64, thousandths: f64, direction: [f64; 2]) -> (Image, SourceOptions) {
     let (width, height) = (128, 128);
     let mut slopes = maps::slopes(width, height, 55).map_scale(size);
@@ -195,7 +195,7 @@ fn steep_texels_among(size: f64, thousandths: f64, direction: [f64; 2]) -> (Imag
 
 #[test]
 fn advice_is_given_if_few_steep_texels_cost_much_and_it_is_correct() {
-    /// How near the promise is kept; the quantile itself is known to 1.5 %, its square to 3 %.
+    /// How accurate the advice is; the quantile itself is known to 1.5 %, its square to 3 %.
     const WITHIN: f32 = 0.1;
     for layout in [Layout::Lean, Layout::Clean] {
         for bits in UNSIGNED {
@@ -211,7 +211,7 @@ fn advice_is_given_if_few_steep_texels_cost_much_and_it_is_correct() {
                 (factor / advice.factor - 1.0).abs() < WITHIN,
                 "{layout} {bits}: {factor} for {advice:?}"
             );
-            // No more texels are cut than it speaks of.
+            // No more texels are clamped than the advice states.
             assert!(after.counts.clamped <= after.texels / 1000 + 1, "{:?}", after.counts);
         }
     }
@@ -253,7 +253,7 @@ fn no_advice_is_given_if_it_would_not_help() {
 
 const UNLIMITED: MaxSlope = MaxSlope::Limit(MaxSlope::OF_ANY_MAP);
 
-/// Every layout of a range that follows from the map.
+/// All layouts with a range that depends on the map.
 const RANGED: [Layout; 5] =
     [Layout::Lean, Layout::Clean, Layout::Schilling, Layout::SchillingIsotropic, Layout::Variance];
 
@@ -261,7 +261,7 @@ const RANGED: [Layout; 5] =
 fn the_automatic_limit_is_the_slope_that_few_exceed_with_the_stated_gain() {
     /// The quantile is known to a bin of the histogram, 1.6 % above it.
     const BIN: f64 = 1.017;
-    /// What bounds count beside the ranges: the arithmetic in single floats, and the error of the mean.
+    /// What bounds include besides the ranges: the single-float arithmetic, and the error of the mean.
     const WITHIN: f32 = 0.1;
     let (image, source) = steep_texels_among(2.0, 0.5, [40.0, 9.0]);
     let mut lengths: Vec<f64> =
@@ -276,7 +276,8 @@ fn the_automatic_limit_is_the_slope_that_few_exceed_with_the_stated_gain() {
             let found = f64::from(limit.max_slope);
             assert!(found >= exceeded && found <= BIN * exceeded, "{layout} {bits}: {found}, not {exceeded}");
             assert_eq!(got.report.max_slope, limit.max_slope);
-            // The result is that of the limit named by hand, but for the scale, which holds a slope as long in any direction.
+            // The result is that of an explicit limit, except for the scale, which can hold a slope of that length in
+            // any direction.
             let by_hand = source.with_max_slope(MaxSlope::Limit(limit.max_slope));
             let wanted = slope_oracle::slopes(&image, &by_hand);
             assert_eq!((got.report.counts, limit.texels), (wanted.counts, wanted.counts.clamped));
@@ -295,7 +296,7 @@ fn the_automatic_limit_is_the_slope_that_few_exceed_with_the_stated_gain() {
     }
 }
 
-/// Rare texels of a gentle map are not flattened: they stay as steep as 45 degrees.
+/// Rare steep texels of a gentle map are not flattened: they stay as steep as 45 degrees.
 #[test]
 fn the_automatic_limit_is_never_below_one() {
     let (image, source) = with_steep_texels(0.5, [9.0, 0.0]);
@@ -304,7 +305,7 @@ fn the_automatic_limit_is_never_below_one() {
         let limit = report.limit.expect("81 times the power");
         assert_eq!((limit.max_slope, limit.texels), (MaxSlope::LEAST_AUTOMATIC, 8));
         assert!((limit.factor / 81.0 - 1.0).abs() < 0.01, "{limit:?}");
-        // What remains to be won is advised.
+        // The remaining gain is reported as advice.
         assert!(report.advice.is_some_and(|advice| advice.max_slope < 0.2));
     }
     let (image, source) = with_steep_texels(0.5, [1.5, 0.0]);
@@ -339,7 +340,7 @@ fn slopes_are_limited_only_if_a_range_requires_it() {
     assert_eq!(limit_of(0.5, steep, by_hand, lean), (false, 60.0), "the limit was chosen by hand");
 }
 
-/// Everything that is refused, with a word of its error.
+/// Everything that is rejected, with a word of its error.
 #[test]
 fn contradictory_options_are_refused() {
     let (image, source) = maps::plain_normal_map(8, 6, 56);
@@ -409,7 +410,7 @@ fn contradictory_options_are_refused() {
     assert_eq!(error, BakeError::Source(channels));
 }
 
-/// What is limited by a half float's range is what the source's own limit says.
+/// A half float's range limits slopes exactly as the source's own limit does.
 #[test]
 fn half_floats_represent_the_largest_slope_that_they_allow() {
     let (image, source) = maps::slope_map(2, 2, &[[255.0, 0.0], [0.0, 255.0], [-255.0, 0.0], [0.0, -300.0]]);

@@ -1,4 +1,5 @@
-//! With the feature `serde`: values, options and reports survive a round trip through JSON, and enums go by their names.
+//! With the feature `serde`, values, options and reports survive a round trip through JSON, and enums are written by
+//! name.
 
 use std::fmt::Debug;
 
@@ -12,19 +13,19 @@ use roughcast::{
 };
 use serde_json::{from_value, json, to_value};
 
-/// Checks that a value comes back as it was, and gives its JSON.
+/// Checks that a value survives the round trip, and returns its JSON.
 fn round_trip<T>(value: &T) -> serde_json::Value
 where
     T: serde::Serialize + serde::de::DeserializeOwned + PartialEq + Debug,
 {
     let written = to_value(value).expect("plain data");
-    // By way of text, as files have it.
+    // Through text, as in files.
     let read: T = serde_json::from_str(&written.to_string()).expect("what was written");
     assert_eq!(&read, value, "{written}");
     written
 }
 
-/// Waves of 8 bits, with some variance on every level.
+/// 8-bit waves with some variance on every level.
 fn waves() -> Image {
     let texel = |i: usize| [(128 + i * 37 % 60) as u8, (100 + i * 11 % 60) as u8, 250];
     Image::new(8, 8, 3, Samples::U8((0..64).flat_map(texel).collect())).expect("whole pixels")

@@ -1,4 +1,4 @@
-//! The library's choices for the arguments of `bake`.
+//! Converts the arguments of `bake` into the library's options.
 
 use roughcast_io::{Container, Supercompression};
 use roughcast_pipeline::{BakeChoices, BakeSettings, BrokenTexels, LayerFiles, SidecarFile};

@@ -18,7 +18,7 @@ use roughcast_scene::{Plane, Reconstruction, Scene, Shape, SlopeMap, View, patte
 use super::instructions::{Instructions, count};
 use crate::progress;
 
-/// A method, and when its maps are made.
+/// A method, and when its maps are baked.
 struct TimedMethod {
     name: &'static str,
     shading: Shading,
@@ -34,7 +34,7 @@ enum Maps {
     EveryFrame,
 }
 
-/// Texels along each side of a map that is made once.
+/// Texels along each side of a map that is baked once.
 pub const SIDE: usize = 512;
 
 /// All methods; the others are compared with the first.
@@ -51,27 +51,28 @@ const METHODS: [TimedMethod; 5] = [
 pub struct Row {
     pub name: &'static str,
     pub instructions: Instructions,
-    /// Milliseconds per frame: the median of drawing it and, if maps are made for every frame, that of making them.
+    /// Milliseconds per frame: the median drawing time plus, if maps are baked for every frame, the median baking time.
     pub milliseconds: f64,
-    /// The same relative to Blinn-Phong.
+    /// The time relative to Blinn-Phong.
     pub ratio: f64,
-    /// Bytes that making the maps moves in every frame; 0 if they are made once.
+    /// Bytes that baking the maps moves in every frame; 0 if they are baked once.
     pub generated_bytes: u64,
 }
 
-/// Frames before the measured ones, in which drivers compile, allocate and raise clocks.
+/// Warm-up frames before the measured ones, in which drivers compile, allocate and raise clocks.
 const WARM_UP: u32 = 3;
 
-/// Half floats, which every device can filter, store to and render to; no base, which the model adds when shading.
+/// Half floats, which every device can filter, store to and render to; without a base, which the model adds when
+/// shading.
 pub fn bake_options(shading: Shading) -> BakeOptions {
     BakeOptions::default().with_layout(shading.layout()).with_sample_type(SampleType::F16)
 }
 
 /// Draws `frames` frames of each method in pictures of `size` pixels.
 ///
-/// The methods take turns within a frame, and each frame begins with another one: a drift of the clock, and what a method
-/// leaves in the caches for the next, affect all of them equally. Maps that are made for every frame are made before it is
-/// drawn; how long that takes is measured before.
+/// The methods take turns within a frame, and each frame begins with a different method, so that clock drift and the
+/// state of the caches affect all methods equally. Maps that are baked for every frame are baked before it is drawn;
+/// their baking time is measured separately.
 pub async fn measure(gpu: &Gpu, size: (u32, u32), frames: u32) -> Result<Vec<Row>> {
     let mut timestamps = Timestamps::new(gpu, 1).await?;
     let mut renderer = Renderer::new(gpu, RenderTarget::Colour(COLOUR_FORMAT)).await?;
@@ -130,13 +131,13 @@ fn rows(prepared: &[PreparedMethod]) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-/// A method with everything that it needs on the GPU.
+/// A method with all its GPU resources.
 struct PreparedMethod {
     timed_method: &'static TimedMethod,
     instructions: Instructions,
     baker: GpuBaker,
     drawing: Drawing,
-    /// Times of making the maps for one frame.
+    /// Times of baking the maps for one frame.
     bake_nanoseconds: f64,
     /// Times of drawing each measured frame.
     nanoseconds: Vec<f64>,
@@ -166,7 +167,7 @@ impl PreparedMethod {
             bumps: Bumps::Filtered,
         };
         let instructions = count(&shader_source(key)?, "radiance")?;
-        // Measured separately: between render passes lavapipe's clock shows no time for a compute pass.
+        // Measured separately: between render passes, lavapipe's clock reports no time for a compute pass.
         let bake_nanoseconds = match timed_method.maps {
             Maps::Once => 0.0,
             Maps::EveryFrame => {
@@ -178,7 +179,7 @@ impl PreparedMethod {
         Ok(Self { timed_method, instructions, baker, drawing, bake_nanoseconds, nanoseconds: Vec::new() })
     }
 
-    /// Makes the maps for a frame, if needed, and draws it. Returns the nanoseconds of the drawing, or `None` if the
+    /// Bakes the maps for a frame, if needed, and draws it. Returns the nanoseconds of the drawing, or `None` if the
     /// clock did not measure it.
     async fn draw(&self, gpu: &Gpu, canvas: &Canvas, timestamps: &mut Timestamps) -> Result<Option<f64>> {
         if self.timed_method.maps == Maps::EveryFrame {
@@ -221,7 +222,7 @@ impl Canvas {
     }
 }
 
-/// A plane that covers the whole picture, with maps of this many texels a side, three of them to a pixel.
+/// A plane that covers the whole picture, with maps of this many texels along each side, three texels per pixel.
 fn scene(side: usize, size: (u32, u32)) -> Scene {
     View::Mid.scene(Arc::new(Shape::Plane(Plane::default())), (side, side), size, Material::default())
 }
@@ -257,7 +258,7 @@ mod tests {
     fn the_object_covers_every_pixel() {
         let size = (1600, 1200);
         let scene = scene(SIDE, size);
-        // A plane is convex: where the corners of the picture see it, all of it does.
+        // A plane is convex: if it is visible at the corners of the picture, it covers all of it.
         for (x, y) in [(0.0, 0.0), (1600.0, 0.0), (0.0, 1200.0), (1600.0, 1200.0)] {
             assert!(scene.shape.hit(&scene.camera.ray(x, y, size.0, size.1)).is_some(), "{x}, {y}");
         }

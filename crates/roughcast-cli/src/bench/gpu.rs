@@ -60,7 +60,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Baking a LEAN map with all its levels compared with copying as many bytes.
+/// Baking a LEAN map with all its levels compared with copying the same number of bytes.
 struct Generation {
     side: u32,
     bake: Bandwidth,

@@ -7,8 +7,8 @@ use naga::back::spv;
 
 use crate::shader::parse;
 
-/// Instructions of a shader. One on a vector counts once, a called function once per call, the body of a loop once, and both
-/// sides of a branch count.
+/// Instructions of a shader. A vector instruction counts once, a called function once per call, the body of a loop
+/// once, and both sides of a branch count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Instructions {
     /// Arithmetic, comparisons, selections, conversions and the functions of GLSL.std.450.
@@ -17,7 +17,8 @@ pub struct Instructions {
     pub texture: u64,
 }
 
-/// Counts the instructions that an entry point of a WGSL module reaches, as naga compiles it; it optimises nothing.
+/// Counts the instructions reachable from an entry point of a WGSL module, as compiled by naga, which does not
+/// optimise.
 pub fn count(source: &str, entry_point: &str) -> Result<Instructions> {
     let (module, info) = parse(source)?;
     let words = spv::write_vec(&module, &info, &spv::Options::default(), None)?;
@@ -54,7 +55,7 @@ mod op {
     ];
 }
 
-/// The parts of a module that matter here.
+/// The parts of a module that are counted.
 #[derive(Default)]
 struct Program {
     entry_points: HashMap<String, u32>,
@@ -64,7 +65,7 @@ struct Program {
 #[derive(Default)]
 struct Function {
     own: Instructions,
-    /// The called functions, each as often as it is called.
+    /// The called functions, each listed once per call.
     calls: Vec<u32>,
 }
 
@@ -95,7 +96,7 @@ impl Program {
         program
     }
 
-    /// A function's own instructions and those of all that it calls. SPIR-V has no recursion.
+    /// A function's own instructions and those of all functions that it calls. SPIR-V has no recursion.
     fn reached_from(&self, id: u32, known: &mut HashMap<u32, Instructions>) -> Instructions {
         if let Some(sum) = known.get(&id) {
             return *sum;
@@ -137,7 +138,7 @@ mod tests {
 
     use super::*;
 
-    /// Two calls of an addition; two of a texture read; an addition, a comparison, a selection, a maximum, a product.
+    /// Two calls of an addition; two texture reads; an addition, a comparison, a selection, a maximum, a product.
     const KNOWN: &str = "
         @group(0) @binding(0) var map: texture_2d<f32>;
         @group(0) @binding(1) var map_sampler: sampler;

@@ -19,7 +19,7 @@ pub fn colour(error: f32) -> [u8; 3] {
     linear_from_oklab([t, chroma * hue.cos(), chroma * hue.sin()]).map(|value| srgb8(value as f32))
 }
 
-/// Colours of an error picture: as many as the eye can tell apart on the scale, and few enough for a small file.
+/// Number of colours of an error picture: as many as are distinguishable on the scale, and few enough for a small file.
 const STEPS: f32 = 24.0;
 
 /// Errors from 0 to 1, row by row, as a picture of [`STEPS`] colours.

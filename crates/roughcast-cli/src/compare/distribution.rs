@@ -1,4 +1,4 @@
-//! The highlight of a whole map, seen from so far away that one pixel covers it: the ground truth, and LEAN's Gaussian.
+//! The highlight of a whole map seen from so far away that one pixel covers it: the ground truth, and LEAN's Gaussian.
 //!
 //! Both are densities over the plane of `h.xy / h.z`: the ground truth has the map's slopes, each spread by the base roughness;
 //! LEAN has one Gaussian of their mean and covariance (LEAN mapping, Eq. 1, 5).
@@ -11,9 +11,10 @@ use crate::display::srgb8;
 
 /// Cells along each side of the plane.
 pub const CELLS: usize = 160;
-/// How far the cells reach from the mean slope, in standard deviations of the wider direction: a Gaussian has little beyond.
+/// Extent of the cells from the mean slope, in standard deviations of the wider direction: a Gaussian has little beyond
+/// it.
 const REACH: f64 = 4.0;
-/// Where a spread is cut off, in standard deviations.
+/// Distance at which a spread is truncated, in standard deviations.
 const CUT: f64 = 5.0;
 
 /// Densities over a square of the plane, as fractions of all light in each cell, row by row from the top.
@@ -50,14 +51,14 @@ impl Distribution {
         let grid = Grid { mean: [f64::from(mean.x), f64::from(mean.y)], cell: 2.0 * reach / CELLS as f64 };
         let truth = grid.spread(&grid.histogram(slopes), base.sqrt());
         let lean = grid.gaussian(covariance, base);
-        // Light outside of the square is misplaced too, as far as the two differ there.
+        // Light outside the square is misplaced, too, to the extent that the two distributions differ there.
         let beyond = |part: &[f64]| 1.0 - part.iter().sum::<f64>();
         let inside: f64 = truth.iter().zip(&lean).map(|(a, b)| (a - b).abs()).sum();
         let misplaced = 0.5 * (inside + (beyond(&truth) - beyond(&lean)).abs());
         Self { truth, lean, reach, misplaced }
     }
 
-    /// Ground truth and LEAN as pictures of one exposure.
+    /// Ground truth and LEAN as pictures with the same exposure.
     pub fn pictures(&self) -> [Srgb8Picture; 2] {
         let brightest =
             self.truth.iter().chain(&self.lean).fold(f64::MIN_POSITIVE, |most, part| most.max(*part));
@@ -114,7 +115,7 @@ impl Grid {
         along(&along(cells, 1, CELLS), CELLS, 1)
     }
 
-    /// The fraction of LEAN's Gaussian in each cell, which is small compared with it.
+    /// The fraction of LEAN's Gaussian in each cell; cells are small compared with the Gaussian.
     fn gaussian(&self, covariance: Covariance, base: f64) -> Vec<f64> {
         let (xx, yy, xy) =
             (f64::from(covariance.xx) + base, f64::from(covariance.yy) + base, f64::from(covariance.xy));
@@ -134,7 +135,8 @@ mod tests {
     use super::*;
 
     const BASE: f64 = 0.004;
-    /// Cells are a fraction of a standard deviation wide: a histogram moves slopes by up to half of one, which shifts about this much light.
+    /// Cells are a fraction of a standard deviation wide: a histogram moves slopes by up to half a cell, which shifts
+    /// about this much light.
     const CELL_ERROR: f64 = 0.02;
 
     fn two_slopes(slope: f32) -> Distribution {
@@ -158,7 +160,7 @@ mod tests {
 
     #[test]
     fn two_distant_slopes_are_misplaced_by_lean() {
-        // The integral of the positive part of the difference along x, by hand.
+        // The integral of the positive part of the difference along x, computed by hand.
         let by_hand = |slope: f64| {
             let gauss = |x: f64, v: f64| (-0.5 * x * x / v).exp() / (std::f64::consts::TAU * v).sqrt();
             let step = 1e-4;

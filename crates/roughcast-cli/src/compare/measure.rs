@@ -62,14 +62,14 @@ pub struct Trial {
 /// The ground truths of a view, frame by frame.
 struct Truths {
     references: Vec<Shading>,
-    /// For every lobe its frames.
+    /// The frames of every lobe.
     frames: Vec<Vec<Picture>>,
 }
 
-/// Work is counted in samples of a ground truth with all references, 0.24 µs of a core each; a pixel of a method takes as long as this many,
-/// its filtering included ...
+/// Work is counted in samples of a ground truth with all references, 0.24 µs of a core each; a pixel of a method takes
+/// as long as this many, including its filtering ...
 const METHOD_PIXEL: u64 = 3;
-/// ... and a pixel of FLIP, over all exposures, this many.
+/// ... and a pixel of FLIP, over all exposures, as long as this many.
 const FLIP_PIXEL: u64 = 18;
 
 impl Settings<'_> {
@@ -80,12 +80,12 @@ impl Settings<'_> {
         u64::from(self.size.height) * (frame * u64::from(self.frame_count()) + FLIP_PIXEL * trials)
     }
 
-    /// The frame before any movement is the picture itself.
+    /// Without camera movement, the only frame is the picture itself.
     fn frame_count(&self) -> u32 {
         self.frames.max(1)
     }
 
-    /// The filter of pictures that represent a method: the best, if there are several.
+    /// The filter of the pictures that represent a method: the best of the selected ones.
     pub fn main_filter(&self) -> Filter {
         let anisotropic = self.filters.iter().find(|filter| **filter == Filter::Anisotropic);
         *anisotropic.or(self.filters.last()).expect("the command line gives at least one")
@@ -103,7 +103,7 @@ impl Settings<'_> {
 
         let mut trials = Vec::new();
         let mut moving = vec![truths.of(Shading::Lean).iter().map(|frame| shown(frame, exposure)).collect()];
-        // Models that share a layout share its textures; one layout is held at a time.
+        // Models that share a layout share its textures; only one layout is kept in memory at a time.
         for models in Shading::ALL.chunk_by(|a, b| a.layout() == b.layout()) {
             let arrays =
                 bake_for(models[0], &subject.image, &subject.options, self.shading.texture_options())?;
@@ -156,7 +156,7 @@ impl Settings<'_> {
         moves.iter().map(|scene| Ok(method.render(scene, size, &watch)?)).collect()
     }
 
-    /// A row of the results, without its numbers.
+    /// A row of the results, before its numbers are filled in.
     fn row(&self, subject: &Subject, view: View, method: Shading, filter: Filter) -> Row {
         Row {
             map: subject.name.clone(),
@@ -221,7 +221,7 @@ impl Truths {
     }
 }
 
-/// Moves the bar by this many steps for every row.
+/// Advances the bar by this many steps for every row.
 fn steps(bar: &ProgressBar, each: u64) -> impl Fn(usize, usize) -> ControlFlow<()> + Sync {
     move |_, _| {
         bar.inc(each);
@@ -229,11 +229,11 @@ fn steps(bar: &ProgressBar, each: u64) -> impl Fn(usize, usize) -> ControlFlow<(
     }
 }
 
-/// Pixels between pictures, and their grey.
+/// Pixels between pictures, and the grey level of the gap.
 const GAP: u32 = 4;
 const BLACK: u8 = 0;
 
-/// Sequences of equal length and size as one, side by side.
+/// Combines sequences of equal length and size into one, side by side.
 fn side_by_side(sequences: &[Vec<Srgb8Picture>]) -> Vec<Srgb8Picture> {
     let frame = |i: usize| {
         let pictures = sequences.iter().map(|sequence| &sequence[i]);

@@ -1,5 +1,5 @@
-//! `roughcast compare`: every method against the ground truth that it approximates, on the given map and on two that show what
-//! LEAN cannot represent.
+//! `roughcast compare`: every method against the ground truth that it approximates, on the given map and on two maps
+//! that LEAN cannot represent.
 
 mod colour_scale;
 mod distribution;
@@ -90,7 +90,7 @@ pub struct Args {
     json: bool,
 }
 
-/// The most pixels of all frames together: each takes 28 bytes, for five ground truths and a method.
+/// The maximum number of pixels of all frames together: each takes 28 bytes, for five ground truths and a method.
 const MOST_PIXELS: u64 = 1 << 24;
 
 fn frames(text: &str) -> Result<u32, String> {
@@ -101,7 +101,7 @@ fn frames(text: &str) -> Result<u32, String> {
     }
 }
 
-/// Compares, and writes the report.
+/// Runs the comparison, and writes the report.
 pub fn run(args: &Args) -> Result<ExitCode> {
     args.check()?;
     let map = read_map(&args.map, &args.source)?;
@@ -130,7 +130,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 impl Args {
-    /// Refuses invalid arguments before minutes are spent.
+    /// Rejects invalid arguments before minutes are spent.
     fn check(&self) -> Result<()> {
         let pixels = u64::from(self.size.width) * u64::from(self.size.height) * u64::from(self.frames.max(1));
         if pixels > MOST_PIXELS {
@@ -154,7 +154,7 @@ impl Args {
     }
 }
 
-/// A list in its own order, each entry once.
+/// A list in its original order, without duplicates.
 fn without_repeats<T: PartialEq + Copy>(list: &[T]) -> Vec<T> {
     let mut once = Vec::new();
     for entry in list {
@@ -168,7 +168,7 @@ fn without_repeats<T: PartialEq + Copy>(list: &[T]) -> Vec<T> {
 /// A map and its results.
 struct Compared {
     subject: Subject,
-    /// One for each of its views.
+    /// One result for each of its views.
     comparisons: Vec<Comparison>,
     distribution: Distribution,
 }
@@ -199,10 +199,10 @@ fn results(compared: &[Compared]) -> Value {
     trials.map(|trial| trial.row.json()).collect()
 }
 
-/// What is written into the folder.
+/// The files to write into the folder.
 const FILES: [&str; 2] = ["index.html", "results.json"];
 
-/// Both files, or none.
+/// Writes both files, or none.
 fn write(folder: &Path, settings: &Settings<'_>, compared: &[Compared]) -> Result<()> {
     let page = page::page(settings, compared);
     let rows = serde_json::to_string_pretty(&results(compared)).expect("rows are plain data") + "\n";

@@ -1,4 +1,4 @@
-//! The report as a page: numbers first, then every picture beside its ground truth and its errors.
+//! The report as a page: numbers first, then every picture next to its ground truth and its errors.
 
 use roughcast::shading::{FootprintModel, Shading};
 use roughcast_scene::{Filter, Light, View};
@@ -10,10 +10,10 @@ use super::results::Row;
 use super::subject::Subject;
 use crate::html::Page;
 
-/// The conventional method and the new one: what a reader looks for first.
+/// The conventional method and the new one, which readers look for first.
 pub const PAIR: [Shading; 2] = [Shading::BlinnPhong, Shading::Lean];
 
-/// Frames a second of the animations.
+/// Frames per second of the animations.
 const FRAMES_PER_SECOND: u16 = 8;
 
 /// The whole report; the first map is the one given.
@@ -146,7 +146,7 @@ fn overview(page: &mut Page, settings: &Settings<'_>, compared: &[Compared]) {
     );
 }
 
-/// By error, the least first.
+/// Sorted by error, smallest first.
 fn sorted(trials: &[Trial]) -> Vec<&Trial> {
     let mut sorted: Vec<&Trial> = trials.iter().collect();
     sorted.sort_by(|a, b| a.row.rmse.total_cmp(&b.row.rmse));
@@ -194,7 +194,7 @@ fn table(page: &mut Page, comparison: &Comparison) {
     page.table(&["method, filter", "ground truth", "RMSE", "FLIP", "energy", "flicker"], &rows);
 }
 
-/// Every ground truth, and beside it each of its models' pictures with these filters and their errors.
+/// Every ground truth, and next to it each of its models' pictures with these filters and their errors.
 fn pictures(page: &mut Page, comparison: &Comparison, filters: &[Filter]) {
     for (reference, truth) in &comparison.truths {
         page.begin_row();

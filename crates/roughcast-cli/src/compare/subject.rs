@@ -1,4 +1,4 @@
-//! The maps that are compared: the given one, and two that no single Gaussian describes.
+//! The maps that are compared: the given one, and two that a single Gaussian cannot describe.
 
 use anyhow::{Context, Result};
 use roughcast::{Gradient, HeightSense, Image, Kind, SourceOptions};
@@ -20,15 +20,15 @@ pub struct Subject {
 
 /// Texels along each side of the grooves.
 const GROOVED_TEXELS: usize = 512;
-/// Sixteen texels each: a pixel of the far view sees one and a half.
+/// Sixteen texels each: a pixel of the far view covers one and a half grooves.
 const GROOVES: usize = 32;
-/// Both of their highlights are in the picture of a plane, and apart for exponents above 100.
+/// Both of their highlights are in the picture of a plane, and separate for exponents above 100.
 const GROOVE_SLOPE: f64 = 0.15;
 
-/// A quarter of the texels of a height map from Godot's demonstration projects; its licence lies beside it.
+/// A quarter of the texels of a height map from Godot's demonstration projects; its licence is stored next to it.
 const WOOL: &[u8] = include_bytes!("../../assets/wool_depth.png");
 
-/// The views in which bumps are too small to be seen one by one, but not beyond what textures have levels for.
+/// The views in which individual bumps are too small to be visible, but still within the range of the textures' levels.
 const LIMIT_VIEWS: [View; 2] = [View::Mid, View::Far];
 
 impl Subject {
@@ -47,7 +47,7 @@ impl Subject {
 
 fn v_groove() -> Subject {
     let pattern = v_grooves(GROOVED_TEXELS, GROOVES, GROOVE_SLOPE);
-    // Differences between neighbours keep the grooves sharp; wider filters round their edges.
+    // Differences between neighbours keep the grooves sharp; wider filters would round their edges.
     let options = pattern.source_options().with_gradient(Gradient::Forward);
     Subject {
         name: "v-groove".to_owned(),
@@ -92,7 +92,7 @@ mod tests {
         let finest = &decode(&baked.arrays).expect("moments")[0];
         let slopes = finest.moments.iter().map(|moments| f64::from(moments.mean.x));
         let steep = slopes.filter(|x| (x.abs() - GROOVE_SLOPE).abs() < 1e-3).count();
-        // All but the two texels of each groove whose gradient spans both of its sides.
+        // All except the two texels of each groove whose gradient spans both of its sides.
         assert_eq!(steep, GROOVED_TEXELS * (GROOVED_TEXELS - 2 * GROOVES));
     }
 

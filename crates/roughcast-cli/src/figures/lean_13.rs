@@ -18,7 +18,7 @@ const SPECULAR_POWER: f32 = 128.0;
 const SAMPLES: u32 = 256;
 /// Each distance is twice the one before.
 const DISTANCES: [f64; 4] = [4.5, 9.0, 18.0, 36.0];
-/// The largest relative error of the energy of LEAN's highlight.
+/// The largest allowed relative error of the energy of LEAN's highlight.
 const ENERGY: f64 = 0.1;
 
 pub fn make() -> Result<Figure> {
@@ -62,7 +62,7 @@ pub fn make() -> Result<Figure> {
     })
 }
 
-/// The same angle of view at every distance; the picture is cropped to the model, which gets smaller.
+/// The angle of view is the same at every distance; the picture is cropped to the model, which gets smaller.
 fn stage(distance: f64) -> Stage {
     const NEAREST_PIXELS: f64 = 288.0;
     let part = DISTANCES[0] / distance;

@@ -13,26 +13,26 @@ use super::scene::{Stage, scene};
 use super::{Figure, Panel, Table};
 use crate::display::{exposure_of, shown};
 
-/// The least exponent of the claim.
+/// The smallest exponent of the claim.
 const SPECULAR_POWER: f32 = 2048.0;
 /// As in the paper.
 const SAMPLES: u32 = 64;
-/// The largest error of LEAN relative to conventional bump mapping's.
+/// The largest allowed error of LEAN relative to conventional bump mapping's.
 const ERROR_RATIO: f64 = 1.0 / 3.0;
-/// The least flicker of conventional bump mapping relative to LEAN's.
+/// The smallest allowed flicker of conventional bump mapping relative to LEAN's.
 const FLICKER_RATIO: f64 = 5.0;
-/// Slope of the checker's edges: about the width of the lobe, 1 / sqrt(s), times two.
+/// Slope of the checker's edges: about twice the width of the lobe, 1 / sqrt(s).
 const EDGE_SLOPE: f64 = 0.05;
-/// Steeper edges, for which the claim is not made: flat squares with a sharp highlight and edges that send theirs far away
-/// are two distributions, and LEAN has one Gaussian.
+/// Steeper edges, to which the claim does not apply: flat squares with a sharp highlight and edges that reflect theirs
+/// far away form two distributions, and LEAN has one Gaussian.
 const STEEPER: [f64; 2] = [0.1, 0.2];
 /// Frames of the camera move for measuring flicker.
 const FRAMES: u32 = 8;
 const SIZE: (u32, u32) = (480, 360);
-/// Flicker needs a ground truth for every frame; it is measured in smaller pictures.
+/// Flicker needs a ground truth for every frame, so it is measured in smaller pictures.
 const MOVING_SIZE: (u32, u32) = (240, 180);
 
-/// The four pictures of the paper's figure, and conventional mip-mapped normals beside them.
+/// The four pictures of the paper's figure, and also conventional mip-mapped normals.
 const METHODS: [(&str, Shading, Filter); 5] = [
     ("conventional bump mapping", Shading::BlinnPhong, Filter::Nearest),
     ("conventional, trilinear mip maps", Shading::BlinnPhong, Filter::Trilinear),
@@ -40,7 +40,7 @@ const METHODS: [(&str, Shading, Filter); 5] = [
     ("LEAN, trilinear", Shading::Lean, Filter::Trilinear),
     ("LEAN, anisotropic", Shading::Lean, Filter::Anisotropic),
 ];
-/// Places in that list.
+/// Indices into that list.
 const ORDINARY: usize = 0;
 const LEAN: usize = 4;
 
@@ -110,7 +110,7 @@ fn error_ratio_at(edge_slope: f64) -> Result<f64> {
     Ok(error(LEAN)? / error(ORDINARY)?)
 }
 
-/// Flicker of every method over a slow move.
+/// Flicker of every method during a slow camera move.
 fn flickers() -> Result<Vec<f64>> {
     let stage = stage(MOVING_SIZE, EDGE_SLOPE);
     let scenes = slow_move(&stage.scene, FRAMES);

@@ -15,16 +15,16 @@ use crate::display::{exposure_of, shown};
 
 const SPECULAR_POWER: f32 = 128.0;
 const SIZE: (u32, u32) = (240, 240);
-/// Texels on a side of the maps, as in the paper.
+/// Texels along each side of the maps, as in the paper.
 const TEXELS: usize = 512;
 const RMS_SLOPE: f64 = 0.25;
-/// So far away that a pixel sees tens of texels.
+/// Distance at which a pixel covers tens of texels.
 const FAR_REPEATS: f64 = 64.0;
 const SAMPLES: u32 = 256;
-/// The largest relative difference of the highlight's measured aspect ratio from the covariance's.
+/// The largest allowed relative difference between the highlight's measured aspect ratio and the covariance's.
 const ASPECT_ERROR: f64 = 0.05;
-/// Half vectors farther out are at the rim of the sphere, where a pixel spans too many of them; a Gaussian as wide as the
-/// widest here has less than a ten-thousandth of its weight there.
+/// Half vectors farther out are at the rim of the sphere, where a pixel spans too many of them; a Gaussian as wide as
+/// the widest here has less than a ten-thousandth of its weight there.
 const FARTHEST: f64 = 1.5;
 
 pub fn make() -> Result<Figure> {
@@ -64,7 +64,8 @@ struct Parts {
 }
 
 impl Parts {
-    /// Pictures and measures of one map. Returns the errors of the aspect ratios of the ground truth and of LEAN in 16 bits.
+    /// Pictures and measurements of one map. Returns the errors of the aspect ratios of the ground truth and of LEAN in
+    /// 16 bits.
     fn add(&mut self, name: &str, map: Pattern) -> Result<[f64; 2]> {
         let expected = expected(&map)?;
         let mut stage = stage(map);
@@ -139,7 +140,7 @@ fn highlight(scene: &Scene, picture: &Picture) -> Covariance {
             if at.length() > FARTHEST {
                 continue;
             }
-            // A pixel stands for an area of that plane.
+            // The area in that plane that a pixel represents.
             let area = 4.0 * (right - at).perp_dot(below - at).abs();
             let w = area * f64::from(luminance(picture.specular[(y * width + x) as usize]));
             weight += w;
@@ -156,7 +157,7 @@ fn highlight(scene: &Scene, picture: &Picture) -> Covariance {
     }
 }
 
-/// `h.xy / h.z` at a point of the picture, in the frame of the surface there.
+/// `h.xy / h.z` at a point of the picture, in the local frame of the surface.
 fn half_slope(scene: &Scene, picture: &Picture, x: f64, y: f64) -> Option<DVec2> {
     let ray = scene.camera.ray(x, y, picture.width as u32, picture.height as u32);
     let hit = scene.shape.hit(&ray)?;
@@ -165,7 +166,7 @@ fn half_slope(scene: &Scene, picture: &Picture, x: f64, y: f64) -> Option<DVec2>
     (half.z > 0.0).then(|| half.truncate() / half.z)
 }
 
-/// A sphere with the light behind the camera, so that every half vector that matters is on it.
+/// A sphere with the light behind the camera, so that all relevant half vectors occur on it.
 fn stage(map: Pattern) -> Stage {
     let eye = DVec3::new(0.0, 0.0, 12.0);
     let camera = Camera { eye, target: DVec3::ZERO, up: DVec3::Y, vertical_fov: 0.18 };

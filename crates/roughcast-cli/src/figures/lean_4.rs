@@ -1,4 +1,4 @@
-//! LEAN Figure 4: Blinn-Phong and Beckmann highlights over the angle between normal and half vector.
+//! LEAN Figure 4: Blinn-Phong and Beckmann highlights as functions of the angle between normal and half vector.
 
 use serde_json::{Map, json};
 
@@ -73,9 +73,10 @@ fn chart(s: f64) -> Chart {
 ///
 /// For large s it tends to `4 e⁻² / s`, about `0.54 / s`. `specular_power` is s, above zero.
 fn largest_difference(specular_power: f64) -> f64 {
-    /// The largest u = s/2 tan²: beyond it both lobes are below 1e-17 for s >= 1, except for Blinn-Phong's tail, which only falls.
+    /// The largest u = s/2 tan²: beyond it both lobes are below 1e-17 for s >= 1, except for Blinn-Phong's tail, which
+    /// only falls.
     const FARTHEST: f64 = 40.0;
-    /// Steps of u: near its maximum the difference is a parabola, and this leaves a relative error below 1e-6.
+    /// Steps of u: near its maximum the difference is a parabola, so the relative error is below 1e-6.
     const STEPS: u32 = 40_000;
     let difference = |u: f64| {
         let tangent_squared = 2.0 * u / specular_power;

@@ -1,4 +1,4 @@
-//! LEAN Figure 5: four models on a bumpy sphere, so near that nothing is filtered.
+//! LEAN Figure 5: four models on a bumpy sphere, close enough that nothing is filtered.
 
 use anyhow::Result;
 use glam::DVec3;
@@ -15,10 +15,11 @@ use crate::display::{exposure_of, shown};
 
 const SPECULAR_POWER: f32 = 128.0;
 const SIZE: (u32, u32) = (320, 320);
-/// FLIP of two pictures that few observers can tell apart side by side; identical pictures have 0, unrelated ones 0.3 and more.
+/// FLIP of two pictures that few observers can distinguish side by side; identical pictures have 0, unrelated ones 0.3
+/// and more.
 const EQUIVALENT: f64 = 0.03;
-/// LEAN in 16 bits against the same lobe without moments, as a fraction of the highlight's peak: s times the error of a stored
-/// variance, and as much again for the slope.
+/// LEAN in 16 bits against the same lobe without moments, as a fraction of the highlight's peak: s times the error of a
+/// stored variance, and the same again for the slope.
 const SAME: f32 = 0.02;
 
 const MODELS: [(&str, Shading); 4] = [

@@ -87,13 +87,13 @@ impl Name {
 /// A figure with its claim.
 struct Figure {
     title: &'static str,
-    /// The claim of the paper's figure, made exact.
+    /// The claim of the paper's figure, stated precisely.
     claim: String,
     /// The numbers that decide the claim, with their limits.
     numbers: Map<String, Value>,
     /// Whether the claim holds.
     holds: bool,
-    /// How it was made: maps, their bits, exponent, sizes.
+    /// How the figure was made: maps, their bits, exponent, sizes.
     making: String,
     panels: Vec<Panel>,
     charts: Vec<Chart>,
@@ -133,7 +133,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::from(u8::from(figures.iter().any(|(_, figure)| !figure.holds))))
 }
 
-/// All files, or none.
+/// Writes all files, or none.
 fn write(folder: &Path, figures: &[(&str, Figure)]) -> Result<()> {
     let mut set = AtomicSet::new();
     let mut add = |name: &str, write: &dyn Fn(&mut AtomicFile) -> Result<()>| -> Result<()> {
@@ -202,7 +202,7 @@ fn four_digits(number: f64) -> String {
     }
 }
 
-/// Pixels between the panels of a figure's picture, and their grey.
+/// Pixels between the panels of a figure's picture, and the grey level of the gap.
 const GAP: u32 = 4;
 const PAPER: u8 = 255;
 

@@ -1,4 +1,4 @@
-//! What the figures share: a map on a shape, rendered by the methods and as ground truth.
+//! Shared by the figures: a map on a shape, rendered by the methods and as ground truth.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use roughcast_scene::{
     BakedTextures, Camera, Filter, Light, Picture, Sampler, Scene, Shape, SlopeDetail, SlopeMap,
 };
 
-/// A dielectric whose highlights stand out: dark, with the reflectance of plastic.
+/// A dielectric with clearly visible highlights: dark, with the reflectance of plastic.
 pub const MATERIAL: Material = Material { albedo: [0.05; 3], ambient: [0.2; 3], specular: [0.04; 3] };
 
 /// A map in a scene, and how it is shaded.
@@ -21,7 +21,7 @@ pub struct Stage {
     pub map: Pattern,
     pub scene: Scene,
     pub options: ShadingOptions,
-    /// The type of the texels of every method.
+    /// The sample type of every method.
     pub sample_type: SampleType,
     /// Width and height of the pictures.
     pub size: (u32, u32),

@@ -1,4 +1,4 @@
-//! Errors of a bake: the library names the fault, the program the option to change.
+//! Errors of a bake: the library describes the fault, the program names the option to change.
 
 use std::error::Error;
 
@@ -71,7 +71,7 @@ fn of_source(error: &SourceError) -> String {
     }
 }
 
-/// Why a filter of other programs cannot be used, by its name.
+/// Why a filter known from other programs cannot be used, by its name.
 pub fn filter_refusal(name: &str) -> Option<&'static str> {
     const NEGATIVE: [&str; 11] = [
         "lanczos",

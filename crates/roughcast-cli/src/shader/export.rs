@@ -49,8 +49,8 @@ pub enum Export {
     Binary(Vec<u8>),
 }
 
-/// The modules of these names, and what they need, in a language, with prefixed names. SPIR-V is a whole shader, whose names
-/// are private: it has no prefix.
+/// The named modules and their dependencies in a language, with prefixed names. SPIR-V is a whole shader, whose names
+/// are private, so it has no prefix.
 pub fn export(names: &[&str], language: Language, prefix: &Prefix) -> Result<Export> {
     let exported = modules(names)?;
     let source = library(names)?;
@@ -101,8 +101,8 @@ pub fn parse(source: &str) -> Result<(naga::Module, ModuleInfo)> {
     Ok((module, info))
 }
 
-/// GLSL needs an entry point: it gets an empty one, which is the last function and is removed again; its version and
-/// precisions are up to the user.
+/// GLSL needs an entry point: an empty one is added as the last function and removed again. Its version and precisions
+/// are left to the user.
 fn to_glsl(source: &str, version: glsl::Version) -> Result<String> {
     const ENTRY_POINT: &str = "entry_point";
     let (module, info) = parse(&format!("{source}\n@fragment fn {ENTRY_POINT}() {{}}\n"))?;
@@ -141,7 +141,7 @@ fn to_msl(source: &str) -> Result<String> {
     Ok(code)
 }
 
-/// SPIR-V 1.0 with the names of everything, in little-endian words.
+/// SPIR-V 1.0 with debug names for everything, in little-endian words.
 fn to_spirv(source: &str) -> Result<Vec<u8>> {
     let (module, info) = parse(source)?;
     let options = spv::Options {

@@ -1,8 +1,8 @@
-//! Makes exports safe to paste together: splits the generated code into its items and regroups them by module, so that two exports may
-//! be in one file and no constant is unused.
+//! Makes exports safe to paste together: splits the generated code into its items and regroups them by module, so that
+//! two exports can share a file and no constant is unused.
 //!
-//! In GLSL, HLSL and Metal's language each module has a guard. A constant that an export does not use is left out of it, so each
-//! has a guard of its own; those for the caller are always there.
+//! In GLSL, HLSL and Metal's language each module has a guard. A constant that an export does not use is omitted from
+//! it, so each constant has its own guard; constants for the caller are always included.
 
 use roughcast::wgsl::Module;
 
@@ -17,7 +17,7 @@ struct Item<'a> {
     text: &'a str,
 }
 
-/// Generated code by module, each with its guard, and every name with its prefix.
+/// Generated code by module, each with its guard, and with a prefix on every name.
 ///
 /// # Errors
 /// A line about code that belongs to no module.
@@ -61,7 +61,7 @@ fn guarded(macro_name: &str, items: &[&Item<'_>], prefix: &Prefix, out: &mut Str
     *out += "#endif\n\n";
 }
 
-/// Whether another item has the name.
+/// Whether another item uses the name.
 fn is_used(constant: &Item<'_>, items: &[Item<'_>]) -> bool {
     items.iter().any(|item| item.name != constant.name && has_word(item.text, constant.name))
 }
@@ -70,7 +70,7 @@ fn has_word(code: &str, word: &str) -> bool {
     code.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).any(|part| part == word)
 }
 
-/// The lines before the first item, such as includes, and the items in their order.
+/// The lines before the first item, such as includes, and the items in order.
 fn items(code: &str) -> (String, Vec<Item<'_>>) {
     let (mut prelude, mut items) = (String::new(), Vec::new());
     let mut start = None;
@@ -105,7 +105,7 @@ fn item(text: &str) -> Item<'_> {
     Item { name, text }
 }
 
-/// WGSL as it was written, with its prefixes and without constants that nothing uses. WGSL has no guards.
+/// The original WGSL, with prefixes and without unused constants. WGSL has no guards.
 pub fn written(modules: &[&Module], prefix: &Prefix) -> String {
     let whole: String = modules.iter().map(|module| module.source).collect::<Vec<_>>().join("\n");
     let uses = |name: &str| {
@@ -122,7 +122,7 @@ pub fn written(modules: &[&Module], prefix: &Prefix) -> String {
         let paragraphs = module.source.split("\n\n").filter_map(|paragraph| {
             let kept: Vec<&str> = paragraph.lines().filter(|line| !is_idle(line)).collect();
             let only_comments = kept.iter().all(|line| line.starts_with("//"));
-            // A comment goes with the constant that it is about.
+            // A comment belongs to the constant that it describes.
             let had_code = paragraph.lines().any(|line| !line.starts_with("//"));
             (!(only_comments && had_code)).then(|| kept.join("\n"))
         });

@@ -1,4 +1,4 @@
-//! The comment at the start of every export: naga drops comments, so what a user must know is here.
+//! The comment at the start of every export: naga drops comments, so it contains what a user must know.
 
 use roughcast::shading::{Gaussians, Shading};
 use roughcast::wgsl::{CONVENTIONS, Module, Role};
@@ -8,7 +8,7 @@ use super::layout::{Rule, in_words, layout, structs};
 use super::prefix::Prefix;
 use super::stage::{detail_of, reader_of};
 
-/// Characters of a line, `// ` included.
+/// Maximum characters per line, including `// `.
 const WIDTH: usize = 120;
 
 const PACKING: &[&str] = &[
@@ -83,8 +83,8 @@ fn texel_variable(layer: &'static str) -> &'static str {
     if layer == "normal" { "bump" } else { layer }
 }
 
-/// How a model's texels become a distribution, as named values: the lines of the detail module, with these variables in the place of the
-/// host's functions. The footprint correction has lines of its own.
+/// How a model's texels become a distribution, as named values: the lines of the detail module, with these variables
+/// instead of the host's functions. The footprint correction has separate lines.
 fn steps_of_detail(model: Shading, texels: &[&str]) -> Vec<(String, String)> {
     let (_, body) =
         detail_of(model).source.split_once("fn detail_distribution(").expect("every detail module has it");
@@ -112,7 +112,7 @@ pub fn models<'a>(modules: &'a [&Module]) -> impl Iterator<Item = Shading> + 'a 
     Shading::ALL.iter().copied().filter(is_exported)
 }
 
-/// The rule by which a language places members in buffers.
+/// The rule by which a language lays out members in buffers.
 fn rule(language: Language) -> Rule {
     match language {
         Language::Wgsl | Language::Msl | Language::Spirv => Rule::Natural,
@@ -149,7 +149,7 @@ fn notes(language: Language) -> &'static [&'static str] {
     }
 }
 
-/// The line in pieces that fit; those after the first are indented by two more.
+/// The line split into pieces that fit; those after the first are indented by two more characters.
 fn wrapped(line: &str) -> Vec<String> {
     let room = WIDTH - "// ".len();
     let indent = line.len() - line.trim_start().len();

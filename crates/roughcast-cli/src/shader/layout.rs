@@ -1,8 +1,8 @@
 //! The offsets of the library's structs in buffers, for each language.
 //!
-//! Sources: WGSL, 14.4.1 "Alignment and Size"; OpenGL 4.6, 7.6.2.2 "Standard Uniform Block Layout" (std140, std430); Direct3D,
-//! "Packing rules for constant variables". Metal's structs as exported have WGSL's places: their three-component members are
-//! `packed_float3`.
+//! Sources: WGSL, 14.4.1 "Alignment and Size"; OpenGL 4.6, 7.6.2.2 "Standard Uniform Block Layout" (std140, std430);
+//! Direct3D, "Packing rules for constant variables". Metal's structs as exported have WGSL's offsets: their
+//! three-component members are `packed_float3`.
 
 use naga::{Module, Type, TypeInner, VectorSize};
 
@@ -13,18 +13,18 @@ pub enum Rule {
     Natural,
     /// std140: structs begin and end at multiples of 16.
     Std140,
-    /// A cbuffer of HLSL: nothing crosses a multiple of 16, where structs begin.
+    /// A cbuffer of HLSL: no member crosses a multiple of 16, and structs begin at one.
     Cbuffer,
 }
 
-/// A struct's members with their places, and its size, in bytes.
+/// A struct's members with their offsets, and its size, in bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
     pub members: Vec<(String, u32)>,
     pub size: u32,
 }
 
-/// The layout of a struct of the library; `None` if there is none of the name.
+/// The layout of a struct of the library; `None` if there is no struct with that name.
 pub fn layout(module: &Module, name: &str, rule: Rule) -> Option<Layout> {
     let (_, found) = module.types.iter().find(|(_, found)| found.name.as_deref() == Some(name))?;
     let TypeInner::Struct { members, .. } = &found.inner else { return None };
@@ -38,7 +38,7 @@ pub fn layout(module: &Module, name: &str, rule: Rule) -> Option<Layout> {
         places.push((member.name.clone().unwrap_or_default(), at));
         at += size;
     }
-    // A cbuffer's next member may begin right after the last one.
+    // A cbuffer's next member may begin directly after the last one.
     let end = match rule {
         Rule::Natural => largest,
         Rule::Std140 => 16,
@@ -68,7 +68,7 @@ fn size_and_align(module: &Module, of: &Type, rule: Rule) -> (u32, u32) {
     }
 }
 
-/// The names of all structs, in the order of the library.
+/// The names of all structs, in the library's order.
 pub fn structs(module: &Module) -> Vec<String> {
     let is_struct = |of: &Type| matches!(of.inner, TypeInner::Struct { .. });
     module.types.iter().filter(|(_, of)| is_struct(of)).filter_map(|(_, of)| of.name.clone()).collect()

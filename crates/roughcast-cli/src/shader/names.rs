@@ -1,13 +1,13 @@
-//! Restores names to their original spelling: naga numbers every local name that another function has used before, and puts an underscore
-//! after names that end in a digit.
+//! Restores names to their original spelling: naga numbers every local name that another function has already used, and
+//! appends an underscore to names that end in a digit.
 
 use std::collections::{HashMap, HashSet};
 
-/// Generated code with the local names of each function as they were, wherever that is unambiguous.
+/// Restores the local names of each function in generated code, wherever that is unambiguous.
 ///
-/// A function ends with a line that closes its brace in the first column. A name gets its own back unless the function
-/// uses that for something else, the code calls or defines something of that name, or naga has set it apart as a reserved
-/// word.
+/// A function ends with a line that closes its brace in the first column. A name is restored unless the function uses
+/// the original for something else, the code calls or defines something with that name, or naga has renamed it because
+/// it is a reserved word.
 pub fn with_plain_names(code: &str) -> String {
     let mut reserved = HashSet::new();
     for token in tokens(code) {
@@ -64,9 +64,9 @@ fn without_number(name: &str) -> Option<&str> {
 struct Token<'a> {
     text: &'a str,
     start: usize,
-    /// It follows a dot or a double colon: a member, or of another namespace.
+    /// Whether it follows a dot or a double colon: a member, or a name in another namespace.
     member: bool,
-    /// A bracket follows: a function or a type.
+    /// Whether a bracket follows: a function or a type.
     called: bool,
 }
 
@@ -79,7 +79,7 @@ fn tokens(code: &str) -> Vec<Token<'_>> {
         let length = code[start..].find(|c| !is_part(c)).unwrap_or(code.len() - start);
         at = start + length;
         let text = &code[start..at];
-        // The pieces of a number such as 1e-7 are not identifiers, or not renamed ones.
+        // The parts of a number such as 1e-7 are not identifiers, or not renamed ones.
         if !text.starts_with(|c: char| c.is_ascii_digit()) {
             let before = &code[..start];
             found.push(Token {

@@ -1,4 +1,4 @@
-//! The prefix that keeps an export's names apart from those of the shader that it is put into.
+//! The prefix that distinguishes an export's names from those of the shader that includes it.
 
 use std::collections::HashMap;
 use std::str::FromStr;
@@ -43,12 +43,13 @@ impl Prefix {
         format!("{}{}_MODULE", self.0, module.replace('-', "_").to_ascii_uppercase())
     }
 
-    /// The macro that marks constants as defined, whose names have the prefix in capitals.
+    /// The macro that marks constants as defined; their names have the prefix in capitals.
     pub fn constant_guard(&self, name: &str) -> String {
         format!("{}{}_CONSTANT", self.0, name).to_ascii_uppercase()
     }
 
-    /// The code with a prefix on every global name of the library, also as changed by naga. Members of structs keep their names.
+    /// Prefixes every global name of the library in the code, including names changed by naga. Members of structs keep
+    /// their names.
     pub fn apply(&self, code: &str) -> String {
         if self.0.is_empty() {
             return code.to_owned();
@@ -57,7 +58,7 @@ impl Prefix {
         map_words(code, |word, before| {
             let known = names.contains_key(word)
                 || word.strip_prefix(CONSTRUCT).is_some_and(|of| names.contains_key(of));
-            // A word after a single dot is a member; what follows `1.` is not a word.
+            // A word after a single dot is a member; text after `1.` is not a word.
             (known && !before.ends_with('.')).then(|| self.of(word))
         })
     }
@@ -79,7 +80,7 @@ pub fn global_names() -> &'static HashMap<&'static str, &'static str> {
 
 fn read_global_names() -> HashMap<&'static str, &'static str> {
     let mut names = HashMap::new();
-    // The modules of baking are not exported, and have names of their own.
+    // The modules for baking are not exported, and have names of their own.
     for module in MODULES.iter().filter(|module| module.role != Role::Bake) {
         for line in module.source.lines() {
             let name = ["const ", "struct ", "fn "].iter().find_map(|keyword| line.strip_prefix(keyword));

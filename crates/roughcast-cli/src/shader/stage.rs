@@ -25,7 +25,7 @@ const OWN_FUNCTIONS: [&str; 11] = [
     "shade_model",
 ];
 
-/// How the textures of a model's layout are read, anisotropy included.
+/// How the textures of a model's layout are read, including anisotropy.
 pub fn reader_of(model: Shading) -> &'static TexelReader {
     let reader = model.layout().texel_reader(model.wanted(), Anisotropy::Anisotropic);
     reader.expect("every model samples its layout")
@@ -36,7 +36,7 @@ pub fn detail_of(model: Shading) -> &'static Module {
     wgsl::module(reader_of(model).module).expect("every reader has a module")
 }
 
-/// The textures of a layout: their bindings, and how they are sampled.
+/// The textures of a layout: their bindings and how they are sampled.
 fn textures_of(layout: Layout) -> Result<&'static str> {
     Ok(match layout {
         Layout::Lean => include_str!("stage/lean.wgsl"),
@@ -48,13 +48,13 @@ fn textures_of(layout: Layout) -> Result<&'static str> {
     })
 }
 
-/// The modules that the fragment shaders of these models need beside the models themselves.
+/// The modules that the fragment shaders of these models need in addition to the models themselves.
 pub fn needed_modules(models: &[Shading]) -> Vec<&'static str> {
     let of_detail = models.iter().flat_map(|model| detail_of(*model).needs.iter().copied());
     of_detail.chain(["detail", "reflectance"]).collect()
 }
 
-/// WGSL of fragment shaders `shade_MODEL`, to be put after the library with [`needed_modules`].
+/// WGSL of fragment shaders `shade_MODEL`, to be appended to the library with [`needed_modules`].
 pub fn fragment_shaders(models: &[Shading]) -> Result<String> {
     let mut declared: Vec<&str> = Vec::new();
     let mut code = RESOURCES.to_owned();
@@ -74,7 +74,7 @@ pub fn fragment_shaders(models: &[Shading]) -> Result<String> {
     Ok(code)
 }
 
-/// The generic names in the files, and those of a model.
+/// The generic names in the files, and their replacements for a model.
 fn names_of(model: Shading) -> Vec<(&'static str, String)> {
     let identifier = model.name().replace('-', "_");
     let own = |name: &str| match name.strip_suffix("_model") {

@@ -10,19 +10,19 @@ use crate::{Gpu, GpuError, Span, Timestamps};
 
 const COPY: &str = include_str!("wgsl/copy.wgsl");
 
-/// Bytes of a copied texel, and texels along each side of what a workgroup copies.
+/// Bytes of a copied texel, and the side length of the block of texels that a workgroup copies.
 const COPY_TEXEL: u64 = 16;
 const COPY_TILE: u64 = 16;
 
-/// Runs that are measured, after one for warming up; the median counts.
+/// Number of measured runs, after one warm-up run; the result is their median.
 const RUNS: u32 = 9;
 
-/// Bytes moved and the time taken, by the GPU's own clock.
+/// Bytes moved and the time taken, measured by the GPU's own clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bandwidth {
     /// Time of one run.
     pub nanoseconds: f64,
-    /// Bytes that have to be read and written, each once.
+    /// Bytes that must be read and written, each counted once.
     pub bytes: u64,
 }
 
@@ -33,7 +33,7 @@ impl Bandwidth {
     }
 }
 
-/// Bakes a normal map of `side` x `side` texels of 4 x 8 bits with all levels. The bytes are those of the map and of every
+/// Bakes a normal map of `side` x `side` texels of 4 x 8 bits with all levels. The byte count covers the map and every
 /// level of every texture.
 ///
 /// # Errors
@@ -57,8 +57,8 @@ pub async fn bake_bandwidth(
     Ok(Bandwidth { nanoseconds, bytes: baker.moved_bytes() })
 }
 
-/// Copies from texture to texture in a compute pass, so that `bytes` or a little more are moved in all: half of them read,
-/// half written.
+/// Copies from texture to texture in a compute pass. At least `bytes` bytes are moved in total: half of them are read
+/// and half written.
 ///
 /// # Errors
 /// [`GpuError::Feature`] without timestamps; [`GpuError`] if the textures do not fit into memory.
@@ -120,7 +120,7 @@ async fn measure(gpu: &Gpu, encode: impl Fn(&mut wgpu::CommandEncoder, &Span)) -
     times.get(times.len() / 2).copied().ok_or(coarse)
 }
 
-/// Slopes of many directions, none of them steep.
+/// A map whose slopes have many directions, none of them steep.
 fn washboard(side: usize) -> Result<Image, GpuError> {
     let texel = |i: usize| [(i * 7 % 97 + 80) as u8, (i / side * 5 % 89 + 84) as u8, 230, 255];
     let samples = Samples::U8((0..side * side).flat_map(texel).collect());
@@ -129,7 +129,7 @@ fn washboard(side: usize) -> Result<Image, GpuError> {
 }
 
 impl GpuBaker {
-    /// Bytes that every bake has to move: the map read once, every level of every texture written once.
+    /// Bytes that every bake must move: the map is read once, and every level of every texture is written once.
     pub fn moved_bytes(&self) -> u64 {
         let written = self
             .textures()

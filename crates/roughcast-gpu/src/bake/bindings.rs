@@ -1,6 +1,7 @@
-//! Bindings of a pass, declared once: to WGSL as source, to wgpu as a layout, and filled in the same order.
+//! Bindings of a pass. Each is declared once; the declaration yields the WGSL source, the wgpu layout and the bind
+//! group entries, all in the same order.
 
-/// The first group of one pass.
+/// The first bind group of a pass.
 pub(super) struct Bindings<'a> {
     layout: Vec<wgpu::BindGroupLayoutEntry>,
     resources: Vec<wgpu::BindingResource<'a>>,
@@ -48,7 +49,7 @@ impl<'a> Bindings<'a> {
         self.push(buffer_type(wgpu::BufferBindingType::Storage { read_only }), buffer.as_entire_binding());
     }
 
-    /// A texture of this type that is read without filtering.
+    /// Adds a texture of this type that is read without filtering.
     pub fn sampled_texture(
         &mut self,
         name: &str,
@@ -64,7 +65,7 @@ impl<'a> Bindings<'a> {
         );
     }
 
-    /// A texture of floats that is read without filtering.
+    /// Adds a float texture that is read without filtering.
     pub fn texture(&mut self, name: &str, view: &'a wgpu::TextureView) {
         let sample_type = wgpu::TextureSampleType::Float { filterable: false };
         self.sampled_texture(name, "texture_2d<f32>", sample_type, view);
@@ -86,7 +87,7 @@ impl<'a> Bindings<'a> {
         self.push(ty, wgpu::BindingResource::TextureView(view));
     }
 
-    /// The declarations.
+    /// The WGSL declarations.
     pub fn wgsl(&self) -> &str {
         &self.wgsl
     }
@@ -113,7 +114,7 @@ impl<'a> Bindings<'a> {
     }
 }
 
-/// WGSL of a constant, whose value is in WGSL syntax.
+/// WGSL of a constant. The value is in WGSL syntax.
 pub(super) fn constant(name: &str, value: impl std::fmt::Display) -> String {
     format!("const {name} = {value};\n")
 }

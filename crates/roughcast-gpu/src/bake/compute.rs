@@ -1,4 +1,5 @@
-//! The compute path: all levels in two dispatches if sides stay even and the device binds enough storage textures.
+//! The compute path. It makes all levels in two dispatches if all sides stay even and the device can bind enough
+//! storage textures.
 
 use roughcast::wgsl::renamed;
 
@@ -13,12 +14,12 @@ const COMMON: &str = include_str!("wgsl/common.wgsl");
 const FUSED: &str = include_str!("wgsl/fused.wgsl");
 const WEIGHTED: &str = include_str!("wgsl/weighted.wgsl");
 
-/// The averages of a texel in a buffer: two vec4f.
+/// Size in bytes of a texel's averages in a buffer: two vec4f.
 const AVERAGES_BYTES: u64 = 32;
 
-/// Texels of the level that is read, along each side of a workgroup's input.
+/// Side length of a workgroup's input, in texels of the level that is read.
 const FUSED_TILE: u32 = 64;
-/// Texels of the level that is written, along each side of a workgroup's output.
+/// Side length of a workgroup's output, in texels of the level that is written.
 const WEIGHTED_TILE: u32 = 8;
 
 /// Pipelines and bindings of every dispatch.
@@ -69,7 +70,7 @@ impl ComputeBake {
     }
 }
 
-/// Begins the one pass of the compute path.
+/// Begins the single pass of the compute path.
 pub(super) fn begin_pass<'e>(
     encoder: &'e mut wgpu::CommandEncoder,
     span: Option<&Span>,
@@ -80,7 +81,8 @@ pub(super) fn begin_pass<'e>(
     })
 }
 
-/// The buffers in which dispatches leave their last level as floats for the next one, alternately: the first writes into the first.
+/// The buffers in which each dispatch leaves its last level as floats for the next dispatch. Dispatches alternate
+/// between them, starting with the first.
 async fn states(gpu: &Gpu, job: &Job, steps: &[Step]) -> Result<[wgpu::Buffer; 2], GpuError> {
     let bytes = |turn: usize| {
         let handed_on = steps.iter().take(steps.len() - 1).enumerate();
@@ -165,7 +167,7 @@ pub(super) fn compute_pipeline(
     })
 }
 
-/// Level 0 is computed from the map. The first dispatch counts what it repairs.
+/// Level 0 is computed from the map. The first dispatch counts the texels it repairs.
 fn input_from_map<'a>(job: &'a Job, bindings: &mut Bindings<'a>, counts: bool) -> String {
     job.bind_map(bindings);
     let input = if counts {
@@ -177,7 +179,7 @@ fn input_from_map<'a>(job: &'a Job, bindings: &mut Bindings<'a>, counts: bool) -
     job.map_wgsl() + input
 }
 
-/// A later level is read as the previous dispatch left it.
+/// A later level is read from what the previous dispatch stored.
 fn input_from_state<'a>(bindings: &mut Bindings<'a>, state: &'a wgpu::Buffer) -> String {
     bindings.storage("state_in", "array<vec4f>", Access::Read, state);
     include_str!("wgsl/input_buffer.wgsl").to_owned()
@@ -187,7 +189,7 @@ fn texture_name(layer: usize, halvings: u32) -> String {
     format!("texture_{layer}_{halvings}")
 }
 
-/// `store_N`: stores a texel of the level N halvings after the one that is read.
+/// `store_N`: stores a texel of the level N halvings after the level that is read.
 fn store(job: &Job, halvings: u32, written: bool, state: bool) -> String {
     let texels = if written { job.target.store_wgsl() } else { include_str!("wgsl/store_no_texels.wgsl") };
     let state =

@@ -1,7 +1,7 @@
 //! LEAN and CLEAN maps baked on the GPU, fast enough for bumps that move every frame.
 //!
-//! The result matches that of [`roughcast::Bake`] within one step of the format on every texel of every level: the same
-//! options, the same order of additions, quotients and roots rounded as on the CPU.
+//! The result matches that of [`roughcast::Bake`] within one step of the format on every texel of every level: the
+//! options and the order of additions are the same, and quotients and roots are rounded as on the CPU.
 
 mod bandwidth;
 mod bindings;
@@ -32,10 +32,10 @@ use scale::AutoScale;
 use source::MapFormat;
 use target::{Target, base_variance_of, level_count, level_view};
 
-/// The library's rules in WGSL.
+/// The library's WGSL functions.
 static LIBRARY: LazyLock<String> = LazyLock::new(|| roughcast::wgsl::library_of(Role::Bake));
 
-/// The largest slope, once it is known.
+/// WGSL that returns the largest slope, for passes that run once it is known.
 const SLOPE_LIMIT: &str = include_str!("wgsl/slope_limit.wgsl");
 
 /// How a map is baked.
@@ -75,20 +75,21 @@ struct Job {
     textures: Vec<wgpu::Texture>,
     /// WGSL's `PackedStores`.
     stores: wgpu::Buffer,
-    /// Repaired texels, in the order of [`SourceCounts`].
+    /// Counts of repaired texels, in the order of [`SourceCounts`].
     counts: wgpu::Buffer,
 }
 
-/// Floats of WGSL's `PackedStores`, and the indices of the scale and the largest slope among them.
+/// Number of floats in WGSL's `PackedStores`, and the indices of the scale and the largest slope within it.
 const STORES_FLOATS: usize = 12;
 const SCALE_AT: usize = 10;
 const LIMIT_AT: usize = 11;
 
 impl GpuBaker {
-    /// A baker for images like this one, which is uploaded. Nothing is baked yet.
+    /// Creates a baker for images like this one and uploads the image. Nothing is baked yet.
     ///
     /// # Errors
-    /// [`GpuError`] if options contradict each other or are unsupported on a GPU, the map is too large, or a format is missing.
+    /// [`GpuError`] if options contradict each other or are unsupported on a GPU, the map is too large, or a format is
+    /// missing.
     pub async fn for_image(
         gpu: &Gpu,
         image: &Image,
@@ -119,8 +120,8 @@ impl GpuBaker {
         Self::for_texture(gpu, &map, source, roughness, options, path).await
     }
 
-    /// A baker for a texture that is already on the GPU, such as bumps drawn every frame; its level 0 is read whenever the bake
-    /// runs. It needs the usage `TEXTURE_BINDING`.
+    /// Creates a baker for a texture that is already on the GPU, such as bumps drawn every frame. Each bake reads its
+    /// level 0. The texture needs the usage `TEXTURE_BINDING`.
     ///
     /// # Errors
     /// As [`GpuBaker::for_image`].
@@ -147,10 +148,10 @@ impl GpuBaker {
         Ok(Self { gpu: gpu.clone(), job, work, auto_scale })
     }
 
-    /// Replaces the map by another image of the same size, channels and sample type.
+    /// Replaces the map with another image of the same size, channels and sample type.
     ///
     /// # Errors
-    /// [`GpuError::Shape`] if the image is of another kind.
+    /// [`GpuError::Shape`] if the image differs in any of these.
     pub fn upload(&self, image: &Image) -> Result<(), GpuError> {
         let size = self.job.size;
         let same_size = (image.width(), image.height()) == (size.width as usize, size.height as usize);
@@ -173,9 +174,11 @@ impl GpuBaker {
         Ok(())
     }
 
-    /// Encodes the bake of what the map's texture will contain by then. It creates nothing on the GPU.
+    /// Encodes a bake of the map's texture, with the contents that it has when the commands run. Creates nothing on the
+    /// GPU.
     ///
-    /// `span` measures it: a compute bake as a whole; with render passes, all but the search for a scale.
+    /// `span` measures the bake: the whole of a compute bake; with render passes, everything except the search for a
+    /// scale.
     pub fn encode(&self, encoder: &mut wgpu::CommandEncoder, span: Option<&Span>) {
         encoder.clear_buffer(&self.job.counts, 0, None);
         if let Some(auto_scale) = &self.auto_scale {
@@ -205,12 +208,13 @@ impl GpuBaker {
         self.gpu.queue.submit([encoder.finish()]);
     }
 
-    /// The baked textures, in the order of the layout's layers: `lean1` and `lean2`, or `clean`. They stay the same.
+    /// The baked textures, in the order of the layout's layers: `lean1` and `lean2`, or `clean`. Every bake writes to
+    /// the same textures.
     pub fn textures(&self) -> &[wgpu::Texture] {
         &self.job.textures
     }
 
-    /// Dispatches of a bake, without those that find a scale; 0 with render passes.
+    /// Number of dispatches of a bake, excluding those that find a scale; 0 with render passes.
     pub fn dispatch_count(&self) -> usize {
         match &self.work {
             Work::Compute(compute) => compute.dispatch_count(),
@@ -218,12 +222,13 @@ impl GpuBaker {
         }
     }
 
-    /// A buffer whose eleventh float is the scale, and whose twelfth is the largest slope, for shaders: see `bake/common.wgsl`, `PackedStores`.
+    /// A buffer for shaders whose eleventh float is the scale and whose twelfth is the largest slope: see
+    /// `PackedStores` in `bake/common.wgsl`.
     pub fn scale_buffer(&self) -> &wgpu::Buffer {
         &self.job.stores
     }
 
-    /// What the texels mean. An automatic scale is read back from the GPU.
+    /// The meaning of the texels. An automatic scale is read back from the GPU.
     ///
     /// # Errors
     /// [`GpuError::ReadBack`] if the device was lost.
@@ -235,8 +240,7 @@ impl GpuBaker {
         Ok(info)
     }
 
-    /// The largest slope of the last bake, read back from the GPU: with [`MaxSlope::Auto`] it may
-    /// follow from the map.
+    /// The largest slope of the last bake, read back from the GPU. With [`MaxSlope::Auto`] it may depend on the map.
     ///
     /// # Errors
     /// [`GpuError::ReadBack`] if the device was lost.
@@ -248,7 +252,7 @@ impl GpuBaker {
         Ok(bytemuck::pod_collect_to_vec(&read_buffer(&self.gpu, &self.job.stores).await?))
     }
 
-    /// Texels that the last bake repaired; `None` with render passes, which do not count them.
+    /// Counts of the texels that the last bake repaired; `None` with render passes, which do not count them.
     ///
     /// # Errors
     /// [`GpuError::ReadBack`] if the device was lost.
@@ -261,7 +265,7 @@ impl GpuBaker {
         Ok(Some(SourceCounts { clamped, behind, invalid, non_finite }))
     }
 
-    /// The baked textures in memory, to be written to files.
+    /// Reads the baked textures back into memory, to be written to files.
     ///
     /// # Errors
     /// [`GpuError`] if they do not fit into memory or the device was lost.
@@ -330,7 +334,7 @@ impl Job {
         u64::from(width) * u64::from(height)
     }
 
-    /// Zero if the largest slope is known.
+    /// The survey stride, as in WGSL's `Params`; zero if the largest slope is known.
     fn survey_stride(&self) -> u32 {
         match self.plan.source.max_slope {
             MaxSlope::Auto => {
@@ -345,13 +349,13 @@ impl Job {
         self.textures.iter().map(|texture| level_view(texture, level)).collect()
     }
 
-    /// Declares the map.
+    /// Declares the map's binding.
     fn bind_map<'a>(&'a self, bindings: &mut Bindings<'a>) {
         let format = self.map_format;
         bindings.sampled_texture("map", format.wgsl_type(), format.sample_type(), &self.map_view);
     }
 
-    /// WGSL of `map_slope` and of `averages_of_slope`, once the map is declared.
+    /// WGSL of `map_slope` and `averages_of_slope`. The map must be declared first.
     fn map_wgsl(&self) -> String {
         self.map_format.wgsl(&self.plan.source) + self.target.averages_wgsl()
     }
@@ -372,7 +376,7 @@ impl Job {
             factor_x.to_bits(),
             factor_y.to_bits(),
             self.survey_stride(),
-            // Up to a multiple of 16 bytes.
+            // Pads the size to a multiple of 16 bytes.
             0,
             0,
         ];
@@ -384,7 +388,8 @@ impl Job {
     }
 }
 
-/// WGSL's `PackedStores`: for a scale, or the identity for floats and until a scale is found; and the largest slope.
+/// WGSL's `PackedStores`: the largest slope, and the packing for a scale. The packing is the identity for floats and
+/// until a scale has been found.
 fn stores_buffer(gpu: &Gpu, scale: Option<f32>, max_slope: f32) -> wgpu::Buffer {
     let mut floats: [f32; STORES_FLOATS] = match scale {
         None => [1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0],

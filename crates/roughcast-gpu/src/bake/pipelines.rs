@@ -1,4 +1,4 @@
-//! Pipelines by their source: levels that are made in the same way share one.
+//! Pipelines by their source. Levels that are made in the same way share a pipeline.
 
 /// Pipelines made so far.
 pub(super) struct Pipelines<P> {

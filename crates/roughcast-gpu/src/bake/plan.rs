@@ -1,30 +1,30 @@
 //! Which levels each dispatch makes.
 //!
-//! A dispatch writes as many levels as the device binds storage textures (four per stage by WebGPU's defaults, many more
-//! natively) and as workgroup memory allows. Averages are computed in the same order as on the CPU.
+//! A dispatch writes as many levels as the device binds storage textures (four per stage by WebGPU's defaults, many
+//! more natively) and workgroup memory allow. Averages are computed in the same order as on the CPU.
 
 use roughcast::{level_sizes, levels_of_four};
 
-/// Halvings that one workgroup makes: two in the registers of a thread, four in workgroup memory.
+/// Maximum number of halvings that one workgroup makes: two in the registers of a thread, four in workgroup memory.
 pub(super) const MOST_HALVINGS: u32 = 6;
 
 /// How a level is computed from the previous one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Average {
-    /// Equal averages of four, rows first, as in the CPU's fused pass.
+    /// Equal averages of four texels, rows first, as in the CPU's fused pass.
     OfFour,
-    /// Equal averages of four, columns first, as in the CPU's weighted pass if both sides are even.
+    /// Equal averages of four texels, columns first, as in the CPU's weighted pass if both sides are even.
     OfFourWeighted,
-    /// Coverage weights of any size.
+    /// Averages weighted by coverage, for levels of any size.
     Weighted,
 }
 
 /// One dispatch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Step {
-    /// The level that is read: 0 is the map itself.
+    /// The level that is read. Level 0 is the map itself.
     pub input: u32,
-    /// The first level that is written: the input for the first dispatch, otherwise the next one.
+    /// The first level that is written: for the first dispatch the input level itself, otherwise the one after it.
     pub first: u32,
     /// The last level that is written.
     pub last: u32,
@@ -32,18 +32,18 @@ pub(super) struct Step {
 }
 
 impl Step {
-    /// Levels that it writes.
+    /// The levels that the dispatch writes.
     pub fn levels(&self) -> std::ops::RangeInclusive<u32> {
         self.first..=self.last
     }
 
-    /// Levels by which it halves.
+    /// Number of halvings from the input level to the last level.
     pub fn halvings(&self) -> u32 {
         self.last - self.input
     }
 }
 
-/// The dispatches for a map of this size if each may write this many levels, at least one.
+/// The dispatches for a map of this size if each may write up to this many levels (at least one).
 pub(super) fn steps(width: u32, height: u32, levels_a_step: u32) -> Vec<Step> {
     let sizes = level_sizes(width as usize, height as usize);
     let last = sizes.len() as u32 - 1;

@@ -1,8 +1,8 @@
-//! The method of the LEAN paper (section 3), for devices without compute shaders: one render pass from the map into level 0 of both textures,
-//! further render passes for the mips.
+//! The method of the LEAN paper (section 3), for devices without compute shaders. One render pass turns the map into
+//! level 0 of both textures; further render passes make the mip levels.
 //!
-//! Every level after the first is averaged into textures of single floats and rounded from there, so that rounding does
-//! not accumulate from level to level.
+//! Every level after the first is averaged into single-float textures and rounded from there, so that rounding errors
+//! do not accumulate from level to level.
 
 use roughcast::levels_of_four;
 
@@ -30,21 +30,21 @@ struct Pass {
     size: (u32, u32),
 }
 
-/// What a pass reads.
+/// The input of a pass.
 #[derive(Clone, Copy)]
 enum Input<'a> {
     Map,
     State(&'a [wgpu::TextureView; 2]),
 }
 
-/// What a pass writes.
+/// The output of a pass.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Output {
-    /// Texels of the level that is read.
+    /// The texels of the level that is read.
     Texels,
-    /// The next level as floats, of equal averages of four.
+    /// The next level as floats, as equal averages of four texels.
     AverageOfFour,
-    /// The next level as floats, by coverage.
+    /// The next level as floats, weighted by coverage.
     WeightedAverage,
 }
 
@@ -54,7 +54,7 @@ impl RasterBake {
         let mut pipelines = Pipelines::new();
         let mut passes =
             vec![pass(gpu, job, 0, Input::Map, Output::Texels, job.level_views(0), &mut pipelines).await?];
-        // Odd levels live in the first, even ones in the second: a pass never reads what it writes.
+        // Odd levels are stored in the first, even levels in the second, so a pass never reads what it writes.
         let states = [state(gpu, job, 1).await?, state(gpu, job, 2).await?];
         let (width, height) = job.level_size(0);
         let of_four = levels_of_four(width as usize, height as usize) as u32;
@@ -93,7 +93,7 @@ impl Pass {
         timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) {
         let attachment = |view| {
-            // Every texel that is read later is drawn, so earlier contents do not matter.
+            // Every texel that is read later is drawn first, so earlier contents do not matter.
             let ops = wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store };
             wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
         };
@@ -111,7 +111,7 @@ impl Pass {
     }
 }
 
-/// Two textures of floats as large as a level.
+/// Two float textures of the size of a level.
 async fn state(gpu: &Gpu, job: &Job, level: u32) -> Result<[wgpu::TextureView; 2], GpuError> {
     let (width, height) = job.level_size(level);
     let descriptor = wgpu::TextureDescriptor {

@@ -1,5 +1,5 @@
-//! The scale of unsigned texels, and the largest slope if it follows from the map: chosen by the caller, or found on the GPU
-//! by one more pass over the map, and kept there.
+//! The scale of unsigned texels, and the largest slope if it depends on the map. The caller chooses them, or one more
+//! pass over the map finds them on the GPU, where they stay.
 
 use super::bindings::{Access, Bindings};
 use super::compute::{Dispatch, compute_pipeline};
@@ -9,12 +9,12 @@ use crate::{Gpu, GpuError};
 const COMMON: &str = include_str!("wgsl/common.wgsl");
 const SCALE: &str = include_str!("wgsl/scale.wgsl");
 
-/// Texels along each side of a workgroup's input.
+/// Side length of a workgroup's input, in texels.
 const TILE: u32 = 64;
 
 /// Bytes of WGSL's `Survey`: two counts and the bins of a histogram.
 const SURVEY_BYTES: u64 = 4 * (2 + SLOPE_BINS);
-/// Of the histogram, as in limit.wgsl.
+/// Number of histogram bins, as in limit.wgsl.
 const SLOPE_BINS: u64 = 1089;
 
 /// Finds the smallest scale that represents every slope.
@@ -44,7 +44,7 @@ impl AutoScale {
         Ok(Self { survey, look, set_scale })
     }
 
-    /// Clears the slopes of the previous frame.
+    /// Clears the survey of the previous frame.
     pub fn encode_reset(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.clear_buffer(&self.survey, 0, None);
     }

@@ -1,4 +1,4 @@
-//! The map: as the caller's texture or as a copy of an image, and how a shader reads it.
+//! The map, either the caller's texture or a copy of an image, and how a shader reads it.
 
 use half::f16;
 use roughcast::{
@@ -9,10 +9,10 @@ use roughcast::{
 use super::bindings::constant;
 use crate::{Gpu, GpuError};
 
-/// How a texture's texels arrive in a shader.
+/// How a texture's texels reach a shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Texel {
-    /// Unsigned normalised: the code over this many steps, to be recovered by rounding.
+    /// Unsigned normalised: the code divided by this number of steps. The shader recovers the code by rounding.
     Unorm(u32),
     /// The code itself.
     Code(u32),
@@ -29,7 +29,7 @@ pub(super) struct MapFormat {
 }
 
 impl MapFormat {
-    /// For a texture of the caller.
+    /// The format of a texture of the caller.
     pub fn of_texture(format: wgpu::TextureFormat) -> Result<Self, GpuError> {
         use wgpu::TextureFormat as F;
         let (texel, channels) = match format {
@@ -56,7 +56,8 @@ impl MapFormat {
         Ok(Self { format, texel, channels })
     }
 
-    /// For the texture that an image is copied into. Unsigned samples are stored as codes, which every device reads exactly.
+    /// The format of the texture that an image is copied into. Unsigned samples are stored as codes, which every device
+    /// reads exactly.
     pub fn of_image(image: &Image) -> Result<Self, GpuError> {
         use wgpu::TextureFormat as F;
         let formats = match image.samples().sample_type() {
@@ -85,9 +86,9 @@ impl MapFormat {
         }
     }
 
-    /// Channels that the options need and this format lacks are an error.
+    /// Returns an error if the format lacks a channel that the options need.
     pub fn check_channels(self, options: &SourceOptions) -> Result<(), GpuError> {
-        // A texture of three channels has four; the third stays the third.
+        // A three-channel texture is stored with four channels; the third stays the third.
         let needed = match options.kind {
             Kind::Height => 1,
             Kind::Normal => options.normal_channels.needed(),
@@ -99,7 +100,7 @@ impl MapFormat {
         Ok(())
     }
 
-    /// WGSL of the map's type, for its declaration.
+    /// The map's type in WGSL, for its declaration.
     pub fn wgsl_type(self) -> &'static str {
         match self.texel {
             Texel::Code(_) => "texture_2d<u32>",
@@ -107,7 +108,8 @@ impl MapFormat {
         }
     }
 
-    /// WGSL of `map_slope(at)`, the slope of a texel of `map`, repaired or neutral. Needs `slope_limit()`, the largest slope.
+    /// WGSL of `map_slope(at)`, the slope of a texel of `map`, repaired or neutral. Needs `slope_limit()`, the largest
+    /// slope.
     pub fn wgsl(self, options: &SourceOptions) -> String {
         let (steps, texels) = match self.texel {
             Texel::Unorm(steps) => (Some(steps), include_str!("wgsl/map_unorm.wgsl")),
@@ -155,7 +157,7 @@ impl MapFormat {
     }
 }
 
-/// The wrap mode, as `Params` has it.
+/// The code of the wrap mode in WGSL's `Params`.
 pub(super) fn code_of_wrap(wrap: Wrap) -> u32 {
     match wrap {
         Wrap::Repeat => 0,
@@ -195,7 +197,7 @@ pub(super) fn upload(gpu: &Gpu, image: &Image, texture: &wgpu::Texture) {
     );
 }
 
-/// Samples as bytes, with a filler for the fourth channel of three and without channels beyond the fourth.
+/// Samples as bytes. Three channels are padded to four; channels beyond the fourth are dropped.
 fn bytes_of<T: bytemuck::Pod>(samples: &[T], from: usize, to: usize, filler: T) -> Vec<u8> {
     if from == to {
         return bytemuck::cast_slice(samples).to_vec();

@@ -1,4 +1,4 @@
-//! What is baked: a layout's textures with all their levels, and the WGSL that encodes averages as their texels.
+//! The target of a bake: a layout's textures with all their levels, and the WGSL that encodes averages as their texels.
 
 use roughcast::texture::{self, Layout, Texture, TextureArray, TextureInfo};
 use roughcast::{
@@ -49,7 +49,7 @@ impl Target {
         Ok(Self { layout: options.layout, format, sample_type: options.sample_type })
     }
 
-    /// Textures of the layout.
+    /// Number of textures in the layout.
     pub fn layers(self) -> u32 {
         if self.layout == Layout::Lean { 2 } else { 1 }
     }
@@ -175,7 +175,7 @@ pub(super) fn level_view(texture: &wgpu::Texture, level: u32) -> wgpu::TextureVi
     })
 }
 
-/// Roughness that the GPU can fold in: none, or the same everywhere.
+/// The base variance that the GPU can fold in: zero, or a constant over the map.
 pub(super) fn base_variance_of(
     info: &TextureInfo,
     roughness: Option<roughcast::BaseRoughness<'_>>,

@@ -1,4 +1,4 @@
-// What is shaded: the distribution of slopes under the pixel.
+// Shading uses the distribution of slopes under the pixel.
 fn bumps_at(at: DetailPoint) -> Distribution {
     return detail_distribution(at);
 }

@@ -1,5 +1,5 @@
-// The part of the variance under the sampler that is under the pixel. Fine derivatives: the difference to one neighbour, as in the CPU
-// renderer.
+// The fraction of the variance under the sampler's filter that lies under the pixel. Derivatives are fine: the
+// difference to one neighbour, as in the CPU renderer.
 fn pixel_ratio(mean: vec2f, at: DetailPoint) -> FootprintRatio {
     let size = vec2f(textureDimensions(map0));
     let texels_dx = dpdxFine(at.uv) * size;

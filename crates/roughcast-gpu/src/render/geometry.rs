@@ -5,10 +5,10 @@ use wgpu::util::DeviceExt;
 
 use crate::{Gpu, GpuError};
 
-/// Position, normal, tangent with handedness, texture coordinates.
+/// Floats per vertex: position, normal, tangent with handedness, texture coordinates.
 const FLOATS_A_VERTEX: usize = 3 + 3 + 4 + 2;
 
-/// A vertex as the shaders read it.
+/// The vertex layout that the shaders read.
 pub(super) const VERTEX_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     array_stride: (FLOATS_A_VERTEX * size_of::<f32>()) as u64,
     step_mode: wgpu::VertexStepMode::Vertex,
@@ -24,7 +24,7 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// Uploads a shape. `detail` is that of [`Shape::triangles`]; meshes are used unchanged.
+    /// Uploads a shape. For `detail`, see [`Shape::triangles`]; meshes are used unchanged.
     ///
     /// # Errors
     /// [`GpuError::BufferTooLarge`], [`GpuError::OutOfMemory`].
@@ -52,7 +52,7 @@ fn vertices_of(mesh: &TriangleMesh) -> Vec<f32> {
     vertices
 }
 
-/// A buffer with these bytes.
+/// Creates a buffer with these bytes.
 pub(super) async fn upload(
     gpu: &Gpu,
     what: &'static str,

@@ -1,4 +1,4 @@
-//! A picture without a window.
+//! Renders a picture without a window.
 
 use roughcast_scene::render::{MAX_PIXELS, RenderError};
 use roughcast_scene::{Picture, Scene};
@@ -7,11 +7,11 @@ use super::{DEPTH_FORMAT, Drawing, PARTS_FORMAT, RenderTarget, Renderer, Views};
 use crate::read_back::stage_texture;
 use crate::{Gpu, GpuError};
 
-/// Renders a picture of `(width, height)` pixels and waits for it: one sample at each pixel's centre, as
-/// `roughcast_scene::render::Method` makes it. `renderer` must be one for [`RenderTarget::Parts`].
+/// Renders a picture of `(width, height)` pixels and waits for it: one sample at each pixel's centre, like
+/// `roughcast_scene::render::Method`. `renderer` must be made for [`RenderTarget::Parts`].
 ///
 /// # Errors
-/// [`GpuError`] if the picture or the scene is not one that can be rendered, or the device was lost.
+/// [`GpuError`] if the picture or the scene cannot be rendered, or the device was lost.
 pub async fn render(
     renderer: &Renderer,
     drawing: &mut Drawing,
@@ -47,7 +47,7 @@ pub async fn render(
     })
 }
 
-/// Refuses pictures without pixels, and too large ones.
+/// Refuses pictures that are empty or too large.
 pub(super) fn check_size((width, height): (u32, u32)) -> Result<(), GpuError> {
     let pixels = u64::from(width) * u64::from(height);
     if (1..=MAX_PIXELS).contains(&pixels) { Ok(()) } else { Err(RenderError::Size(width, height).into()) }

@@ -1,6 +1,6 @@
 @group(1) @binding(5) var map1: texture_2d<f32>;
 
-// Roughness may be in any channel of its texture; it is read from the first.
+// Roughness may be stored in any channel of its texture; here it is read from the first.
 fn texel1(at: DetailPoint) -> vec4f {
     return vec4f(filtered(map1, at.uv)[sampling.roughness_channel]);
 }

@@ -1,8 +1,8 @@
-// How maps are sampled: the host functions for all detail modules of textures.
+// How maps are sampled: the functions that the host provides for all detail modules that read textures.
 
 struct Sampling {
-    detail: f32,            // levels added to the hardware's; or the level, if it is fixed
-    roughness_channel: u32, // of the second texture
+    detail: f32,            // bias added to the hardware's level; or the level itself, if it is fixed
+    roughness_channel: u32, // roughness channel of the second texture
     max_anisotropy: f32,    // taps along the footprint; 0 for nearest sampling
 }
 

@@ -1,8 +1,8 @@
-//! The real-time renderer: the scenes and the shading models of the CPU's, with the GPU's own texture filters.
+//! The real-time renderer: the scenes and shading models of the CPU renderer, with the GPU's own texture filters.
 //!
-//! A [`Renderer`] draws into one kind of target: a window's surface, an offscreen texture, or a [`Picture`] that is read
-//! back. It combines a [`Geometry`] and [`GpuTextures`], each uploaded once, into a [`Drawing`], whose
-//! view may change every frame.
+//! A [`Renderer`] draws into one kind of target: a window's surface, an offscreen texture, or a [`Picture`] that is
+//! read back. It combines a [`Geometry`] and [`GpuTextures`], each uploaded once, into a [`Drawing`], whose view may
+//! change every frame.
 //!
 //! ```text
 //! let mut renderer = Renderer::new(&gpu, RenderTarget::Colour(surface_format)).await?;
@@ -42,19 +42,21 @@ use pipeline::{BindGroups, MapUniforms, create_layouts, create_pipeline};
 use sampling::Sampling;
 use uniforms::{VIEW_WORDS, light_words, room_for, view_words};
 
-/// What is rendered to.
+/// The kind of target that is rendered to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RenderTarget {
-    /// One colour target of this format: radiance, and coverage as alpha. Only the format clips or encodes.
+    /// One colour target of this format, for radiance, with coverage as alpha. Values are only clipped or encoded by
+    /// the format.
     Colour(wgpu::TextureFormat),
-    /// Two colour targets of single floats: radiance and coverage, and the part of the radiance from specular lobes.
+    /// Two single-float colour targets: one for radiance and coverage, one for the part of the radiance from specular
+    /// lobes.
     Parts,
 }
 
-/// The format of the first target of [`RenderTarget::Parts`], and of the second.
+/// The format of both targets of [`RenderTarget::Parts`].
 pub const PARTS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
-/// The format of the depth target, which is reversed: 1 at the near plane, 0 at the far one.
+/// The format of the depth target. Depth is reversed: 1 at the near plane, 0 at the far plane.
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 impl RenderTarget {
@@ -85,34 +87,35 @@ impl RenderTarget {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct DrawOptions {
-    /// The texture filter. Hardware has three of them: nearest, trilinear and anisotropic with up to 16 taps.
+    /// The texture filter. Hardware supports three: nearest, trilinear, and anisotropic with up to 16 taps.
     pub sampler: Sampler,
     /// How the lobe is evaluated. Properties stored with the textures take precedence.
     pub shading_options: ShadingOptions,
-    /// What is shaded: filtered bumps, or resolved ones as ground truth has them.
+    /// Whether filtered bumps are shaded, or resolved ones as in the ground truth.
     pub bumps: Bumps,
 }
 
 impl DrawOptions {
-    /// The same with this texture filter.
+    /// The same options with this texture filter.
     #[must_use]
     pub fn with_sampler(self, sampler: Sampler) -> Self {
         Self { sampler, ..self }
     }
 
-    /// The same with these options of the lobe.
+    /// The same options with these options of the lobe.
     #[must_use]
     pub fn with_shading_options(self, shading_options: ShadingOptions) -> Self {
         Self { shading_options, ..self }
     }
 
-    /// The same with filtered or resolved bumps.
+    /// The same options with filtered or resolved bumps.
     #[must_use]
     pub fn with_bumps(self, bumps: Bumps) -> Self {
         Self { bumps, ..self }
     }
 
-    /// The sampler: of resolved bumps one of the finest level without anisotropy, which hardware may apply even where a level is given.
+    /// The sampler to use. Resolved bumps use the finest level without anisotropy, because hardware may apply
+    /// anisotropy even if the level is given.
     fn sampler(&self) -> Sampler {
         match self.bumps {
             Bumps::Filtered => self.sampler,
@@ -121,12 +124,12 @@ impl DrawOptions {
     }
 }
 
-/// Draws scenes into one kind of target. Shaders are compiled at their first use and kept.
+/// Draws scenes into one kind of target. Shaders are compiled on first use and kept.
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,
     target: RenderTarget,
-    /// The layout of the view; those of the maps depend on their number.
+    /// The bind group layout of the view; those of the maps depend on the number of maps.
     view_layout: wgpu::BindGroupLayout,
     map_layouts: Vec<wgpu::BindGroupLayout>,
     pipelines: HashMap<ShaderKey, wgpu::RenderPipeline>,
@@ -149,7 +152,7 @@ pub struct Drawing {
 }
 
 impl Renderer {
-    /// A renderer for targets of this kind.
+    /// Creates a renderer for targets of this kind.
     ///
     /// # Errors
     /// [`GpuError::Format`] if the device cannot render to the format; [`GpuError::Feature`] if its shaders cannot
@@ -171,7 +174,7 @@ impl Renderer {
         &self.gpu
     }
 
-    /// What is rendered to.
+    /// The kind of target that is rendered to.
     pub fn target(&self) -> RenderTarget {
         self.target
     }
@@ -243,8 +246,8 @@ fn key(textures: &GpuTextures, sampling: &Sampling, bumps: Bumps) -> ShaderKey {
 }
 
 impl Drawing {
-    /// Changes lobe and texture filter of the next frames. Nothing is uploaded again; a shader is compiled only if the renderer
-    /// has none yet for this kind of filter.
+    /// Changes the lobe and the texture filter for the next frames. Nothing is uploaded again; a shader is compiled
+    /// only if the renderer has none yet for this kind of filter.
     ///
     /// # Errors
     /// As [`Renderer::prepare`]. The drawing is then unchanged.
@@ -265,11 +268,11 @@ impl Drawing {
         Ok(())
     }
 
-    /// Sets camera, lights, material, repeats and background of the next frames, in a target of `size` pixels. The scene's
-    /// shape is that of the geometry; here it only determines the range of depths.
+    /// Sets the camera, lights, material, repeats and background for the next frames, in a target of `size` pixels. The
+    /// scene's shape must be that of the geometry; here it only determines the depth range.
     ///
     /// # Errors
-    /// [`GpuError::Scene`] if the camera is invalid or the size is zero; an error, too, if there are too many lights.
+    /// [`GpuError::Scene`] if the camera is invalid or the size is zero. Too many lights are an error too.
     pub async fn set_view(
         &mut self,
         renderer: &Renderer,
@@ -295,8 +298,8 @@ impl Drawing {
         Ok(())
     }
 
-    /// Encodes a pass that draws into the views, in the [order](Views::order) that they state. Its time is written where
-    /// `timestamps` specifies, such as [`crate::Span::of_render_pass`].
+    /// Encodes a pass that draws into the views, in the [order](Views::order) that they specify. The pass's time is
+    /// written to `timestamps`, such as [`crate::Span::of_render_pass`].
     pub fn draw(
         &self,
         encoder: &mut wgpu::CommandEncoder,

@@ -7,10 +7,10 @@ use super::textures::GpuTextures;
 use super::{DEPTH_FORMAT, DrawOptions, RenderTarget};
 use crate::{Gpu, GpuError};
 
-/// The most textures of a source of bumps.
+/// Maximum number of textures of a source of bumps.
 const MAX_TEXTURES: u32 = 3;
 
-/// The layout of the view's group, and those of the maps' groups with one texture and more.
+/// The bind group layout of the view, and those of the maps with one or more textures.
 pub(super) fn create_layouts(device: &wgpu::Device) -> (wgpu::BindGroupLayout, Vec<wgpu::BindGroupLayout>) {
     let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
     let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
@@ -38,7 +38,7 @@ pub(super) fn create_layouts(device: &wgpu::Device) -> (wgpu::BindGroupLayout, V
     (view, maps.collect())
 }
 
-/// The pipeline of a model.
+/// Creates the pipeline of a model.
 pub(super) async fn create_pipeline(
     gpu: &Gpu,
     key: ShaderKey,
@@ -66,7 +66,7 @@ pub(super) async fn create_pipeline(
                 compilation_options: Default::default(),
                 buffers: &[Some(VERTEX_LAYOUT)],
             },
-            // Both sides are drawn: shapes have two.
+            // Both sides are drawn: shapes are two-sided.
             primitive: wgpu::PrimitiveState { front_face: wgpu::FrontFace::Ccw, ..Default::default() },
             depth_stencil: Some(wgpu::DepthStencilState {
                 format: DEPTH_FORMAT,
@@ -96,7 +96,7 @@ pub(super) struct BindGroups<'a> {
 }
 
 impl BindGroups<'_> {
-    /// The view and the lights.
+    /// The bind group of the view and the lights.
     pub async fn scene(
         &self,
         view: &wgpu::Buffer,
@@ -106,7 +106,7 @@ impl BindGroups<'_> {
         self.group("the view of a scene", self.view_layout, resources).await
     }
 
-    /// The textures, a sampler, and the uniforms that specify how to read them.
+    /// The bind group of the textures, a sampler, and the uniforms that specify how to read them.
     pub async fn maps(
         &self,
         layout: &wgpu::BindGroupLayout,
@@ -125,7 +125,7 @@ impl BindGroups<'_> {
         self.group("the maps of a model", layout, resources).await
     }
 
-    /// A group of these resources, bound from 0 on.
+    /// A bind group of these resources, bound from 0 upwards.
     async fn group<'r>(
         &self,
         what: &'static str,
@@ -167,7 +167,7 @@ impl MapUniforms {
         })
     }
 
-    /// Writes what may change from frame to frame.
+    /// Writes the uniforms that may change from frame to frame.
     pub fn write(&self, gpu: &Gpu, textures: &GpuTextures, options: &DrawOptions, sampling: &Sampling) {
         let words = textures.options(options.shading_options).to_words();
         gpu.queue.write_buffer(&self.options, 0, bytemuck::cast_slice(&words));

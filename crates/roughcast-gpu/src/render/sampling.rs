@@ -7,21 +7,21 @@ use super::shader::LevelOfDetail;
 use super::textures::GpuTextures;
 use crate::GpuError;
 
-/// Taps of anisotropic filtering: WebGPU's maximum.
+/// Maximum number of taps of anisotropic filtering in WebGPU.
 const MAX_TAPS: u16 = 16;
 /// The range of biases of WGSL's `textureSampleBias`.
 const BIASES: (f64, f64) = (-16.0, 15.99);
-/// Beyond the last level of any texture.
+/// A level beyond the last one of any texture.
 const LAST_LEVEL: f64 = 32.0;
 
-/// A sampler of the CPU renderer in terms of the hardware.
+/// A sampler of the CPU renderer, translated to hardware settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sampling {
-    /// Where the level of detail comes from.
+    /// The source of the level of detail.
     pub level: LevelOfDetail,
-    /// The level, or the bias.
+    /// The level if it is fixed, otherwise the bias.
     pub value: f32,
-    /// Taps along the footprint; 0 for nearest sampling.
+    /// Maximum number of taps along the footprint; 0 for nearest sampling.
     pub max_anisotropy: u16,
     filter: Filter,
     wrap: Wrap,
@@ -31,7 +31,7 @@ impl Sampling {
     pub fn new(sampler: &Sampler) -> Result<Self, GpuError> {
         let Sampler { filter, level, mip_bias, wrap, .. } = *sampler;
         let level = match filter {
-            // As on the CPU, without a footprint: level 0, or the level nearest to the given one.
+            // As on the CPU, nearest sampling ignores the footprint: level 0, or the level nearest to the given one.
             Filter::Nearest => Some(level.unwrap_or(0.0).round()),
             Filter::Trilinear | Filter::Anisotropic => level,
             Filter::Ewa | Filter::SummedArea => {
@@ -42,7 +42,7 @@ impl Sampling {
             }
         };
         let (level, value) = match level {
-            // As on the CPU, NaN is the finest level.
+            // As on the CPU, NaN selects the finest level.
             Some(level) => (LevelOfDetail::Fixed, if level > 0.0 { level.min(LAST_LEVEL) } else { 0.0 }),
             None => (LevelOfDetail::Derivatives, mip_bias.clamp(BIASES.0, BIASES.1)),
         };
@@ -60,7 +60,7 @@ impl Sampling {
         [self.value.to_bits(), textures.roughness_channel, taps.to_bits(), 0]
     }
 
-    /// Samplers with anisotropy need derivatives; at a fixed level they are trilinear ones, as on the CPU.
+    /// Anisotropic samplers need derivatives; at a fixed level they become trilinear, as on the CPU.
     pub fn descriptor(&self) -> wgpu::SamplerDescriptor<'static> {
         let address = match self.wrap {
             Wrap::Repeat => wgpu::AddressMode::Repeat,

@@ -1,10 +1,10 @@
-// The shaders of a scene, for any source of bumps and any model. The host composes them with a detail module,
-// whose slope or distribution `bumps_at` returns, and replaces `model_surface` and `model_lobe` by the model's functions.
+// The shaders of a scene, for any source of bumps and any model. The host adds a detail module, whose `bumps_at`
+// returns the slope or the distribution, and replaces `model_surface` and `model_lobe` with the model's functions.
 
 struct SceneView {
     clip_from_world: mat4x4f,   // depth falls from 1 at the near plane to 0 at the far one
     eye: vec3f,
-    repeats: f32,               // of the textures over texture coordinates from 0 to 1
+    repeats: f32,               // repeats of the textures over texture coordinates from 0 to 1
     albedo: vec3f,
     light_count: u32,
     ambient: vec3f,
@@ -13,7 +13,7 @@ struct SceneView {
 
 struct SceneLight {
     place: vec4f,       // unit vector towards the light, 0; or its position, 1
-    irradiance: vec3f,  // on a surface that faces it, of a point at a distance of one
+    irradiance: vec3f,  // on a surface that faces the light; for a point light, at a distance of one
 }
 
 @group(0) @binding(0) var<uniform> scene_view: SceneView;
@@ -38,21 +38,21 @@ fn project(
     return Varyings(clip, position, normal, tangent, uv * scene_view.repeats);
 }
 
-// Unit vector, or `other` if the vector is zero.
+// The unit vector of `v`, or `other` if `v` is zero.
 fn unit_or(v: vec3f, other: vec3f) -> vec3f {
     let squared = dot(v, v);
-    // Smaller ones may be flushed to zero, whose inverse root is infinite.
+    // Smaller squares may be flushed to zero, whose inverse root is infinite.
     return select(other, v * inverseSqrt(squared), squared > 1e-37);
 }
 
-// Any unit vector across a unit vector.
+// Any unit vector perpendicular to a unit vector.
 fn across(n: vec3f) -> vec3f {
     let axis = select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), abs(n.x) > 0.5);
     return normalize(cross(axis, n));
 }
 
-// The shading frame as columns: tangent, bitangent, normal. Interpolation has left it neither of unit length nor
-// orthogonal. A back side shows glTF's double-sided material: all three axes are reversed.
+// The shading frame as columns: tangent, bitangent, normal. After interpolation the vectors are neither unit nor
+// orthogonal. Back sides follow glTF's double-sided material: all three axes are reversed.
 fn world_from_tangent(fragment: Varyings, towards_eye: vec3f, front: bool) -> mat3x3f {
     let side = select(-1.0, 1.0, front);
     let normal = unit_or(fragment.normal, side * towards_eye);
@@ -70,8 +70,8 @@ struct LightAt {
 // Square of the distance below which a point light's irradiance is constant.
 const LEAST_SQUARED_DISTANCE: f32 = 1e-12;
 
-// Unit vector towards a light and the irradiance of a surface that faces it, at a point. The vector is zero at the position
-// of a point light, which therefore gives no light there.
+// Unit vector towards a light, and the irradiance of a surface that faces it, at a point. At the position of a point
+// light the vector is zero, so the light has no effect there.
 fn light_at(light: SceneLight, position: vec3f) -> LightAt {
     if light.place.w == 0.0 {
         return LightAt(light.place.xyz, light.irradiance);

@@ -1,11 +1,11 @@
-//! The shader of a scene: the library's functions, a source of bumps, and a model, composed from WGSL files.
+//! The shader of a scene, composed from WGSL files: the library's functions, a source of bumps, and a model.
 
 use roughcast::UnknownName;
 use roughcast::shading::Shading;
 use roughcast::texture::{Part, TexelReader};
 use roughcast::wgsl;
 
-/// The first binding of textures in the map's group.
+/// The first texture binding in the maps' group.
 pub(super) const FIRST_TEXTURE: u32 = 4;
 
 const SCENE: &str = include_str!("scene.wgsl");
@@ -19,14 +19,14 @@ const MAP2: &str = include_str!("map2.wgsl");
 /// The source of a sampler's level of detail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LevelOfDetail {
-    /// From the derivatives of the texture coordinates between pixels, as the hardware takes them, plus a bias.
+    /// The hardware's level, from the derivatives of the texture coordinates between pixels, plus a bias.
     Derivatives,
-    /// It is fixed.
+    /// A fixed level.
     Fixed,
 }
 
 impl LevelOfDetail {
-    /// WGSL of `filtered` and of `sampler_variances`.
+    /// WGSL of `filtered` and `sampler_variances`.
     fn sources(self) -> [&'static str; 2] {
         match self {
             Self::Derivatives => {
@@ -37,14 +37,14 @@ impl LevelOfDetail {
     }
 }
 
-/// What is shaded of a source of bumps.
+/// Which slopes of a source of bumps are shaded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Bumps {
     /// The distribution under the pixel.
     #[default]
     Filtered,
-    /// The exact slope at the pixel's centre: it shimmers, and the mean of many such pictures is ground truth. The twin of
-    /// `roughcast_scene::Resolved`.
+    /// The exact slope at the pixel's centre. Such a picture shimmers, and the mean of many of them is the ground
+    /// truth. The counterpart of `roughcast_scene::Resolved`.
     Resolved,
 }
 
@@ -58,16 +58,16 @@ impl Bumps {
     }
 }
 
-/// What identifies a shader.
+/// Identifies a shader.
 #[derive(Clone, Copy, Debug)]
 pub struct ShaderKey {
     /// The model.
     pub shading: Shading,
-    /// The source of bumps: textures of a layout.
+    /// The source of bumps: the textures of a layout.
     pub reader: &'static TexelReader,
     /// The source of the level of detail.
     pub level: LevelOfDetail,
-    /// What is shaded.
+    /// Which slopes are shaded.
     pub bumps: Bumps,
 }
 
@@ -86,18 +86,18 @@ impl std::hash::Hash for ShaderKey {
 }
 
 impl ShaderKey {
-    /// The module identifies a reader.
+    /// The values that are compared; a reader is identified by its module.
     fn parts(&self) -> (Shading, &'static str, LevelOfDetail, Bumps) {
         (self.shading, self.reader.module, self.level, self.bumps)
     }
 }
 
-/// The WGSL of a model on a source of bumps: the vertex shader `project`, and the fragment shaders `radiance` (for one colour target,
-/// alpha is coverage) and `parts` (that, and the specular part for a second target).
+/// The WGSL of a model with a source of bumps: the vertex shader `project`, and the fragment shaders `radiance` (one
+/// colour target, alpha is coverage) and `parts` (the same, with the specular part in a second target).
 ///
-/// Group 0 contains what changes with the view: 0 the view and the material's colours, 1 the lights. Group 1 contains the maps:
-/// 0 [`roughcast::shading::ShadingOptions`], 1 [`roughcast::texture::Packing`], 2 the sampling, 3 a sampler, and from 4 on the
-/// textures in the order of [`TexelReader::inputs`].
+/// Group 0 changes with the view: binding 0 is the view and the material's colours, 1 the lights. Group 1 contains the
+/// maps: 0 [`roughcast::shading::ShadingOptions`], 1 [`roughcast::texture::Packing`], 2 the sampling, 3 a sampler, and
+/// from 4 on the textures in the order of [`TexelReader::inputs`].
 ///
 /// # Errors
 /// [`UnknownName`] if the library lacks the model.

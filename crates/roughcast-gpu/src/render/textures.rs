@@ -19,12 +19,12 @@ pub struct GpuTextures {
 }
 
 impl GpuTextures {
-    /// Uploads the model's textures from the files of its [layout](Shading::layout), all levels, in their stored type:
-    /// 8-bit and 16-bit unsigned, half or single floats. Three channels become four.
+    /// Uploads all levels of the model's textures from the files of its [layout](Shading::layout), in their stored
+    /// type: 8-bit or 16-bit unsigned integers, half or single floats. Three channels become four.
     ///
     /// # Errors
-    /// [`GpuError::Detail`] if a texture is missing; [`GpuError::Format`] if the device cannot filter what is stored;
-    /// and where the textures are too large.
+    /// [`GpuError::Detail`] if a texture is missing; [`GpuError::Format`] if the device cannot filter the stored type;
+    /// other errors if the textures are too large.
     pub async fn new(gpu: &Gpu, shading: Shading, arrays: &[TextureArray]) -> Result<Self, GpuError> {
         let inputs = model_inputs(shading, arrays)?;
         let mut views = Vec::with_capacity(inputs.textures.len());
@@ -41,12 +41,12 @@ impl GpuTextures {
         })
     }
 
-    /// Uses textures that are already on the GPU, such as those that a bake fills every frame: one for each layer of the
-    /// layout, in their order. They need the usage `TEXTURE_BINDING`.
+    /// Uses textures that are already on the GPU, such as those that a bake fills every frame: one for each layer of
+    /// the layout, in the layout's order. They need the usage `TEXTURE_BINDING`.
     ///
     /// # Errors
-    /// [`GpuError::Shape`] if the textures are not those of the model; [`GpuError::Format`] if the device cannot
-    /// filter them.
+    /// [`GpuError::Shape`] if the textures do not match the model; [`GpuError::Format`] if the device cannot filter
+    /// them.
     pub fn of_baked(
         gpu: &Gpu,
         shading: Shading,
@@ -86,18 +86,18 @@ impl GpuTextures {
         self.shading
     }
 
-    /// How their texels are read.
+    /// How the texels are read.
     pub fn reader(&self) -> &'static TexelReader {
         self.reader
     }
 
-    /// The options, with the properties stored with the textures.
+    /// The options, with overrides from properties stored with the textures.
     pub(super) fn options(&self, options: ShadingOptions) -> ShadingOptions {
         options.for_maps(&self.info)
     }
 }
 
-/// How to read a baked texture's texels; only integers are scaled.
+/// The sample type of a baked texture; only integers are scaled.
 fn sample_type(format: wgpu::TextureFormat) -> SampleType {
     use wgpu::TextureFormat::{R8Unorm, R16Unorm, Rg8Unorm, Rg16Unorm, Rgba8Unorm, Rgba16Unorm};
     match format {
@@ -155,7 +155,7 @@ async fn upload(gpu: &Gpu, texture: &Texture) -> Result<wgpu::Texture, GpuError>
     Ok(on_gpu)
 }
 
-/// GPUs halve sides and round down, and so must the levels.
+/// Checks the sizes of the levels: GPUs halve sides and round down, so the levels must match.
 fn check_levels(texture: &Texture, size: wgpu::Extent3d) -> Result<(), GpuError> {
     for (level, image) in texture.levels.iter().enumerate() {
         let wanted = size.mip_level_size(level as u32, wgpu::TextureDimension::D2);
@@ -195,7 +195,7 @@ fn write_level(gpu: &Gpu, texture: &wgpu::Texture, mip_level: u32, image: &Image
     gpu.queue.write_texture(target, &bytes, layout, size);
 }
 
-/// The bytes of an image, three channels filled up to four: no GPU has formats of three.
+/// The bytes of an image. Three channels are padded to four, because GPUs have no three-channel formats.
 fn texels(image: &Image) -> Vec<u8> {
     fn bytes<T: bytemuck::Pod>(samples: &[T], channels: usize, one: T) -> Vec<u8> {
         if channels != 3 {

@@ -1,4 +1,4 @@
-//! The uniforms of a scene, as the words of the shaders' structs.
+//! The uniforms of a scene, as words of the shaders' structs.
 
 use roughcast_scene::{Bounds, Light, Scene};
 
@@ -7,10 +7,10 @@ pub(super) const VIEW_WORDS: usize = 32;
 /// Words of WGSL's `SceneLight`.
 pub(super) const LIGHT_WORDS: usize = 8;
 
-/// The near plane lies no nearer than this part of the distance to the far one. Depths are reversed floats, whose
-/// relative precision is the same everywhere, so this costs none.
+/// Smallest distance of the near plane, as a fraction of the far plane's distance. Depths are reversed floats, whose
+/// relative precision is the same everywhere, so a small value costs no precision.
 const NEAREST: f64 = 1e-5;
-/// Planes are this part farther out than the shape, so that rounding clips none of it.
+/// The planes are moved outwards by this fraction, so that rounding does not clip the shape.
 const MARGIN: f64 = 1e-3;
 
 /// WGSL's `SceneView`, for a picture of this size.
@@ -34,29 +34,30 @@ fn put(words: &mut [u32], at: usize, values: &[f32]) {
     }
 }
 
-/// Columns of the matrix, with depth 1 at the near plane and 0 at the far one.
+/// Columns of the matrix. Depth is 1 at the near plane and 0 at the far plane.
 fn clip_from_world(scene: &Scene, (width, height): (u32, u32)) -> [f32; 16] {
     let (near, far) = depth_range(scene.shape.bounds(), scene);
     let aspect = f64::from(width) / f64::from(height);
     let mut columns = scene.camera.clip_from_world(aspect, near, far).to_cols_array();
-    // In f64, before rounding: w - z of single floats would lose the precision that the reversal is for.
+    // Computed in f64 before rounding: w - z in single floats would lose the precision that reversed depth is meant to
+    // gain.
     for column in columns.chunks_exact_mut(4) {
         column[2] = column[3] - column[2];
     }
     columns.map(|value| value as f32)
 }
 
-/// Distances of the near and the far plane, between which all of the shape in front of the eye lies.
+/// Distances of the near and the far plane. They enclose the part of the shape in front of the eye.
 fn depth_range(bounds: Bounds, scene: &Scene) -> (f64, f64) {
     let forward = (scene.camera.target - scene.camera.eye).normalize();
     let middle = (bounds.centre - scene.camera.eye).dot(forward);
     let radius = bounds.radius * (1.0 + MARGIN);
-    // If the shape lies behind the eye, nothing is visible with any planes.
+    // If the shape lies behind the eye, nothing is visible whatever the planes.
     let far = (middle + radius).max(radius);
     ((middle - radius).max(NEAREST * far), far)
 }
 
-/// WGSL's `SceneLight`s; at least one, since no buffer may be empty.
+/// WGSL's `SceneLight`s; at least one, because buffers must not be empty.
 pub(super) fn light_words(lights: &[Light]) -> Vec<u32> {
     let mut words = vec![0; LIGHT_WORDS * lights.len().max(1)];
     for (words, light) in words.chunks_exact_mut(LIGHT_WORDS).zip(lights) {
@@ -71,8 +72,8 @@ pub(super) fn light_words(lights: &[Light]) -> Vec<u32> {
     words
 }
 
-/// Words of a buffer for lights of this many words: twice as many if the device's limit allows it, so that lights added
-/// one by one do not cost a buffer each.
+/// Words of a buffer for lights that need this many words: twice as many if the device's limit allows it, so that
+/// adding lights one by one does not create a buffer each time.
 pub(super) fn room_for(words: usize, limit_bytes: u64) -> usize {
     let limit = usize::try_from(limit_bytes / size_of::<u32>() as u64).unwrap_or(usize::MAX);
     (2 * words).min(limit - limit % LIGHT_WORDS).max(words)
@@ -95,7 +96,7 @@ mod tests {
                 assert!(room >= words + LIGHT_WORDS, "no spare room for a light after {lights}");
             }
         }
-        // 1, 4, 10, 22, ... 1534: at the n-th there is room for 3 * 2^(n - 1) - 2.
+        // 1, 4, 10, 22, ... 1534 lights: the n-th buffer has room for 3 * 2^(n - 1) - 2.
         assert_eq!(buffers, 10);
     }
 
@@ -105,7 +106,7 @@ mod tests {
         let bytes = (limit * size_of::<u32>()) as u64;
         assert_eq!(room_for(limit, bytes), limit);
         assert_eq!(room_for(limit - LIGHT_WORDS, bytes + 5), limit);
-        // What does not fit is unchanged, to be refused with its own size.
+        // A size that does not fit is returned unchanged, so that the error states that size.
         assert_eq!(room_for(limit + LIGHT_WORDS, bytes), limit + LIGHT_WORDS);
     }
 }

@@ -1,4 +1,4 @@
-// The variances of interpolation at a given level.
+// The variances of interpolation at a fixed level.
 fn sampler_variances(axes: FootprintAxes) -> FilterVariances {
     return level_variances(sampling.detail);
 }

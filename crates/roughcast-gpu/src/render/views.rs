@@ -1,53 +1,53 @@
-//! What a frame is drawn into.
+//! The targets of a frame.
 
-/// Whether a drawing is alone in its target, or one of several.
+/// Whether a drawing is the only one in its target, or one of several.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Order {
-    /// The target is cleared to the background, and nothing else is drawn into it with these depths.
+    /// The target is cleared to the background. Nothing else is drawn into it with these depths.
     #[default]
     Only,
-    /// The target is cleared to the background, and its depths are kept for later drawings.
+    /// The target is cleared to the background. Its depths are kept for later drawings.
     First,
-    /// Earlier contents stay, except where they are hidden.
+    /// Earlier contents stay, except where this drawing hides them.
     Next,
 }
 
 /// A rectangle of a target, in pixels from its top left corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Part {
-    /// Columns to its left.
+    /// Number of columns to its left.
     pub x: u32,
-    /// Rows above it.
+    /// Number of rows above it.
     pub y: u32,
-    /// Its columns.
+    /// Its width.
     pub width: u32,
-    /// Its rows.
+    /// Its height.
     pub height: u32,
 }
 
-/// The views of textures that a frame is drawn into, all of one size and of the formats of the renderer's target: wgpu
-/// refuses others.
+/// The texture views that a frame is drawn into. All must have the same size and the formats of the renderer's target;
+/// otherwise wgpu refuses them.
 #[derive(Clone, Copy, Debug)]
 pub struct Views<'a> {
     /// The colour target.
     pub colour: &'a wgpu::TextureView,
     /// The second target of [`RenderTarget::Parts`](super::RenderTarget::Parts); None for other targets.
     pub specular: Option<&'a wgpu::TextureView>,
-    /// Of [`DEPTH_FORMAT`](super::DEPTH_FORMAT).
+    /// The depth target, of [`DEPTH_FORMAT`](super::DEPTH_FORMAT).
     pub depth: &'a wgpu::TextureView,
-    /// The part that is drawn into; None for all of it. Clearing clears the whole target.
+    /// The part of the target that is drawn into; None for all of it. Clearing always clears the whole target.
     pub part: Option<Part>,
-    /// Whether the target is cleared, and its depths kept.
+    /// Whether the target is cleared, and whether its depths are kept.
     pub order: Order,
 }
 
 impl<'a> Views<'a> {
-    /// All of a colour target, for one drawing alone.
+    /// Views of a whole colour target, for a single drawing.
     pub fn new(colour: &'a wgpu::TextureView, depth: &'a wgpu::TextureView) -> Self {
         Self { colour, specular: None, depth, part: None, order: Order::Only }
     }
 
-    /// The colour targets, with the radiance to which they are cleared. Coverage is cleared to zero.
+    /// The colour targets, with the radiance that they are cleared to. Coverage is cleared to zero.
     pub(super) fn colour_attachments(
         &self,
         background: [f32; 3],

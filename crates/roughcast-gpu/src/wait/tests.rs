@@ -1,4 +1,4 @@
-//! With a device of the test's own that counts its polls, and a waker that counts how often it wakes.
+//! Tests with a mock device that counts its polls, and a waker that counts its wakes.
 
 use std::pin::pin;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -8,10 +8,10 @@ use std::thread::Thread;
 
 use super::*;
 
-/// Long enough for a loop without a pause to turn thousands of times.
+/// Long enough for a busy loop to run thousands of times.
 const A_WHILE: Duration = Duration::from_millis(50);
 
-/// The device's work ends when the test says how.
+/// A mock of the device's work, which ends as the test specifies.
 #[derive(Clone)]
 struct Work {
     polls: Arc<AtomicUsize>,
@@ -20,7 +20,7 @@ struct Work {
 
 enum End {
     Calls(Answer<u32>),
-    /// Returns from the poll a while after the call.
+    /// Calls back, but returns from the poll a while later.
     CallsAndLingers(Answer<u32>),
     FailsWith(&'static str),
     Panics,
@@ -49,7 +49,7 @@ impl Device for Work {
             }
             Ok(End::FailsWith(reason)) => return Err(reason.to_owned()),
             Ok(End::Panics) => panic!("as wgpu does where a device is lost"),
-            // Nothing is left to do for a device whose test has ended.
+            // The test has ended, so there is nothing left to do.
             Ok(End::StaysSilent) | Err(_) => {}
         }
         Ok(())
@@ -68,7 +68,7 @@ impl Wake for CountedWaker {
     }
 }
 
-/// Runs a future to its end and gives how often it was polled and woken.
+/// Runs a future to completion and returns how often it was polled and woken.
 fn counted<T>(future: impl Future<Output = T>) -> (T, usize, usize) {
     let waker = Arc::new(CountedWaker { wakes: AtomicUsize::new(0), thread: std::thread::current() });
     let mut future = pin!(future);
@@ -81,7 +81,7 @@ fn counted<T>(future: impl Future<Output = T>) -> (T, usize, usize) {
     unreachable!("the loop has no end")
 }
 
-/// Waits for a device whose work ends a while later.
+/// Waits for a device whose work ends after a while.
 fn answer_of(end: impl FnOnce(Answer<u32>) -> End) -> (Result<u32, String>, usize, usize, usize) {
     let (work, ends) = Work::new();
     let ask = |answer| {
@@ -97,7 +97,7 @@ fn answer_of(end: impl FnOnce(Answer<u32>) -> End) -> (Result<u32, String>, usiz
 
 #[test]
 fn a_wait_costs_one_wake_and_one_poll_of_the_device() {
-    // The future is polled when the wait begins and when it has ended, however long that takes.
+    // The future is polled once when the wait starts and once when it has ended, however long that takes.
     assert_eq!(answer_of(End::Calls), (Ok(7), 2, 1, 1));
 }
 

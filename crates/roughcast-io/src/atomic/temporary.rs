@@ -1,8 +1,8 @@
-//! Where the bytes of a file are until it is complete.
+//! Temporary storage for the bytes of a file until it is complete.
 //!
-//! On Linux, where the file system can, they go into a file without a name: whatever ends the program, nothing is left of it.
-//! Elsewhere they go into a hidden file beside the destination. A program that is killed leaves that behind, and the next one
-//! that writes to the same destination removes it if it is old.
+//! On Linux, if the file system supports it, the bytes go into an unnamed file: however the program ends, nothing is
+//! left behind. Otherwise they go into a hidden file in the destination's folder. A killed program leaves this file
+//! behind; the next program that writes to the same destination removes it if it is old.
 
 use std::fs::{self, File, Permissions};
 use std::io::{self, Seek, SeekFrom, Write};
@@ -11,25 +11,26 @@ use std::time::{Duration, SystemTime};
 
 use tempfile::NamedTempFile;
 
-/// Characters of the destination's name used in the temporary one, which might otherwise be too long for the file system.
+/// Characters of the destination's name used in the temporary name, which could otherwise be too long for the file
+/// system.
 const NAME_CHARACTERS: usize = 48;
-/// The end of the names of hidden files.
+/// Suffix of the names of hidden files.
 const SUFFIX: &str = ".tmp";
-/// A hidden file that has not been written to for this long belongs to a program that was killed.
+/// A hidden file that has not been written to for this long is assumed to belong to a killed program.
 const STALE: Duration = Duration::from_secs(3600);
 
-/// A file that is not in its place yet; if it is dropped, it vanishes.
+/// A file that has not been moved to its destination yet; it is deleted when dropped.
 #[derive(Debug)]
 pub(super) enum Temporary {
     /// Without a name.
     #[cfg(target_os = "linux")]
     Unnamed(File),
-    /// Under a hidden name beside the destination.
+    /// Under a hidden name in the destination's folder.
     Named(NamedTempFile),
 }
 
 impl Temporary {
-    /// An empty file for a destination, whose path is resolved.
+    /// An empty file for a destination with a resolved path.
     pub(super) fn create(destination: &Path) -> io::Result<Self> {
         #[cfg(target_os = "linux")]
         if let Some(file) = unnamed(folder_of(destination)) {
@@ -38,7 +39,7 @@ impl Temporary {
         Self::create_named(destination)
     }
 
-    /// An empty hidden file; first removes those that killed programs have left.
+    /// Creates an empty hidden file, after removing those left by killed programs.
     pub(super) fn create_named(destination: &Path) -> io::Result<Self> {
         remove_stale(destination, SystemTime::now());
         named(destination).map(Self::Named)
@@ -53,7 +54,7 @@ impl Temporary {
         }
     }
 
-    /// Puts the file in its place, replacing any file there.
+    /// Moves the file to its destination, replacing any file there.
     pub(super) fn persist(self, destination: &Path) -> io::Result<()> {
         match self {
             #[cfg(target_os = "linux")]
@@ -83,14 +84,14 @@ fn folder_of(destination: &Path) -> &Path {
     destination.parent().unwrap_or(Path::new("."))
 }
 
-/// A file without a name in a folder; `None` if the file system does not support that, or anything else fails.
+/// An unnamed file in a folder; `None` if the file system does not support this or anything else fails.
 #[cfg(target_os = "linux")]
 fn unnamed(folder: &Path) -> Option<File> {
     use rustix::fs::{Mode, OFlags, open};
     let flags = OFlags::TMPFILE | OFlags::RDWR | OFlags::CLOEXEC;
-    // As for any new file: the umask removes its bits.
+    // As for any new file, the umask applies.
     let file = File::from(open(folder, flags, Mode::from_raw_mode(0o666)).ok()?);
-    // Giving it a name goes by way of this folder, which a container may lack.
+    // Naming the file later requires this folder, which a container may lack.
     Path::new(&by_descriptor(&file)).exists().then_some(file)
 }
 
@@ -100,8 +101,8 @@ fn by_descriptor(file: &File) -> String {
     format!("/proc/self/fd/{}", file.as_raw_fd())
 }
 
-/// Gives an unnamed file its name. A name that is taken cannot be replaced in one step, so there the file gets a hidden name
-/// first: only a kill between the two calls could leave it behind.
+/// Gives an unnamed file its name. An existing file cannot be replaced in one step, so in that case the file gets a
+/// hidden name first; only a kill between the two calls could leave it behind.
 #[cfg(target_os = "linux")]
 fn link(file: &File, destination: &Path) -> io::Result<()> {
     use rustix::fs::{AtFlags, CWD, linkat};
@@ -133,13 +134,13 @@ fn named(destination: &Path) -> io::Result<NamedTempFile> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // As for any new file: the umask removes its bits. Otherwise temporary files are readable by their owner only.
+        // As for any new file, the umask applies. By default only the owner could read temporary files.
         builder.permissions(Permissions::from_mode(0o666));
     }
     builder.tempfile_in(folder_of(destination))
 }
 
-/// Removes the old hidden files of a destination. Files that cannot be read or removed are left.
+/// Removes old hidden files of a destination. Files that cannot be read or removed are left.
 fn remove_stale(destination: &Path, now: SystemTime) {
     let prefix = prefix(destination);
     let Ok(entries) = fs::read_dir(folder_of(destination)) else { return };
@@ -184,7 +185,7 @@ mod tests {
     #[test]
     fn an_unnamed_file_is_never_seen() {
         let folder = tempfile::tempdir().expect("a temporary folder");
-        // File systems without unnamed files exist; there the hidden ones of the next test are used.
+        // Some file systems do not support unnamed files; they use hidden files, which the next test covers.
         let Some(mut file) = unnamed(folder.path()) else { return };
         file.write_all(b"half of it").expect("space");
         assert!(names(folder.path()).is_empty());

@@ -60,7 +60,7 @@ const BLOCKS: [(u32, &str, BlockCode); 18] = [
     (99, "BC7_UNORM_SRGB", BlockCode::Bc7),
 ];
 
-/// Four letters, their name, and the blocks that they stand for.
+/// FourCC, its name, and the block format that it stands for.
 const FOUR_CC_BLOCKS: [([u8; 4], &str, BlockCode); 8] = [
     (*b"DXT1", "DXT1 (BC1_UNORM)", BlockCode::Bc1),
     (*b"DXT3", "DXT3 (BC2_UNORM)", BlockCode::Bc2),
@@ -72,12 +72,12 @@ const FOUR_CC_BLOCKS: [([u8; 4], &str, BlockCode); 8] = [
     (*b"BC5S", "BC5_SNORM", BlockCode::Bc5Snorm),
 ];
 
-/// DXT5 blocks whose channels the writer has moved, so that one has the precision of alpha: four letters that say what red,
-/// green, blue and alpha contain (AMD's tools). Where no channel contains blue, it follows from the other two.
+/// DXT5 blocks with swizzled channels, so that one gets the precision of alpha. The four letters say what red, green,
+/// blue and alpha contain (AMD's tools). If no channel contains blue, it is computed from the other two.
 const MOVED_IN_DXT5: [[u8; 4]; 6] = [*b"xGBR", *b"RxBG", *b"RBxG", *b"xRBG", *b"RGxB", *b"xGxR"];
 
-/// Numbers of `D3DFORMAT` that stand in the place of a FourCC, names without `D3DFMT_` (which start at the last byte). CxV8U8
-/// stores no z: it follows from x and y.
+/// `D3DFORMAT` numbers stored in place of a FourCC, with names without `D3DFMT_` (which start at the last byte). CxV8U8
+/// stores no z: it is computed from x and y.
 const D3D9_PLAIN: [(u32, &str, usize, Encoding); 12] = [
     (60, "V8U8", 2, Snorm8),
     (63, "Q8W8V8U8", 4, Snorm8),
@@ -102,15 +102,16 @@ const FLAG_LUMINANCE: u32 = 0x2_0000;
 const FLAG_BUMP_LUMINANCE: u32 = 0x4_0000;
 const FLAG_BUMP_DUDV: u32 = 0x8_0000;
 
-/// Bump formats of Direct3D 9 with signed fields of several lengths, by their number: bits, masks of u, v and, if there is
-/// one, w. Luminance and alpha beside them are not part of a normal.
+/// Direct3D 9 bump formats with signed fields of different lengths, by number: bits, masks of u, v and, if present, w.
+/// Their luminance and alpha are not part of a normal.
 const BUMP_FIELDS: [(u32, &str, u32, &[u32]); 3] = [
     (61, "L6V5U5", 16, &[0x1f, 0x3e0]),
     (62, "X8L8V8U8", 32, &[0xff, 0xff00]),
     (67, "A2W10V10U10", 32, &[0x3ff, 0xf_fc00, 0x3ff0_0000]),
 ];
 
-/// The masks that Direct3D's own library writes for A2W10V10U10: u and w are swapped relative to the format's definition.
+/// The masks that Direct3D's own library writes for A2W10V10U10: u and w are swapped relative to the format's
+/// definition.
 const REVERSED_UVW: [u32; 3] = [0x3ff0_0000, 0xf_fc00, 0x3ff];
 
 const CONVERT: &str = "convert it to R8G8B8A8, R16G16, BC5 or BC7 UNORM first";
@@ -123,9 +124,9 @@ pub(super) struct Format {
     /// The purpose of the format.
     pub kind: Option<Kind>,
     pub normals: NormalEncoding,
-    /// Where each channel of the image comes from, where the file has moved them.
+    /// The source of each channel of the image, if the file has swizzled them.
     pub moved: Option<Vec<Source>>,
-    /// Whether the first and the last channel may be swapped, which only the pixels show.
+    /// Whether the first and last channels may be swapped, which only the pixel values can reveal.
     pub may_be_reversed: bool,
 }
 
@@ -209,19 +210,19 @@ fn not_read(number: u32) -> ReadError {
 fn of_four_cc(code: [u8; 4], swizzle_code: [u8; 4]) -> Result<Format, ReadError> {
     match &code {
         b"ATI2" => return Ok(ati2(swizzle_code)),
-        // x first in this many letters.
+        // This FourCC puts x first.
         b"A2XY" => {
             let format = Format::plain(TexelFormat::Blocks(BlockCode::Bc5), "A2XY (BC5_UNORM)");
             return Ok(format.of_normals(NormalEncoding::Stated(NormalChannels::Xy)));
         }
-        // Doom 3 and the NVIDIA tools: x in alpha. Red and alpha are swapped, and z is computed, since the blue of the blocks is
-        // too coarse.
+        // Doom 3 and the NVIDIA tools: x in alpha. Red and alpha are swapped, and z is computed, since the blue of the
+        // blocks is too coarse.
         b"RXGB" => {
             let format = Format::plain(TexelFormat::Blocks(BlockCode::Bc3), "RXGB (BC3_UNORM)");
             let moved = Some([3, 1, 2, 0].map(Source::Channel).to_vec());
             return Ok(Format { moved, ..format }.of_normals(NormalEncoding::Stated(NormalChannels::Xy)));
         }
-        // The NVIDIA tools' mark of a normal map in alpha and green.
+        // The NVIDIA tools' marker of a normal map in alpha and green.
         b"DXT5" if swizzle_code == *b"A2D5" => {
             let format = Format::plain(TexelFormat::Blocks(BlockCode::Bc3), "DXT5 (BC3_UNORM), A2D5");
             return Ok(format.of_normals(NormalEncoding::Stated(NormalChannels::Ag)));
@@ -254,8 +255,8 @@ fn of_four_cc(code: [u8; 4], swizzle_code: [u8; 4]) -> Result<Format, ReadError>
     })
 }
 
-/// Two blocks of BC4. ATI's own tools wrote y first; texconv, GIMP and the NVIDIA tools write x first, the last with a
-/// mark after the FourCC. Without it neither order is always right.
+/// Two BC4 blocks. ATI's own tools wrote y first; texconv, GIMP and the NVIDIA tools write x first. Only the NVIDIA
+/// tools add a marker after the FourCC; without it, the order is ambiguous.
 fn ati2(swizzle_code: [u8; 4]) -> Format {
     let blocks = TexelFormat::Blocks(BlockCode::Bc5);
     if swizzle_code == *b"A2XY" {
@@ -312,12 +313,12 @@ fn of_masks(masks: Masks) -> Result<Format, ReadError> {
     }
 }
 
-/// Bytes of a texel; 0 if its bits are not whole bytes.
+/// Bytes per texel; 0 if its bits are not whole bytes.
 fn texel_bytes(bits: u32) -> usize {
     if bits.is_multiple_of(8) { bits as usize / 8 } else { 0 }
 }
 
-/// The quick way for whole bytes.
+/// The plain format, which decodes faster, if the masks select whole bytes.
 fn plain_of_masks(bits: u32, channels: &[u32]) -> Option<Plain> {
     let (channels, encoding, order) = match (bits, channels) {
         (8, [0xff]) => (1, Unorm8, Rgba),
@@ -333,7 +334,7 @@ fn plain_of_masks(bits: u32, channels: &[u32]) -> Option<Plain> {
     Some(Plain { channels, encoding, order })
 }
 
-/// Signed normal maps of Direct3D 9: V8U8, V16U16, Q8W8V8U8, and those of [`BUMP_FIELDS`].
+/// Signed Direct3D 9 normal maps: V8U8, V16U16, Q8W8V8U8, and those in [`BUMP_FIELDS`].
 fn of_bump_masks(masks: Masks) -> Result<Format, ReadError> {
     let Masks { flags, bits, red, green, blue, alpha } = masks;
     let plain = match (bits, red, green, blue, alpha) {
@@ -348,7 +349,7 @@ fn of_bump_masks(masks: Masks) -> Result<Format, ReadError> {
         let texels = TexelFormat::Plain(Plain { channels, encoding, order: Rgba });
         return Ok(Format::plain(texels, name).of_normals(NormalEncoding::Unstated));
     }
-    // With luminance, the third field is brightness; without, it is z.
+    // The third field is brightness if the format has luminance, otherwise z.
     let fields: &[u32] =
         if flags & FLAG_BUMP_LUMINANCE != 0 || blue == 0 { &[red, green] } else { &[red, green, blue] };
     if bits == 32 && *fields == REVERSED_UVW {

@@ -1,9 +1,9 @@
-//! The header of a DDS file: 128 bytes, and 20 more where its FourCC is `DX10`.
+//! The header of a DDS file: 128 bytes, and 20 more if its FourCC is `DX10`.
 
 use super::{IDENTIFIER, malformed, unsupported};
 use crate::ReadError;
 
-/// Fields of a valid header. Pitch, capabilities and most flags are ignored: too many writers get them wrong.
+/// The fields of a valid header. Pitch, capabilities and most flags are ignored: too many writers get them wrong.
 #[derive(Clone, Debug)]
 pub(super) struct Header {
     pub width: u32,
@@ -12,7 +12,7 @@ pub(super) struct Header {
     pub levels: u32,
     /// At least 1.
     pub layers: u32,
-    /// `dwReserved1`, which belongs to the writer.
+    /// `dwReserved1`, free for use by the writer.
     pub reserved: [u32; 11],
     pub pixel_format: PixelFormat,
     /// Whether the file is marked as normals, as by the NVIDIA tools.
@@ -24,9 +24,9 @@ pub(super) struct Header {
 /// The texel format.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum PixelFormat {
-    /// Number of a `DXGI_FORMAT`.
+    /// A `DXGI_FORMAT` number.
     Dxgi(u32),
-    /// Four letters or a number of Direct3D 9, and `dwRGBBitCount`, in which some writers keep a second one.
+    /// A FourCC or Direct3D 9 format number, and `dwRGBBitCount`, in which some writers store a second one.
     FourCc { code: [u8; 4], swizzle_code: [u8; 4] },
     /// Masks.
     Masks(Masks),
@@ -62,7 +62,7 @@ impl Header {
         }
         let words = words(bytes, 0, HEADER_BYTES)
             .ok_or_else(|| malformed(format!("{} bytes are too short for a header", bytes.len())))?;
-        // A size of 0 is written by some tools; any other number is not this structure.
+        // Some tools write a size of 0; any other number is a different structure.
         if !matches!(words[1], 0 | 124) || !matches!(words[19], 0 | 32) {
             return Err(malformed(format!(
                 "its header states sizes of {} and {} bytes",
@@ -101,7 +101,7 @@ impl Header {
             2 if self.height > 1 => {
                 return Err(malformed(format!("a 1-D texture cannot have {} rows", self.height)));
             }
-            // Some writers leave it 0, and mean 2-D.
+            // Some writers leave it 0 for 2-D.
             0 | 2 | 3 => {}
             4 => return Err(unsupported("a 3-D texture", AS_2D)),
             _ => return Err(malformed(format!("resource dimension {dimension} does not exist"))),
@@ -116,7 +116,7 @@ impl Header {
     }
 }
 
-/// From the words after the size of `DDS_PIXELFORMAT`.
+/// Parses the words after the size of `DDS_PIXELFORMAT`.
 fn legacy_pixel_format(words: &[u32]) -> PixelFormat {
     if words[0] & FLAG_FOUR_CC != 0 {
         return PixelFormat::FourCc { code: words[1].to_le_bytes(), swizzle_code: words[2].to_le_bytes() };

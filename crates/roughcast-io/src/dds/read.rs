@@ -1,4 +1,4 @@
-//! Reading DDS.
+//! Reads DDS.
 
 use std::collections::BTreeMap;
 
@@ -14,17 +14,18 @@ use crate::{Decoded, FileInfo, Limits, ReadError};
 
 /// Reads level 0 of layer 0 as an image.
 ///
-/// SNORM formats become floats in -1 ..= 1, BC4 and BC5 UNORM 16-bit samples, masks 8-bit or 16-bit ones. Signed bump formats
-/// become floats of two or three channels. The two channels of an `ATI2` file keep their order; if the file specifies which
-/// of them is x, [`FileInfo::normal_encoding`] contains it. A DXT5 file is read as RGBA, even if it keeps the x of normals in its
-/// alpha, but the components of RXGB and its relatives are put back in their places.
+/// SNORM formats become floats in -1 ..= 1, BC4 and BC5 UNORM become 16-bit samples, masked formats 8-bit or 16-bit
+/// samples. Signed bump formats become floats of two or three channels. The two channels of an `ATI2` file keep their
+/// order; if the file specifies which of them is x, [`FileInfo::normal_encoding`] contains it. A DXT5 file is read as
+/// RGBA, even if alpha contains the x of normals, but the channels of RXGB and similar formats are moved back to their
+/// places.
 ///
 /// # Errors
 /// [`ReadError`] if the file is broken, too large for `limits`, or of a kind that is not read (see [`super`]).
 pub fn read_image(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
     let header = Header::parse(bytes)?;
     let (mut shape, format) = shape_of(&header)?;
-    // Only level 0 is read, so an impossible count of levels is no reason to refuse the file.
+    // Only level 0 is read, so an impossible level count is not an error.
     shape.levels = shape.levels.min(full_chain(shape.width, shape.height));
     shape.check(CONTAINER, limits)?;
     let texels = shape
@@ -66,7 +67,7 @@ pub fn read_textures(bytes: &[u8], limits: &Limits) -> Result<TextureArray, Read
     if !shape.is_of_a_payload() {
         return Err(unsupported(format!("a baked texture in {}", format.name), "bake it again"));
     }
-    // Layer after layer, each with all its levels, the largest first.
+    // Layer by layer, each with all its levels, largest first.
     let lengths: Vec<usize> = (0..shape.levels)
         .map(|level| shape.layer_bytes(level))
         .collect::<Option<_>>()
@@ -95,7 +96,8 @@ fn shape_of(header: &Header) -> Result<(Shape, Format), ReadError> {
     Ok((shape, format))
 }
 
-/// Whether one channel's mean is above another's. The z of a normal map averages far above its x: normals point out of the surface.
+/// Whether the mean of one channel exceeds that of another. The mean of a normal map's z is far above that of x:
+/// normals point out of the surface.
 fn is_larger_on_average(image: &Image, one: usize, other: usize) -> bool {
     let texels = (0..image.height()).flat_map(|y| (0..image.width()).map(move |x| (x, y)));
     let difference = |(x, y)| f64::from(image.get(x, y, one)) - f64::from(image.get(x, y, other));
@@ -106,7 +108,7 @@ fn too_short(shape: &Shape) -> ReadError {
     malformed(format!("it is too short for {}x{} texels of its format", shape.width, shape.height))
 }
 
-/// The words reserved for the writer: roughcast's as pairs, those of others as hexadecimal numbers.
+/// The words reserved for the writer: roughcast's as key-value pairs, those of other writers as hexadecimal numbers.
 fn metadata_of(words: &[u32; 11]) -> BTreeMap<String, String> {
     if let Ok(info) = TextureInfo::from_words(words) {
         return info.to_pairs();

@@ -1,4 +1,4 @@
-//! Writing DDS, always with the DX10 header.
+//! Writes DDS, always with the DX10 header.
 
 use std::io::Write;
 
@@ -7,8 +7,8 @@ use crate::WriteError;
 use crate::payload::{Payload, Shape};
 use crate::texels::TexelFormat;
 
-/// Writes a texture file: layer after layer, each with all its levels. What the texels mean goes into the eleven reserved
-/// words of the header.
+/// Writes a texture file: layer by layer, each with all its levels. The meaning of the texels is stored in the eleven
+/// reserved words of the header.
 ///
 /// # Errors
 /// [`WriteError`] if the payload has 3 or more than 4 channels, its layers or levels do not fit each other, or
@@ -33,7 +33,7 @@ fn header(shape: &Shape, dxgi_format: u32, reserved: &[u32; 11]) -> Vec<u8> {
     let mut header = IDENTIFIER.to_vec();
     let mut put = |words: &[u32]| header.extend(words.iter().flat_map(|word| word.to_le_bytes()));
     let (pitch_flag, pitch) = pitch(shape);
-    // Capabilities, height, width, pixel format and levels are valid.
+    // Flags: capabilities, height, width, pixel format and level count are valid.
     put(&[124, 0x1 | 0x2 | 0x4 | 0x1000 | 0x2_0000 | pitch_flag]);
     let depth = 1;
     put(&[shape.height as u32, shape.width as u32, pitch, depth, shape.levels as u32]);
@@ -47,8 +47,8 @@ fn header(shape: &Shape, dxgi_format: u32, reserved: &[u32; 11]) -> Vec<u8> {
     header
 }
 
-/// Bytes of a row for plain texels, of the whole of level 0 for blocks, and the flag that tells them apart. Readers use the
-/// size, so a number too large for 32 bits may be cut off.
+/// Bytes per row for plain texels or of level 0 as a whole for blocks, and the flag that distinguishes them. Readers
+/// use the size of the texture instead, so a value too large for 32 bits may be truncated.
 fn pitch(shape: &Shape) -> (u32, u32) {
     let (flag, bytes) = match shape.format {
         TexelFormat::Blocks(_) => (0x8_0000, shape.layer_bytes(0)),

@@ -1,6 +1,6 @@
-//! Bits into bytes, as deflate packs them.
+//! Packs bits into bytes, as deflate does.
 
-/// Some bits, with their number in the highest byte.
+/// Some bits, with their count in the highest byte.
 pub(super) type Entry = u32;
 
 const COUNT_SHIFT: u32 = 24;
@@ -9,10 +9,10 @@ pub(super) fn entry(bits: u32, count: u32) -> Entry {
     bits | count << COUNT_SHIFT
 }
 
-/// Writes bits from the lowest on. The slice must have room for eight bytes more than are written.
+/// Writes bits, lowest first. The slice must have room for eight bytes more than are written.
 pub(super) struct BitWriter<'a> {
     out: &'a mut [u8],
-    /// Bytes written, without those still pending.
+    /// Bytes written, excluding pending bits.
     pub(super) position: usize,
     pending: u64,
     count: u32,
@@ -23,7 +23,7 @@ impl<'a> BitWriter<'a> {
         Self { out, position: 0, pending: 0, count: 0 }
     }
 
-    /// Takes an entry; between two flushes their bits must not be more than 56.
+    /// Adds an entry. At most 56 bits may be added between two flushes.
     pub(super) fn add_entry(&mut self, entry: Entry) {
         self.pending |= u64::from(entry & ((1 << COUNT_SHIFT) - 1)) << self.count;
         self.count += entry >> COUNT_SHIFT;
@@ -34,7 +34,7 @@ impl<'a> BitWriter<'a> {
         self.flush();
     }
 
-    /// Moves whole bytes out; fewer than eight bits stay.
+    /// Writes out whole bytes; fewer than eight bits stay pending.
     pub(super) fn flush(&mut self) {
         self.out[self.position..][..8].copy_from_slice(&self.pending.to_le_bytes());
         self.position += (self.count / 8) as usize;
@@ -48,7 +48,7 @@ impl<'a> BitWriter<'a> {
         self.flush();
     }
 
-    /// Fills the last byte with zeros.
+    /// Pads the last byte with zeros.
     pub(super) fn align(&mut self) {
         self.count = self.count.next_multiple_of(8);
         self.flush();

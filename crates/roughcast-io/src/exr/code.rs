@@ -1,27 +1,27 @@
-//! The code of a deflate block (RFC 1951, 3.2.7), made for how often each symbol occurs.
+//! The code of a deflate block (RFC 1951, 3.2.7), built from the symbol frequencies.
 
 use super::bits::{BitWriter, Entry, entry};
 use super::huffman::{MAX_SYMBOLS, code_lengths, reversed_codes};
 
-/// Literal and length codes are cut at this length, so that four literals always fit in the bit buffer.
+/// Maximum length of literal and length codes, so that four literals always fit in the bit buffer.
 const LONGEST_CODE: usize = 12;
 /// Code lengths are themselves coded, in at most this many bits (RFC 1951, 3.2.7).
 const LONGEST_LENGTH_CODE: usize = 7;
 pub(super) const LITERALS: usize = 256;
 pub(super) const END_OF_BLOCK: usize = 256;
 pub(super) const FIRST_LENGTH_SYMBOL: usize = 257;
-/// Bytes are looked at by words of this many: a run is a number of whole words, each byte the same as the one before the
-/// first. To find runs at every byte takes twice the time and saves 3 % of the file.
+/// Bytes per word. Runs are found in whole words: every byte of a run equals the byte before the run. Finding runs at
+/// every byte takes twice the time and saves 3 % of the file.
 pub(super) const WORD: usize = 8;
 /// Deflate's longest match is 258 bytes.
 pub(super) const MOST_RUN_WORDS: usize = 258 / WORD;
-/// Two distances have a code although only the first is used: not every decoder accepts a code with a single symbol.
+/// Number of distances with a code. Only the first is used, but not every decoder accepts a code with a single symbol.
 const DISTANCE_LENGTHS: [u8; 2] = [1, 1];
-/// The order in which the lengths of the description's own code are stated (RFC 1951, 3.2.7).
+/// The order of the code lengths of the code-length code (RFC 1951, 3.2.7).
 const DESCRIPTION_ORDER: [u8; 19] = [16, 17, 18, 0, 8, 7, 9, 6, 10, 5, 11, 4, 12, 3, 13, 2, 14, 1, 15];
 
-/// Extra bits of each length symbol, and its shortest match (RFC 1951, 3.2.5). The longest match of 258 bytes, which has a
-/// symbol of its own, is not a number of whole words.
+/// Extra bits of each length symbol, and its shortest match (RFC 1951, 3.2.5). The longest match of 258 bytes, which
+/// has a symbol of its own, is not a number of whole words.
 const EXTRA_BITS: [u8; 28] =
     [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4, 5, 5, 5, 5];
 const SHORTEST: [usize; 28] = [
@@ -29,7 +29,7 @@ const SHORTEST: [usize; 28] = [
     227,
 ];
 
-/// Place among the length symbols of a run of `words`.
+/// Index among the length symbols for a run of `words`.
 const fn length_of_run(words: usize) -> usize {
     let mut index = SHORTEST.len() - 1;
     while SHORTEST[index] > words * WORD {
@@ -49,11 +49,11 @@ pub(super) const LENGTH_OF_RUN: [usize; MOST_RUN_WORDS] = {
     table
 };
 
-/// The code of one block: for literals and lengths as counted, and for distances; only one distance is used.
+/// The code of one block: literals and lengths according to their counts, and distances, of which only one is used.
 pub(super) struct Code {
     lengths: [u8; MAX_SYMBOLS],
     codes: [u16; MAX_SYMBOLS],
-    /// Literal and length symbols up to the last that is used.
+    /// Number of literal and length symbols up to the last one used.
     stated: usize,
     description: Vec<Described>,
     description_lengths: [u8; DESCRIPTION_ORDER.len()],
@@ -80,7 +80,7 @@ impl Code {
         Self { lengths, codes, stated, description, description_lengths }
     }
 
-    /// Bits of a whole block whose symbols were counted so.
+    /// Size in bits of a whole block with these symbol counts.
     pub(super) fn block_bits(&self, counts: &[u32; MAX_SYMBOLS]) -> usize {
         let symbols: usize =
             counts.iter().zip(&self.lengths).map(|(n, l)| *n as usize * usize::from(*l)).sum();
@@ -94,7 +94,7 @@ impl Code {
         3 + 5 + 5 + 4 + 3 * self.description_stated() + described + symbols + runs
     }
 
-    /// How many of the lengths in [`DESCRIPTION_ORDER`] are stated: up to the last that is used, at least four.
+    /// How many of the lengths in [`DESCRIPTION_ORDER`] are written: up to the last one used, at least four.
     fn description_stated(&self) -> usize {
         let used = |symbol: &u8| self.description_lengths[usize::from(*symbol)] > 0;
         DESCRIPTION_ORDER.iter().rposition(used).map_or(0, |last| last + 1).max(4)
@@ -118,7 +118,7 @@ impl Code {
         }
     }
 
-    /// What each literal is written as.
+    /// The bits for each literal.
     pub(super) fn of_literals(&self) -> [Entry; LITERALS] {
         std::array::from_fn(|literal| self.of_symbol(literal))
     }
@@ -131,7 +131,7 @@ impl Code {
         entry(u32::from(self.codes[symbol]), u32::from(self.lengths[symbol]))
     }
 
-    /// What a run of each number of words, less one, is written as.
+    /// The bits for each run, indexed by the number of words minus one.
     pub(super) fn of_runs(&self) -> [Entry; MOST_RUN_WORDS] {
         std::array::from_fn(|index| {
             let (extra_bits, shortest) = (EXTRA_BITS[LENGTH_OF_RUN[index]], SHORTEST[LENGTH_OF_RUN[index]]);
@@ -144,14 +144,14 @@ impl Code {
     }
 }
 
-/// A step of the description of code lengths: its symbol and the extra bits that follow it.
+/// One entry of the encoded code lengths: a symbol and the extra bits that follow it.
 struct Described {
     symbol: u8,
     extra: u8,
     extra_bits: u8,
 }
 
-/// Code lengths with their repeats written short (RFC 1951, 3.2.7).
+/// Run-length encodes code lengths (RFC 1951, 3.2.7).
 fn describe(lengths: &[u8]) -> Vec<Described> {
     let mut description = Vec::with_capacity(lengths.len());
     for run in lengths.chunk_by(|a, b| a == b) {
@@ -159,7 +159,7 @@ fn describe(lengths: &[u8]) -> Vec<Described> {
         let literal = Described { symbol: length, extra: 0, extra_bits: 0 };
         let mut left = run.len();
         if length > 0 {
-            // A repeat refers to the length before it, so the first must stand there.
+            // A repeat refers to the previous length, so the first must be written literally.
             description.push(literal);
             left -= 1;
         }

@@ -1,19 +1,19 @@
-//! A zlib stream (RFC 1950, RFC 1951) made of Huffman codes and runs alone.
+//! A zlib stream (RFC 1950, RFC 1951) that uses only Huffman codes and runs.
 //!
-//! A compressor that looks for repeats everywhere finds next to none in the differences that ZIP tiles consist of: besides
-//! runs of one byte they are noise. Leaving the search out makes this more than twice as fast as libdeflate's fastest
-//! level on maps of slopes, for files that are a few per cent larger; only textures with large exact repeats lose more.
+//! A general match search finds almost nothing in the differences that ZIP tiles consist of: apart from runs of one
+//! byte they are noise. Without the search, this is more than twice as fast as libdeflate's fastest level on maps of
+//! slopes, and files are a few per cent larger; only textures with large exact repeats lose more.
 
 use super::bits::{BitWriter, Entry};
 use super::code::{Code, END_OF_BLOCK, FIRST_LENGTH_SYMBOL, LENGTH_OF_RUN, LITERALS, MOST_RUN_WORDS, WORD};
 use super::huffman::MAX_SYMBOLS;
 
-/// Most bytes of a stored block, and what each costs beside its bytes.
+/// Maximum number of bytes in a stored block, and the overhead of each block.
 const STORED_BYTES: usize = 0xffff;
 const STORED_OVERHEAD: usize = 5;
 const ZLIB_OVERHEAD: usize = 2 + 4;
 
-/// Compresses one block after another, keeping its memory.
+/// Compresses one block after another, reusing its buffers.
 pub(super) struct Deflater {
     stretches: Vec<Stretch>,
     packed: Vec<u8>,
@@ -24,7 +24,7 @@ impl Deflater {
         Self { stretches: Vec::new(), packed: Vec::new() }
     }
 
-    /// `whole` as one zlib stream, with a code of its own for what comes before `split` and for the rest.
+    /// Compresses `whole` into one zlib stream, with separate codes for the bytes before `split` and for the rest.
     pub(super) fn zlib<'a>(&'a mut self, whole: &[u8], split: usize) -> &'a [u8] {
         let (first, second) = whole.split_at(split);
         self.packed.clear();
@@ -42,19 +42,19 @@ impl Deflater {
     }
 }
 
-/// Where a block stands in its stream; the number is the bit that says so.
+/// The position of a block in its stream; the number is the value of its BFINAL bit.
 #[derive(Clone, Copy)]
 enum Place {
     Inside = 0,
     Last = 1,
 }
 
-/// Bytes of a part that is stored as it is.
+/// Size in bytes of a part that is stored uncompressed.
 fn stored_size(len: usize) -> usize {
     len + len.div_ceil(STORED_BYTES).max(1) * STORED_OVERHEAD
 }
 
-/// Writes one part: with a code made for it, or stored where that is no longer.
+/// Writes one part with its own code, or stored if that is not longer.
 fn put_block(part: &[u8], place: Place, stretches: &mut Vec<Stretch>, bits: &mut BitWriter) {
     let (words, rest) = part.as_chunks::<WORD>();
     let mut counts = find_runs(words, stretches);
@@ -73,21 +73,21 @@ fn put_block(part: &[u8], place: Place, stretches: &mut Vec<Stretch>, bits: &mut
     bits.put_entry(code.of_end());
 }
 
-/// Words as they are, then words that repeat the last byte of them. Either number can be zero.
+/// Literal words, followed by words that repeat the last literal byte. Either count can be zero.
 #[derive(Clone, Copy, Default)]
 struct Stretch {
     literals: usize,
     run: usize,
 }
 
-/// Splits words into stretches, and counts the symbols that they will need.
+/// Splits words into stretches and counts the symbols they need.
 fn find_runs(words: &[[u8; WORD]], stretches: &mut Vec<Stretch>) -> [u32; MAX_SYMBOLS] {
-    // Several tables, since counting the same byte twice in a row waits for the first count to arrive in memory.
+    // Several tables, since counting the same byte twice in a row stalls until the first count has been stored.
     let mut lanes = [[0_u32; LITERALS]; 4];
     let mut counts = [0; MAX_SYMBOLS];
     stretches.clear();
     let mut left = words;
-    // Nothing stands before the first word: a byte that it cannot repeat.
+    // No byte precedes the first word: use one that it cannot repeat.
     let mut before = words.first().map_or(0, |word| !word[0]);
     while !left.is_empty() {
         let mut literals = 0;
@@ -134,7 +134,7 @@ fn put_stretches(
     }
 }
 
-/// A part as it is (RFC 1951, 3.2.4).
+/// Writes a part uncompressed (RFC 1951, 3.2.4).
 fn put_stored(part: &[u8], place: Place, bits: &mut BitWriter) {
     let mut left = part;
     loop {
@@ -172,7 +172,7 @@ mod tests {
         packed.len()
     }
 
-    /// A generator of bytes without pattern (xorshift).
+    /// A pseudo-random byte generator (xorshift).
     fn noise(len: usize) -> Vec<u8> {
         let mut state = 0x2545_f491_4f6c_dd1d_u64;
         let mut step = || {
@@ -218,7 +218,7 @@ mod tests {
 
     #[test]
     fn constant_data_shrinks_to_almost_nothing() {
-        // A run of 256 bytes takes a bit for its length, five extra bits and one for its distance.
+        // A run of 256 bytes takes one bit for its length, five extra bits, and one bit for its distance.
         let even = vec![128; 49_152];
         assert!(check(&even, 24_576) < 49_152 / 256 + 64);
     }

@@ -1,7 +1,7 @@
-//! The bytes in front of an EXR file's table of offsets.
+//! The bytes before the offset table of an EXR file.
 //!
-//! Source: "OpenEXR File Layout". The `exr` crate could write them too, but it keeps attributes in hash maps, so that two
-//! runs would not give the same bytes.
+//! Source: "OpenEXR File Layout". The `exr` crate could write them too, but it keeps attributes in hash maps, so the
+//! bytes would differ between runs.
 
 use std::collections::BTreeMap;
 
@@ -34,7 +34,7 @@ const SOFTWARE_VALUE: &str = concat!("roughcast ", env!("CARGO_PKG_VERSION"));
 /// Magic number, version and attributes.
 ///
 /// # Errors
-/// [`WriteError::Unsupported`] if the name of a text attribute is not one that a file can have.
+/// [`WriteError::Unsupported`] if a text attribute has a name that a file cannot contain.
 pub(super) fn encode(plan: &Plan, info: &TextureInfo, options: &ExrOptions) -> Result<Vec<u8>, WriteError> {
     let mut attributes = structure(plan, options.compression);
     for (name, value) in text_attributes(info, options) {
@@ -109,7 +109,7 @@ fn channel_list(plan: &Plan) -> Vec<u8> {
     for channel in &plan.channels {
         put_name(channel.name, &mut bytes);
         bytes.extend(pixel_type.to_le_bytes());
-        // Linear numbers (a hint to lossy compressors), and three reserved bytes.
+        // The "linear" flag (a hint to lossy compressors), and three reserved bytes.
         bytes.extend([1, 0, 0, 0]);
         // No subsampling.
         bytes.extend(1_i32.to_le_bytes());

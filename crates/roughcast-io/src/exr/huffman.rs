@@ -1,22 +1,24 @@
 //! Prefix codes of limited length, as deflate requires (RFC 1951, 3.2.2).
 
-/// Largest alphabet here: the literals and lengths of deflate.
+/// Size of the largest alphabet: deflate's literals and lengths.
 pub(super) const MAX_SYMBOLS: usize = 286;
 
-/// Longest code that any alphabet of deflate allows.
+/// Maximum code length of any deflate alphabet.
 const LONGEST: usize = 15;
 
-/// Gives each symbol that occurs a code length of at most `longest` bits, shorter where it occurs more often.
+/// Assigns each symbol that occurs a code length of at most `longest` bits, shorter for more frequent symbols.
 ///
-/// The lengths are those of Huffman's code; where it is too deep, leaves are moved as little as keeps it complete, since
-/// decoders refuse an incomplete code. A symbol that does not occur gets length 0, an only symbol length 1.
+/// The lengths are those of the Huffman code. If its tree is too deep, leaves are moved by as little as keeps the code
+/// complete, since decoders refuse an incomplete code. A symbol that does not occur gets length 0, a single symbol
+/// length 1.
 ///
-/// `counts` and `lengths` have one entry a symbol, at most [`MAX_SYMBOLS`], and each count is below 2^23.
+/// `counts` and `lengths` have one entry per symbol, at most [`MAX_SYMBOLS`]; each count is below 2^23.
 pub(super) fn code_lengths(counts: &[u32], longest: usize, lengths: &mut [u8]) {
     const SYMBOL_BITS: u32 = 9;
     debug_assert!(counts.len() <= MAX_SYMBOLS && counts.len() == lengths.len() && longest <= LONGEST);
     lengths.fill(0);
-    // Count and symbol in one word: sorting words is quicker than sorting pairs, and ties are settled the same everywhere.
+    // Count and symbol in one word: sorting words is faster than sorting pairs, and ties are resolved
+    // deterministically.
     let mut leaves = [0_u32; MAX_SYMBOLS];
     let mut used = 0;
     for (symbol, &count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
@@ -41,16 +43,16 @@ pub(super) fn code_lengths(counts: &[u32], longest: usize, lengths: &mut [u8]) {
     }
 }
 
-/// How many leaves of Huffman's tree lie at each depth; those deeper than `longest` are counted there.
-/// `counts` rise; there are at least two.
+/// The number of leaves at each depth of the Huffman tree; leaves deeper than `longest` count at that depth.
+/// `counts` are in ascending order; there are at least two.
 fn leaves_of_length(counts: impl ExactSizeIterator<Item = u32>, longest: usize) -> [usize; LONGEST + 1] {
     let leaf_count = counts.len();
     let node_count = 2 * leaf_count - 1;
     let mut weight = [0_u32; 2 * MAX_SYMBOLS];
     weight.iter_mut().zip(counts).for_each(|(weight, count)| *weight = count);
     let mut parent = [0_u16; 2 * MAX_SYMBOLS];
-    // Leaves come sorted and inner nodes are born in rising order, so the two lightest nodes are always at the head of
-    // one of these two queues.
+    // Leaves are sorted and inner nodes are created in ascending order, so each of the two lightest nodes is at the
+    // head of one of these two queues.
     let (mut leaf, mut inner) = (0, leaf_count);
     for node in leaf_count..node_count {
         for _ in 0..2 {
@@ -76,8 +78,8 @@ fn leaves_of_length(counts: impl ExactSizeIterator<Item = u32>, longest: usize) 
     of_length
 }
 
-/// Cutting deep leaves short makes the code claim more than there is. Each step hangs one of the deepest leaves beside a
-/// leaf higher up, which frees exactly one code of the longest length, until the code is complete (Kraft's sum is one).
+/// Restores a complete code after the depth limit has made it oversubscribed. Each step makes one of the deepest leaves
+/// the sibling of a leaf higher up, which frees exactly one code of the longest length, until Kraft's sum is one.
 fn make_complete(of_length: &mut [usize; LONGEST + 1], longest: usize) {
     let claimed: usize = (1..=longest).map(|length| of_length[length] << (longest - length)).sum();
     for _ in (1 << longest)..claimed {
@@ -89,8 +91,8 @@ fn make_complete(of_length: &mut [usize; LONGEST + 1], longest: usize) {
     }
 }
 
-/// The canonical codes of `lengths`, each with its bits reversed: deflate writes codes from their highest bit, all else
-/// from the lowest.
+/// The canonical codes for `lengths`, each with its bits reversed: deflate writes codes highest bit first, everything
+/// else lowest bit first.
 pub(super) fn reversed_codes(lengths: &[u8], codes: &mut [u16]) {
     let mut of_length = [0_u16; LONGEST + 1];
     lengths.iter().for_each(|&length| of_length[usize::from(length)] += 1);
@@ -134,7 +136,7 @@ mod tests {
 
     #[test]
     fn the_code_is_huffmans_if_the_limit_is_not_reached() {
-        // Known by hand: ((1+1)+2)+4 against 8.
+        // Computed by hand: ((1+1)+2)+4 against 8.
         let mut lengths = [0; 6];
         code_lengths(&[8, 1, 0, 1, 4, 2], 15, &mut lengths);
         assert_eq!(lengths, [1, 4, 0, 4, 2, 3]);
@@ -151,7 +153,7 @@ mod tests {
         assert_eq!(lengths, [1, 1, 0]);
     }
 
-    /// The example of RFC 1951, 3.2.2.
+    /// The example from RFC 1951, 3.2.2.
     #[test]
     fn canonical_codes_follow_the_rfc() {
         let lengths = [3, 3, 3, 3, 3, 2, 4, 4];

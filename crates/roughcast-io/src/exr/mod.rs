@@ -1,7 +1,8 @@
-//! Textures with all their levels as OpenEXR: one part, tiled 64x64, mip-mapped, a named channel for each channel of each layer.
+//! Textures with all their levels as OpenEXR: one part, tiled 64x64, mip-mapped, with a named channel for each channel
+//! of each layer.
 //!
-//! Film tools read such a file as a texture like those of OpenImageIO's `maketx`: `oiiotool`, renderers with
-//! OpenImageIO's texture system, and whatever else opens tiled OpenEXR.
+//! Film tools read such a file like a texture from OpenImageIO's `maketx`: `oiiotool`, renderers with OpenImageIO's
+//! texture system, and anything else that opens tiled OpenEXR.
 
 mod bits;
 mod code;
@@ -21,27 +22,27 @@ use std::collections::BTreeMap;
 pub use read::read_textures;
 pub use write::write;
 
-/// Side of a tile in texels: the one that OpenImageIO's texture system is tuned for.
+/// Side of a tile in texels: the size that OpenImageIO's texture system is tuned for.
 const TILE: usize = 64;
 
-/// How the tiles of an EXR file are compressed, without loss in either case.
+/// Compression of the tiles of an EXR file; both variants are lossless.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ExrCompression {
     /// OpenEXR's ZIP.
     #[default]
     Zip,
-    /// Tiles as they are: the file is larger, and written as fast as the disk takes it.
+    /// No compression: the file is larger and written at disk speed.
     None,
 }
 
-/// How a texture is written as EXR.
+/// Options for writing a texture as EXR.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ExrOptions {
     /// Compression of the tiles.
     pub compression: ExrCompression,
-    /// Text attributes beside those that are always written (the texture's metadata, `software`, and `textureformat`
-    /// "Plain Texture", by which OpenImageIO knows a texture). `wrapmodes` is the one that texture systems look for:
-    /// "periodic,periodic", "clamp,clamp", "mirror,mirror" or "black,black".
+    /// Text attributes in addition to those that are always written (the texture's metadata, `software`, and
+    /// `textureformat` "Plain Texture", by which OpenImageIO recognises a texture). Texture systems look for
+    /// `wrapmodes`: "periodic,periodic", "clamp,clamp", "mirror,mirror" or "black,black".
     ///
     /// An entry here replaces `software` and `textureformat`, but not the texture's metadata.
     pub attributes: BTreeMap<String, String>,

@@ -1,4 +1,4 @@
-//! Where the texels of a texture array go in an EXR file.
+//! The layout of a texture array's texels in an EXR file.
 
 use half::f16;
 use roughcast::texture::TextureArray;
@@ -7,23 +7,23 @@ use roughcast::{Image, SampleType, Samples};
 use super::TILE;
 use crate::WriteError;
 
-/// A channel of the file, and where its samples are found.
+/// A channel of the file, and the source of its samples.
 pub(super) struct Channel<'a> {
     pub(super) name: &'a str,
     layer: usize,
     index: usize,
 }
 
-/// The order and the positions of everything in the file.
+/// The order and the positions of all channels and tiles in the file.
 pub(super) struct Plan<'a> {
     array: &'a TextureArray,
-    /// By name, as OpenEXR demands.
+    /// Sorted by name, as OpenEXR requires.
     pub(super) channels: Vec<Channel<'a>>,
     /// Of all channels.
     pub(super) sample_type: SampleType,
 }
 
-/// Place of a tile: its level, and its column and row among the tiles of that level.
+/// Position of a tile: its level, and its column and row among the tiles of that level.
 #[derive(Clone, Copy)]
 pub(super) struct TilePlace {
     pub(super) level: usize,
@@ -50,7 +50,7 @@ pub(super) fn tile_places(width: usize, height: usize) -> impl Iterator<Item = T
 
 impl<'a> Plan<'a> {
     /// # Errors
-    /// [`WriteError::Unsupported`] if the array is not one that a mip-mapped EXR part can hold.
+    /// [`WriteError::Unsupported`] if a mip-mapped EXR part cannot hold the array.
     pub(super) fn new(array: &'a TextureArray) -> Result<Self, WriteError> {
         let Some(first) = array.layers.first().filter(|layer| !layer.levels.is_empty()) else {
             return Err(refusal("a texture without texels".to_owned(), "bake at least one level"));
@@ -79,7 +79,7 @@ impl<'a> Plan<'a> {
         self.array.size()
     }
 
-    /// Appends the bytes of a tile as OpenEXR orders them: row by row, in each the samples of each channel.
+    /// Appends the bytes of a tile in OpenEXR's order: row by row, and within a row channel by channel.
     pub(super) fn gather(&self, tile: TilePlace, bytes: &mut Vec<u8>) {
         let level = |channel: &Channel| &self.array.layers[channel.layer].levels[tile.level];
         let size = level(&self.channels[0]);
@@ -127,7 +127,7 @@ fn append<T: Copy, const N: usize>(
     }
 }
 
-/// All layers must have the same levels, and these must be the ones that readers will expect from the size.
+/// Checks that all layers have the same levels, and that these are the ones that readers expect from the size.
 fn check_levels(array: &TextureArray, sample_type: SampleType) -> Result<(), WriteError> {
     let (width, height) = array.size();
     if width.max(height) > i32::MAX as usize {

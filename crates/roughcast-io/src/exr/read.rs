@@ -1,7 +1,7 @@
-//! Reading back what [`super::write()`] wrote.
+//! Reads files written by [`super::write()`].
 //!
-//! The header is parsed by the `exr` crate. The tiles are not: with one tile size, one kind of levels and one compression,
-//! checking them against the header takes less than handing them over, and libdeflate inflates faster.
+//! The `exr` crate parses the header, but not the tiles: with one tile size, one level mode and one compression,
+//! checking them against the header here costs less than passing them to the crate, and libdeflate inflates faster.
 
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -19,7 +19,7 @@ use super::plan::{TilePlace, level_sizes, tile_places};
 use super::{TILE, zip};
 use crate::{Limits, ReadError};
 
-/// Tiles that are inflated before they are put into their images.
+/// Number of tiles inflated before they are copied into their images.
 const BATCH: usize = 256;
 /// Column, row, level in both directions, size of the block.
 const CHUNK_HEAD: usize = 5 * size_of::<i32>();
@@ -28,7 +28,7 @@ const CHUNK_HEAD: usize = 5 * size_of::<i32>();
 ///
 /// # Errors
 /// [`ReadError::Malformed`] if the bytes break the rules of OpenEXR or end too early; [`ReadError::Unsupported`] for
-/// OpenEXR files that are built otherwise; [`ReadError::Info`] if roughcast's metadata is missing;
+/// OpenEXR files with a different structure; [`ReadError::Info`] if roughcast's metadata is missing;
 /// [`ReadError::TooLarge`] if level 0 of all layers together has more pixels than `limits` allow.
 pub fn read_textures(bytes: &[u8], limits: &Limits) -> Result<TextureArray, ReadError> {
     read_layers(bytes, limits, |info| layers_of(info).to_vec())
@@ -77,7 +77,7 @@ pub(super) fn read_layers(
     Ok(TextureArray { info, layers: file.textures(levels, specs) })
 }
 
-/// Refuses what [`super::write()`] does not write.
+/// Refuses files that [`super::write()`] does not produce.
 fn check_structure(header: &Header) -> Result<(), ReadError> {
     let BlockDescription::Tiles(tiles) = header.blocks else {
         return Err(unsupported("a file without tiles and levels"));
@@ -121,13 +121,13 @@ fn sample_type(header: &Header) -> Result<SampleType, ReadError> {
     }
 }
 
-/// Where the samples of a channel of the file go.
+/// The destination of the samples of a channel of the file.
 struct PlacedChannel {
     layer: usize,
     index: usize,
 }
 
-/// The place of each of the file's channels, in the order of the file. Each channel of each layer must be there, once.
+/// The destination of each channel, in file order. Each channel of each layer must occur exactly once.
 fn placed_channels(header: &Header, specs: &[LayerSpec]) -> Result<Vec<PlacedChannel>, ReadError> {
     let mut wanted: BTreeMap<&str, PlacedChannel> = BTreeMap::new();
     for (layer, spec) in specs.iter().enumerate() {
@@ -159,7 +159,7 @@ struct File<'a> {
 }
 
 impl File<'_> {
-    /// The tiles of all levels, if the file is long enough to tell where each of them is.
+    /// The tiles of all levels, if the file is long enough to contain their offsets.
     fn tiles(&self, width: usize, height: usize) -> Result<Vec<TilePlace>, ReadError> {
         let tiles_of = |&(width, height): &(usize, usize)| width.div_ceil(TILE) * height.div_ceil(TILE);
         let count: usize = self.sizes.iter().map(tiles_of).sum();
@@ -200,7 +200,7 @@ impl File<'_> {
         inflated.ok_or_else(|| malformed(broken()))
     }
 
-    /// Texels in a row of a tile, and its rows.
+    /// Width and height of a tile in texels.
     fn tile_size(&self, tile: TilePlace) -> (usize, usize) {
         let (width, height) = self.sizes[tile.level];
         (TILE.min(width - tile.column * TILE), TILE.min(height - tile.row * TILE))
@@ -216,7 +216,7 @@ impl File<'_> {
         self.sizes.iter().map(level).collect()
     }
 
-    /// Puts the samples of a tile into the layers of its level.
+    /// Copies the samples of a tile into the layers of its level.
     fn scatter(&self, tile: TilePlace, block: &[u8], layers: &mut [Samples]) {
         let (level_width, level_height) = self.sizes[tile.level];
         let (width, height) = self.tile_size(tile);
@@ -250,7 +250,7 @@ impl File<'_> {
     }
 }
 
-/// Puts a row of samples into every `stride`th place.
+/// Copies a row of samples to every `stride`th position.
 fn put<T, const N: usize>(places: &mut [T], stride: usize, bytes: &[u8], from_le_bytes: fn([u8; N]) -> T) {
     let (samples, _) = bytes.as_chunks::<N>();
     for (place, sample) in places.iter_mut().step_by(stride).zip(samples) {

@@ -1,4 +1,4 @@
-//! Files written, read back, and broken.
+//! Tests that write files, read them back, and read damaged ones.
 
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -26,11 +26,11 @@ fn info() -> TextureInfo {
     TextureInfo { base_variance: 1.0 / 3.0, ..TextureInfo::new(Layout::BumpSlopes, Part::Whole) }
 }
 
-/// Smooth hills with some noise, so that tiles are neither trivial nor incompressible; a different one in each channel.
+/// Smooth hills with some noise, so that tiles are neither trivial nor incompressible; different in each channel.
 fn sample(x: usize, y: usize, channel: usize, level: usize) -> f32 {
     let (u, v) = (x as f32 * 0.1, y as f32 * 0.13 + channel as f32);
     let noise = (x * 7919 + y * 104_729 + channel * 31 + level) % 97;
-    // A part of the picture is even, as real maps are.
+    // Part of the picture is constant, as in real maps.
     if (x / 16 + y / 16).is_multiple_of(3) { 0.5 } else { u.sin() * v.cos() * 10.0 + noise as f32 * 1e-3 }
 }
 
@@ -104,7 +104,7 @@ fn files_of_every_layout_are_self_contained() {
     }
 }
 
-/// Every level and channel of the file, as the reader of the `exr` crate sees it: level, name, width, height, samples.
+/// Every level and channel of the file as read by the `exr` crate: level, name, width, height, samples.
 fn by_the_exr_crate(bytes: &[u8]) -> Vec<(usize, String, usize, usize, Vec<f32>)> {
     use exr::math::RoundingMode;
     use exr::prelude::*;
@@ -250,7 +250,7 @@ fn too_many_pixels_are_refused_before_they_are_read() {
     assert!(read_textures(&bytes, &Limits { max_pixels: 53 * 37 }).is_ok());
 }
 
-/// Each byte of a small file in turn gets several other values, and the file is cut at each length.
+/// Sets each byte of a small file in turn to several other values, and truncates the file at every length.
 #[test]
 fn corrupt_bytes_do_not_panic() {
     let good = written(&array(70, 3, LAYERS[1], SampleType::F16), ExrCompression::Zip);
@@ -260,7 +260,7 @@ fn corrupt_bytes_do_not_panic() {
         let mut bytes = good.clone();
         for value in [0, 1, 0x7f, 0x80, 0xff, good[index] ^ 1, good[index].wrapping_add(1)] {
             bytes[index] = value;
-            // Most must be refused, some cannot be: a changed sample is a sample. None may panic.
+            // Most must be refused; changed samples cannot be detected. None may panic.
             let _ = read_textures(&bytes, &Limits::default());
         }
     }

@@ -1,4 +1,4 @@
-//! Writing.
+//! Writes textures as EXR.
 
 use std::io::{Seek, SeekFrom, Write};
 
@@ -12,19 +12,19 @@ use crate::WriteError;
 
 /// Tiles that a thread compresses in one go.
 const GROUP: usize = 8;
-/// Tiles in memory at once, beside as many that are being written: some 12 MB each of six half channels.
+/// Tiles compressed at once, while as many again are being written: about 12 MB each with six half channels.
 const BATCH: usize = 256;
 
-/// Writes a texture array with all its levels as one EXR part, from the current position of `out`, which is left behind
-/// the last byte.
+/// Writes a texture array with all its levels as one EXR part, from the current position of `out`. Afterwards `out` is
+/// positioned after the last byte.
 ///
-/// The channels of all layers become channels of the file, of half or single floats as they are. The bytes do not depend
-/// on the number of threads.
+/// The channels of all layers become channels of the file, of half or single floats as they are. The bytes do not
+/// depend on the number of threads.
 ///
 /// # Errors
-/// [`WriteError::Unsupported`] for 8- and 16-bit unsigned samples, for channel names that are not unique over the layers,
-/// for layers whose levels or sample types differ or whose levels do not go down to 1x1, and for attributes with a name
-/// that OpenEXR keeps for itself; [`WriteError::Io`] if `out` fails.
+/// [`WriteError::Unsupported`] for 8- and 16-bit unsigned samples, for channel names that are not unique over the
+/// layers, for layers whose levels or sample types differ or whose levels do not go down to 1x1, and for attributes
+/// with a name that OpenEXR keeps for itself; [`WriteError::Io`] if `out` fails.
 pub fn write(
     array: &TextureArray,
     options: &ExrOptions,
@@ -38,7 +38,7 @@ pub fn write(
     let start = out.stream_position()?;
     out.write_all(&header)?;
     let mut offsets = Vec::with_capacity(tiles.len() * size_of::<u64>());
-    // The offsets are known only when the tiles are written; until then zeros keep their place.
+    // The offsets are known only after the tiles have been written; until then zeros reserve their space.
     out.write_all(&vec![0; offsets.capacity()])?;
     let mut position = (header.len() + offsets.capacity()) as u64;
     write_chunks(&plan, options.compression, &tiles, |group| {
@@ -54,13 +54,13 @@ pub fn write(
     Ok(())
 }
 
-/// Chunks as they stand in the file.
+/// Chunks in their file format.
 struct Group {
     bytes: Vec<u8>,
     sizes: Vec<usize>,
 }
 
-/// Compresses a batch of tiles on all threads while this one writes the batch before it, in order.
+/// Compresses a batch of tiles on all threads while this thread writes the previous batch in order.
 fn write_chunks(
     plan: &Plan,
     compression: ExrCompression,
@@ -86,7 +86,7 @@ fn pack_batch(plan: &Plan, compression: ExrCompression, tiles: &[TilePlace]) -> 
     groups.map_init(|| Packer::new(compression), |packer, tiles| packer.pack(plan, tiles)).collect()
 }
 
-/// What a thread needs to make chunks.
+/// Per-thread state for making chunks.
 struct Packer {
     raw: Vec<u8>,
     compressor: Option<BlockCompressor>,

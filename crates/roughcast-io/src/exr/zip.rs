@@ -1,10 +1,10 @@
-//! OpenEXR's ZIP compression of one block: bytes sorted by their place, differences, deflate.
+//! OpenEXR's ZIP compression of one block: even and odd bytes separated, differences, deflate.
 //!
-//! Source: OpenEXR's "Technical Introduction" and the layout of `internal_zip.c`; the way back is here too.
+//! Source: OpenEXR's "Technical Introduction" and the layout of `internal_zip.c`. Decompression is here too.
 
 use super::deflate::Deflater;
 
-/// Compresses one block after another, keeping its memory.
+/// Compresses one block after another, reusing its buffers.
 pub(super) struct BlockCompressor {
     sorted: Vec<u8>,
     differences: Vec<u8>,
@@ -16,8 +16,8 @@ impl BlockCompressor {
         Self { sorted: Vec::new(), differences: Vec::new(), deflater: Deflater::new() }
     }
 
-    /// What the file contains for the bytes of a block: compressed, or the bytes themselves if that would not be shorter;
-    /// readers tell the two apart by their size.
+    /// The stored form of a block's bytes: compressed, or the bytes themselves if compression would not shorten them.
+    /// Readers distinguish the two by their size.
     pub(super) fn compress<'a>(&'a mut self, block: &'a [u8]) -> &'a [u8] {
         sort_by_place(block, &mut self.sorted);
         take_differences(&self.sorted, &mut self.differences);
@@ -27,12 +27,12 @@ impl BlockCompressor {
     }
 }
 
-/// Even bytes first, then the odd ones. Samples have an even number of bytes, so that blocks have as well.
+/// Even bytes first, then the odd ones. Samples have an even number of bytes, so blocks do too.
 fn sort_by_place(block: &[u8], sorted: &mut Vec<u8>) {
     sorted.resize(block.len(), 0);
     let (even, odd) = sorted.split_at_mut(block.len() / 2);
     let (pairs, _) = block.as_chunks::<2>();
-    // One half after the other, and by shifts: the compiler vectorises only this form.
+    // One half after the other, using shifts: the compiler vectorises only this form.
     for (even, pair) in even.iter_mut().zip(pairs) {
         *even = u16::from_le_bytes(*pair) as u8;
     }
@@ -41,7 +41,7 @@ fn sort_by_place(block: &[u8], sorted: &mut Vec<u8>) {
     }
 }
 
-/// Each byte less the one before, plus 128.
+/// Each byte minus the previous one, plus 128.
 fn take_differences(bytes: &[u8], differences: &mut Vec<u8>) {
     differences.resize(bytes.len(), 0);
     differences[0] = bytes[0];
@@ -50,8 +50,8 @@ fn take_differences(bytes: &[u8], differences: &mut Vec<u8>) {
     }
 }
 
-/// The `size` bytes of a block that [`BlockCompressor::compress`] shortened; none where `packed` does not hold as many.
-/// `size` is even and not zero.
+/// The `size` bytes of a block that [`BlockCompressor::compress`] shortened; `None` if `packed` does not contain as
+/// many. `size` is even and not zero.
 pub(super) fn inflate(
     packed: &[u8],
     size: usize,

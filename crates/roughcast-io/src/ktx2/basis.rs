@@ -1,7 +1,7 @@
 //! Basis Universal in KTX2: ETC1S with BasisLZ, UASTC plain or with Zstandard, and ASTC, by the `basisu` crate.
 //!
-//! The crate is a port of the reference transcoder and gives the same bytes. It expects files of its own encoder: sizes are
-//! checked here before it sees a file, and its panics on damaged files are caught.
+//! The crate is a port of the reference transcoder and produces the same bytes. It expects files from its own encoder,
+//! so this module checks all sizes first and catches the crate's panics on damaged files.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -14,21 +14,21 @@ use crate::read::check_size;
 use crate::texels::{Source, rgba_names, swizzled};
 use crate::{Decoded, FileInfo, Limits, NormalEncoding, ReadError};
 
-/// Which channels of the decoded RGBA contain something, by the samples of the data format descriptor (Khronos Data Format
-/// Specification 1.3, "KHR_DF_MODEL_ETC1S" and "KHR_DF_MODEL_UASTC").
+/// Which channels of the decoded RGBA contain something, by the samples of the data format descriptor (Khronos Data
+/// Format Specification 1.3, "KHR_DF_MODEL_ETC1S" and "KHR_DF_MODEL_UASTC").
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Content {
     Rgb,
     Rgba,
     Red,
-    /// Red and green in their places.
+    /// Red and green in their usual channels.
     RedGreen,
     /// Red repeated in red, green and blue, green in alpha: the normal mode of Khronos' tools.
     RedAndAlpha,
 }
 
 impl Content {
-    /// Where each channel of the image comes from.
+    /// The source of each channel of the image.
     fn sources(self) -> &'static [Source] {
         const R: Source = Source::Channel(0);
         const G: Source = Source::Channel(1);
@@ -89,8 +89,8 @@ pub(super) fn read(
 fn transcoded(bytes: &[u8]) -> Result<Vec<u8>, ReadError> {
     let transcode = || {
         let transcoder = Transcoder::new(bytes)?;
-        // By default large blocks of ASTC are smoothed where they meet: no graphics processor does so, nor does the
-        // specification.
+        // By default the crate smooths the edges between large ASTC blocks, which neither GPUs nor the specification
+        // do.
         transcoder.transcode_image(0, 0, 0, TargetFormat::Rgba32, DecodeFlags::NO_DEBLOCK_FILTERING)
     };
     match catch_unwind(AssertUnwindSafe(transcode)) {

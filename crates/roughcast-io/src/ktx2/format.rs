@@ -1,4 +1,4 @@
-//! Vulkan's formats by number, and the data format descriptor that goes with each one that is written.
+//! Vulkan's formats by number, and the data format descriptor for each format that can be written.
 
 use super::unsupported;
 use crate::ReadError;
@@ -65,8 +65,9 @@ const BLOCKS: [(u32, &str, BlockCode); 14] = [
     (146, "BC7_SRGB_BLOCK", BlockCode::Bc7),
 ];
 
-/// Channels in the bits of one integer, which Vulkan names from the highest bits down: `vkFormat`, name without `_PACK16` and the like, bytes, masks
-/// of red, green, blue and alpha as many as there are, whether they are signed.
+/// Channels packed in one integer, which Vulkan names from the highest bits down: `vkFormat`, name without `_PACK16`
+/// and similar suffixes, bytes, masks of the existing channels among red, green, blue and alpha, and whether they are
+/// signed.
 const PACKED: [(u32, &str, usize, &[u32], bool); 17] = [
     (1, "R4G4_UNORM", 1, &[0xf0, 0xf], false),
     (2, "R4G4B4A4_UNORM", 2, &[0xf000, 0xf00, 0xf0, 0xf], false),
@@ -127,7 +128,7 @@ fn not_read(vk_format: u32) -> ReadError {
     unsupported(format!("{what} (vkFormat {vk_format})"), remedy)
 }
 
-/// What a writer must state about a texel format: its `vkFormat`, its `typeSize`, and its data format descriptor.
+/// The header fields that describe a texel format: its `vkFormat`, its `typeSize`, and its data format descriptor.
 pub(super) struct Written {
     pub vk_format: u32,
     pub type_size: u32,
@@ -139,7 +140,7 @@ pub(super) struct Written {
 pub(super) fn written(format: &TexelFormat) -> Option<Written> {
     match format {
         TexelFormat::Plain(plain) => {
-            // The first row that fits: the UNORM one stands before its SRGB twin.
+            // The first matching row: the UNORM row precedes its SRGB counterpart.
             let wanted = (plain.channels, plain.encoding, plain.order);
             let row = PLAIN.iter().find(|row| (row.2, row.3, row.4) == wanted)?;
             let type_size = plain.encoding.bytes() as u32;
@@ -182,7 +183,7 @@ fn descriptor_of_plain(plain: Plain) -> Option<Vec<u8>> {
 }
 
 fn descriptor_of_blocks(code: BlockCode) -> Option<Vec<u8>> {
-    // One sample is the whole block, but BC5 is two blocks of BC4: red, then green.
+    // One sample describes the whole block, but BC5 is two BC4 blocks: red, then green.
     let (model, parts) = match code {
         BlockCode::Bc4 => (131, 1),
         BlockCode::Bc5 => (132, 2),
@@ -205,11 +206,11 @@ fn descriptor(model: u8, block_side: u8, unit_bytes: usize, samples: &[Sample]) 
     let block_size = 24 + 16 * samples.len() as u16;
     let mut bytes = Vec::new();
     bytes.extend((u32::from(block_size) + 4).to_le_bytes());
-    // Vendor Khronos, basic descriptor, version 1.3 (whose number is 2).
+    // Vendor Khronos, basic descriptor, version 1.3 (encoded as 2).
     bytes.extend(0_u32.to_le_bytes());
     bytes.extend(2_u16.to_le_bytes());
     bytes.extend(block_size.to_le_bytes());
-    // The numbers are data, not colours: no primaries, and nothing to undo.
+    // The numbers are data, not colours: no primaries and a linear transfer function.
     let (primaries_unspecified, transfer_linear, alpha_straight) = (0, 1, 0);
     bytes.extend([model, primaries_unspecified, transfer_linear, alpha_straight]);
     bytes.extend([block_side - 1, block_side - 1, 0, 0]);

@@ -8,7 +8,7 @@ use super::{IDENTIFIER, IDENTIFIER_OF_KTX1, malformed, unsupported};
 use crate::texels::{Axis, Source};
 use crate::{ReadError, metadata};
 
-/// How level data are packed.
+/// Compression of the level data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Scheme {
     None,
@@ -17,7 +17,7 @@ enum Scheme {
     Zlib,
 }
 
-/// A block code that Basis Universal's transcoder reads.
+/// A block format that Basis Universal's transcoder reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Universal {
     Etc1s,
@@ -36,7 +36,7 @@ impl Universal {
     }
 }
 
-/// A file whose header is valid. Nothing of the size of the texture has been allocated.
+/// A file whose header is valid. No memory proportional to the texture's size has been allocated.
 pub(super) struct Container<'a> {
     bytes: &'a [u8],
     scheme: Scheme,
@@ -102,7 +102,7 @@ impl<'a> Container<'a> {
             universal,
             descriptor_channels: descriptor_channels(bytes, field(9), field(10)),
             width: width as usize,
-            // 1-D textures state a height of 0; one row is what they are.
+            // 1-D textures state a height of 0, which means one row.
             height: height.max(1) as usize,
             layers: layers.max(1) as usize,
             pairs: key_value_data(bytes, field(11), field(12))?,
@@ -145,7 +145,7 @@ impl<'a> Container<'a> {
         };
         let layers = self.layers as u64;
         match universal {
-            // Each block of a run of equal blocks takes a fraction of a bit at best.
+            // In a run of equal blocks, each block may take only a fraction of a bit.
             Universal::Etc1s if blocks(4) > (data.len() as u64 + 1) * ETC1S_MAX_BLOCKS_PER_BYTE => {
                 Err(too_short())
             }
@@ -153,7 +153,7 @@ impl<'a> Container<'a> {
             Universal::Uastc if entry.uncompressed_length != blocks(4) * 16 * layers => {
                 Err(malformed("level 0 states another number of bytes than its size needs"))
             }
-            // The largest block of ASTC is 12 texels wide.
+            // The largest ASTC block is 12 texels wide.
             Universal::Astc if entry.uncompressed_length < blocks(12) * 16 * layers => Err(too_short()),
             _ if entry.uncompressed_length > (data.len() as u64).saturating_mul(ZSTD_MAX_RATIO as u64) => {
                 Err(too_short())
@@ -162,9 +162,9 @@ impl<'a> Container<'a> {
         }
     }
 
-    /// What the channels contain, by the samples of the data format descriptor.
+    /// The contents of the channels, according to the samples of the data format descriptor.
     pub fn universal_content(&self, universal: Universal) -> Content {
-        // Numbers of `khr_df_channels`; 15 is alpha.
+        // Channel numbers as in `khr_df_channels`; 15 is alpha.
         match (universal, &self.descriptor_channels[..]) {
             (Universal::Etc1s, [3]) | (Universal::Uastc, [4]) => Content::Red,
             (Universal::Etc1s, [3, 4]) | (Universal::Uastc, [5]) => Content::RedAndAlpha,
@@ -186,8 +186,8 @@ impl<'a> Container<'a> {
         }
     }
 
-    /// Where each channel of the image comes from, if the file specifies it. Channels at the end that would contain what they
-    /// contain anyway when absent (0, or 1 for alpha) are omitted: `rg01` of two channels gives two channels.
+    /// The source of each channel of the image, if the file specifies it. Trailing channels with the value that an
+    /// absent channel has anyway (0, or 1 for alpha) are omitted: `rg01` applied to two channels gives two channels.
     pub fn swizzle(&self, channels: usize) -> Result<Option<Vec<Source>>, ReadError> {
         let Some(swizzle) = self.pairs.get("KTXswizzle") else { return Ok(None) };
         let invalid = || malformed(format!("KTXswizzle is '{}'", swizzle.escape_debug()));
@@ -212,7 +212,7 @@ impl<'a> Container<'a> {
     }
 }
 
-/// The caller has checked that the file is long enough.
+/// Requires that the caller has checked the length of the file.
 fn u32_at(bytes: &[u8], offset: usize) -> u32 {
     bytes[offset..].first_chunk().map(|&b| u32::from_le_bytes(b)).expect("within the header")
 }
@@ -237,10 +237,10 @@ fn scheme_of(number: u32) -> Result<Scheme, ReadError> {
     }
 }
 
-/// Blocks of ETC1S of which a run can be coded in a byte; far more than the encoder reaches, to bound what a short file asks for.
+/// Maximum number of ETC1S blocks per byte; far more than the encoder reaches. Bounds the allocation for a short file.
 const ETC1S_MAX_BLOCKS_PER_BYTE: u64 = 4096;
 
-/// The block code of files for Basis Universal's transcoder; `None` for those that a `vkFormat` describes.
+/// The block format of files for Basis Universal's transcoder; `None` if a `vkFormat` describes the texels.
 ///
 /// Files without a `vkFormat` are described by their data format descriptor.
 fn universal_of(
@@ -268,7 +268,7 @@ fn universal_of(
     }
 }
 
-/// The channel of each sample of the basic data format descriptor; none where it is cut.
+/// The channel of each sample of the basic data format descriptor; empty if it is truncated.
 fn descriptor_channels(bytes: &[u8], offset: u32, length: u32) -> Vec<u8> {
     const BEFORE_SAMPLES: usize = 28;
     const SAMPLE_BYTES: usize = 16;
@@ -301,14 +301,14 @@ fn key_value_data(bytes: &[u8], offset: u32, length: u32) -> Result<BTreeMap<Str
         let end_of_key = pair.iter().position(|&byte| byte == 0).ok_or_else(broken)?;
         let key = std::str::from_utf8(&pair[..end_of_key]).map_err(|_| broken())?;
         metadata::insert_bytes(&mut pairs, key, &pair[end_of_key + 1..]);
-        // Pairs are padded to 4 bytes; some writers leave the padding of the last one out.
+        // Pairs are padded to 4 bytes; some writers omit the padding of the last one.
         rest = after.get(size.next_multiple_of(4)..).unwrap_or_default();
     }
     Ok(pairs)
 }
 
-/// A Zstandard block of 4 bytes can represent 128 KiB, so no valid level is packed tighter than this. Checked before
-/// the level is allocated: a short file must not ask for gigabytes.
+/// Maximum Zstandard compression ratio: a block of 4 bytes can represent 128 KiB. Checked before the level is
+/// allocated, so that a short file cannot request gigabytes.
 const ZSTD_MAX_RATIO: usize = 128 * 1024 / 4;
 
 fn inflate_zstd(data: &[u8], expected: usize) -> Result<Vec<u8>, &'static str> {
@@ -321,7 +321,7 @@ fn inflate_zstd(data: &[u8], expected: usize) -> Result<Vec<u8>, &'static str> {
     if level.len() != expected { Err("too few bytes") } else { Ok(level) }
 }
 
-/// Deflate packs at most 258 bytes into 2 bits.
+/// Maximum deflate compression ratio: at most 258 bytes in 2 bits.
 const DEFLATE_MAX_RATIO: usize = 258 * 4;
 
 fn inflate_zlib(data: &[u8], expected: usize) -> Result<Vec<u8>, &'static str> {

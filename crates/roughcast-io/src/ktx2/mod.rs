@@ -1,12 +1,12 @@
 //! KTX2, the Khronos texture container: <https://registry.khronos.org/KTX/specs/2.0/ktxspec.v2.html>.
 //!
 //! Writes 1, 2 or 4 channels of 8-bit or 16-bit UNORM, half or single float, and BC4, BC5, BC7; plain or with
-//! Zstandard. Reads, as an image: these and their relatives, also with 3 channels, SNORM, blue first, or as BC1, BC2, BC3, and
-//! Basis Universal (ETC1S, UASTC) and ASTC, see `basis.rs`. Cube maps, volumes, integers, depth, BC6H, ETC2 and PVRTC are refused
-//! with advice.
+//! Zstandard. Reads as an image: these, and also 3 channels, SNORM, blue-first orders, BC1, BC2, BC3, and Basis
+//! Universal (ETC1S, UASTC) and ASTC, see `basis.rs`. Cube maps, volumes, integers, depth, BC6H, ETC2 and PVRTC are
+//! refused with advice.
 //!
 //! The `ktx2` crate is only used as an independent reader in the tests: its parser panics on a data format descriptor
-//! whose block dimension is 255 (0.5.0), and a reader of foreign files must not.
+//! whose block dimension is 255 (0.5.0), and a reader of untrusted files must not panic.
 
 mod basis;
 mod format;

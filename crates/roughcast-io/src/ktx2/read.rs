@@ -1,4 +1,4 @@
-//! Reading KTX2.
+//! Reads KTX2.
 
 use roughcast::texture::{TextureArray, TextureInfo};
 use roughcast::{Kind, NormalChannels};
@@ -11,9 +11,9 @@ use crate::{Decoded, FileInfo, Limits, NormalEncoding, ReadError};
 
 /// Reads level 0 of layer 0 as an image.
 ///
-/// Row 0 of the image is the top and column 0 the left, even if the file's `KTXorientation` says that its own are
-/// not, and channels are in the order that `KTXswizzle` specifies. `_SRGB` formats are read as raw numbers. SNORM
-/// formats become floats in -1 ..= 1, BC4 and BC5 UNORM 16-bit samples.
+/// Row 0 of the image is the top and column 0 the left, whatever the file's `KTXorientation`, and channels are in the
+/// order that `KTXswizzle` specifies. `_SRGB` formats are read as raw numbers. SNORM formats become floats in -1 ..= 1,
+/// BC4 and BC5 UNORM become 16-bit samples.
 ///
 /// # Errors
 /// [`ReadError`] if the file is broken, too large for `limits`, or of a kind that is not read (see [`super`]).
@@ -37,7 +37,7 @@ pub fn read_image(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
     Ok(Decoded { image, info })
 }
 
-/// Whether Khronos' tools were told to store x in red, green and blue, and y in alpha. They record their options.
+/// Whether Khronos' tools stored x in red, green and blue, and y in alpha, according to the options that they record.
 fn is_normal_mode(file: &Container<'_>) -> bool {
     let options = file.pairs.get("KTXwriterScParams").map_or("", String::as_str);
     let words: Vec<String> = options.split_whitespace().map(|word| word.replace('_', "-")).collect();

@@ -1,4 +1,4 @@
-//! Writing KTX2.
+//! Writes KTX2.
 
 use std::io::{self, Write};
 
@@ -9,7 +9,7 @@ use super::{CONTAINER, IDENTIFIER, format};
 use crate::WriteError;
 use crate::payload::{Payload, Shape, Supercompression};
 
-/// Higher compression levels gain next to nothing on second moments and take several times as long.
+/// Zstandard compression level. Higher levels gain next to nothing on second moments and take several times as long.
 const ZSTD_LEVEL: i32 = 1;
 
 /// Writes a texture file. The same payload gives the same bytes on every machine, for any number of threads.
@@ -37,7 +37,7 @@ pub fn write(
     out.write_all(&format.descriptor)?;
     out.write_all(&plan.key_values)?;
     let mut position = plan.key_values_offset + plan.key_values.len() as u64;
-    // Smallest level first, as the format requires: a streaming reader can show something early.
+    // Smallest level first, as the format requires, so that a streaming reader can show something early.
     for (level, entry) in plan.levels.iter().enumerate().rev() {
         let padding = entry.offset - position;
         io::copy(&mut io::Read::take(io::repeat(0), padding), out)?;
@@ -50,7 +50,8 @@ pub fn write(
     Ok(())
 }
 
-/// One frame per level, as some readers (ruzstd) stop after the first; so only the levels run in parallel.
+/// Compresses each level as one frame, since some readers (ruzstd) stop after the first frame. Therefore only different
+/// levels are compressed in parallel.
 fn zstd_levels(payload: Payload<'_>, shape: &Shape) -> io::Result<Vec<Vec<u8>>> {
     (0..shape.levels).into_par_iter().map(|level| zstd_level(payload, shape, level)).collect()
 }
@@ -65,7 +66,7 @@ fn zstd_level(payload: Payload<'_>, shape: &Shape, level: usize) -> io::Result<V
     encoder.finish()
 }
 
-/// Where everything lies in the file.
+/// The offsets and sizes of all sections of the file.
 struct Plan {
     key_values_offset: u64,
     key_values: Vec<u8>,
@@ -86,8 +87,8 @@ impl Plan {
     fn new(shape: &Shape, packed: Option<&[Vec<u8>]>, descriptor_bytes: usize, info: &TextureInfo) -> Self {
         let key_values_offset = Self::descriptor_offset(shape) + descriptor_bytes as u64;
         let key_values = key_values(info);
-        // Levels that can be used as they lie are aligned to the least common multiple of 4 and a texel or block. All
-        // of these are powers of two.
+        // Uncompressed levels are aligned to the least common multiple of 4 and the size of a texel or block. All of
+        // these are powers of two.
         let alignment = if packed.is_some() { 1 } else { unit_bytes(shape).max(4) };
         let mut levels = vec![PlannedLevel::default(); shape.levels];
         let mut end = key_values_offset + key_values.len() as u64;

@@ -1,5 +1,5 @@
-//! Numbers in the buffers of a glTF file: glTF 2.0, sections 3.6.1 and 3.6.2. Every access is checked against the sizes that the
-//! file states and the bytes that exist.
+//! Numbers in the buffers of a glTF file: glTF 2.0, sections 3.6.1 and 3.6.2. Every access is checked against the sizes
+//! stated in the file and the bytes that exist.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -12,7 +12,7 @@ use roughcast_scene::MAX_VERTICES;
 use super::uri::{data_uri, relative_path};
 use super::{MAX_FILE_BYTES, MeshFileFault, read_file};
 
-/// The buffers of a file, each read when it is first asked for.
+/// The buffers of a file, each read on first use.
 pub(super) struct Buffers<'a> {
     /// The folder of the file.
     folder: &'a Path,
@@ -64,7 +64,7 @@ impl<'a> Buffers<'a> {
         })
     }
 
-    /// An accessor of N floats each, or of normalised integers where `texture coordinates` may be such.
+    /// Reads an accessor of N floats per element, or of normalised integers, which glTF allows for texture coordinates.
     pub fn floats<const N: usize>(&mut self, accessor: &Accessor) -> Result<Vec<[f32; N]>, MeshFileFault> {
         let fits = matches!(
             (accessor.dimensions(), N),
@@ -89,7 +89,7 @@ impl<'a> Buffers<'a> {
         Ok(elements.map(|e| std::array::from_fn(|i| component(&e[i * size..][..size]))).collect())
     }
 
-    /// An accessor of indices.
+    /// Reads an accessor of indices.
     pub fn indices(&mut self, accessor: &Accessor) -> Result<Vec<u32>, MeshFileFault> {
         let index: fn(&[u8]) -> u32 = match (accessor.data_type(), accessor.dimensions()) {
             (DataType::U8, Dimensions::Scalar) => |b| u32::from(b[0]),
@@ -118,7 +118,7 @@ impl<'a> Buffers<'a> {
         let bytes = self.bytes(&view.buffer())?;
         let viewed = view.offset().checked_add(view.length()).and_then(|end| bytes.get(view.offset()..end));
         let own = viewed.and_then(|bytes| bytes.get(accessor.offset()..)).ok_or_else(outside)?;
-        // The last element may end before its stride does.
+        // The last element may be shorter than the stride.
         let needed = match count {
             0 => Some(0),
             _ => (count - 1).checked_mul(stride).and_then(|n| n.checked_add(size)),

@@ -8,25 +8,25 @@ use roughcast_scene::MeshFault;
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {fault}", path.display())]
 pub struct MeshFileError {
-    /// The file that was asked for.
+    /// The requested file.
     pub path: PathBuf,
-    /// What is wrong with it, or with a file that it names.
+    /// What is wrong with it or with a file that it references.
     pub fault: MeshFileFault,
 }
 
-/// What is wrong with a mesh file, and what helps.
+/// What is wrong with a mesh file, and the remedy.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshFileFault {
     /// The file could not be opened or read.
     #[error("cannot be read ({0}): check the path")]
     Io(#[from] std::io::Error),
-    /// A file of buffers that a glTF file names.
+    /// A buffer file referenced by a glTF file cannot be read.
     #[error("its buffer '{uri}' cannot be read ({error}): put the file beside the .gltf or export a .glb")]
     Buffer {
-        /// The buffer as the file names it.
+        /// The URI of the buffer in the file.
         uri: String,
-        /// Why not.
+        /// Why it cannot be read.
         error: std::io::Error,
     },
     /// The extension is not that of a mesh format.
@@ -38,10 +38,10 @@ pub enum MeshFileFault {
     TooLarge {
         /// Bytes, triangles, vertices or sets of texture coordinates.
         what: &'static str,
-        /// The most there may be.
+        /// The maximum number.
         limit: usize,
     },
-    /// A line of an OBJ file breaks its rules.
+    /// A line of an OBJ file is invalid.
     #[error("line {line}: {fault}: fix the line or export the mesh again")]
     ObjLine {
         /// Counted from one.

@@ -1,5 +1,5 @@
-//! glTF 2.0, as JSON with buffers beside it or as one binary file. The `gltf` crate reads and validates the JSON; the numbers
-//! are read by [`super::accessor`].
+//! glTF 2.0, as JSON with separate buffers or as one binary file. The `gltf` crate reads and validates the JSON;
+//! [`super::accessor`] reads the numbers.
 
 use std::path::Path;
 
@@ -12,10 +12,10 @@ use super::accessor::{Buffers, malformed};
 use super::gltf_material::materials;
 use super::{MAX_FILE_UV_SETS, MeshFile, MeshFileFault, Primitive as Part, SkippedUvSet};
 
-/// The most objects and values in the JSON.
+/// Maximum number of objects and values in the JSON.
 const MAX_JSON_VALUES: usize = 1 << 22;
 
-/// The triangles of the default scene, in world space, one part a primitive.
+/// The triangles of the default scene, in world space, one part per primitive.
 pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<MeshFile, MeshFileFault> {
     let (json, chunk) = if bytes.starts_with(b"glTF") { chunks(bytes)? } else { (bytes, None) };
     let document = document(json)?;
@@ -29,7 +29,7 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<MeshFile, MeshFileFaul
     Ok(scene.file)
 }
 
-/// The JSON, whose indices are valid.
+/// Parses the JSON and validates its indices.
 fn document(json: &[u8]) -> Result<Document, MeshFileFault> {
     // Each value may take a few hundred bytes in memory.
     if json.iter().filter(|&&b| b == b'{' || b == b',').count() > MAX_JSON_VALUES {
@@ -46,7 +46,7 @@ fn document(json: &[u8]) -> Result<Document, MeshFileFault> {
     Document::from_json(root).map_err(fault)
 }
 
-/// The first of what may be many faults.
+/// The first of possibly many faults.
 fn one_line(error: &gltf::Error) -> String {
     match error {
         gltf::Error::Validation(faults) => match faults.first() {
@@ -119,7 +119,7 @@ impl Scene<'_> {
         let count = primitive.indices().map_or(positions.count(), |indices| indices.count());
         let (count, triangle): (usize, fn(usize) -> [usize; 3]) = match primitive.mode() {
             Mode::Triangles => (count / 3, |i| [3 * i, 3 * i + 1, 3 * i + 2]),
-            // Every other triangle of a strip turns the other way round.
+            // Every other triangle of a strip has the opposite winding.
             Mode::TriangleStrip => (count.saturating_sub(2), |i| [i, i + 1 + i % 2, i + 2 - i % 2]),
             Mode::TriangleFan => (count.saturating_sub(2), |i| [i + 1, i + 2, 0]),
             Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => return Ok(()),
@@ -140,7 +140,7 @@ impl Scene<'_> {
         Ok(())
     }
 
-    /// The attributes of the vertices; empty where there are none.
+    /// The vertex attributes; missing ones are empty.
     fn attributes(&mut self, primitive: &Primitive) -> Result<TriangleMesh, MeshFileFault> {
         let mut part = TriangleMesh::default();
         let mut more_sets = Vec::new();
@@ -167,8 +167,8 @@ impl Scene<'_> {
         Ok(part)
     }
 
-    /// A set of texture coordinates after the first. Its faults do not make the mesh unusable, which can be shown by the first, so
-    /// what [`roughcast_scene::Mesh::new`] checks is checked here.
+    /// A set of texture coordinates after the first. The mesh is usable without it, so a fault in it must not reject
+    /// the mesh; the checks of [`roughcast_scene::Mesh::new`] are therefore done here.
     fn uv_set(
         &mut self,
         set: usize,
@@ -195,12 +195,12 @@ impl Scene<'_> {
     }
 }
 
-/// Moves a part from a node's space to the world.
+/// Transforms a part from a node's space to world space.
 fn place(part: &mut TriangleMesh, world_from_node: DMat4) {
     let linear = DMat3::from_mat4(world_from_node);
     let mirrored = linear.determinant() < 0.0;
     let sign = if mirrored { -1.0 } else { 1.0 };
-    // Areas transform with the cofactors, which exist where the inverse does not.
+    // Areas transform with the cofactor matrix, which exists even if the inverse does not.
     let cofactors = DMat3::from_cols(
         linear.y_axis.cross(linear.z_axis),
         linear.z_axis.cross(linear.x_axis),
@@ -224,7 +224,7 @@ fn place(part: &mut TriangleMesh, world_from_node: DMat4) {
     }
 }
 
-/// The unit vector; zero, which counts as missing, stays zero, and NaN stays NaN, to be refused.
+/// Normalises a vector. Zero, which counts as missing, stays zero; NaN stays NaN and is refused later.
 fn unit_unless_broken(v: glam::DVec3) -> [f32; 3] {
     let length = v.length();
     let unit = if length == 0.0 { v } else { v / length };

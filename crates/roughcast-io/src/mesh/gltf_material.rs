@@ -7,7 +7,7 @@ use roughcast::Wrap;
 use super::uri::relative_path;
 use super::{AlphaMode, MeshImage, MeshMaterial, MeshTexture};
 
-/// All materials, in the order of the file. Textures that the file describes incompletely are left out.
+/// All materials, in file order. Incompletely described textures are left out.
 pub(super) fn materials(root: &Root) -> Vec<MeshMaterial> {
     root.materials.iter().map(|material| of(root, material)).collect()
 }

@@ -10,13 +10,13 @@ use roughcast::Wrap;
 pub struct MeshMaterial {
     /// Its name in the file.
     pub name: Option<String>,
-    /// Linear RGB and alpha, by which the texture is multiplied.
+    /// Linear RGB and alpha; multiplies the texture.
     pub base_color: [f32; 4],
     /// sRGB colour and linear alpha.
     pub base_color_texture: Option<MeshTexture>,
-    /// 0 ..= 1, by which the texture's blue channel is multiplied.
+    /// 0 ..= 1; multiplies the texture's blue channel.
     pub metallic: f32,
-    /// Perceptual roughness, the root of alpha, 0 ..= 1, by which the texture's green channel is multiplied.
+    /// Perceptual roughness, the square root of alpha, 0 ..= 1; multiplies the texture's green channel.
     pub roughness: f32,
     /// Roughness in green, metalness in blue.
     pub metallic_roughness_texture: Option<MeshTexture>,
@@ -26,15 +26,15 @@ pub struct MeshMaterial {
     pub normal_scale: f32,
     /// Occlusion in red.
     pub occlusion_texture: Option<MeshTexture>,
-    /// Strength of the occlusion: 0 for none, 1 for all of the texture's.
+    /// Strength of the occlusion: 0 for none, 1 for the full occlusion of the texture.
     pub occlusion_strength: f32,
-    /// Linear RGB, by which the texture is multiplied.
+    /// Linear RGB; multiplies the texture.
     pub emissive: [f32; 3],
     /// sRGB colour.
     pub emissive_texture: Option<MeshTexture>,
     /// What alpha means.
     pub alpha_mode: AlphaMode,
-    /// The alpha from which on [`AlphaMode::Mask`] shows the surface.
+    /// The minimum alpha at which [`AlphaMode::Mask`] shows the surface.
     pub alpha_cutoff: f32,
     /// Whether the back is shown too.
     pub double_sided: bool,
@@ -43,12 +43,12 @@ pub struct MeshMaterial {
 /// What a material's alpha means.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum AlphaMode {
-    /// Nothing.
+    /// Alpha is ignored.
     #[default]
     Opaque,
     /// The surface is either opaque or invisible.
     Mask,
-    /// How much the surface covers what is behind it.
+    /// Alpha is the coverage of the background by the surface.
     Blend,
 }
 
@@ -58,9 +58,9 @@ pub enum AlphaMode {
 pub struct MeshTexture {
     /// Where its pixels are.
     pub image: MeshImage,
-    /// The set of texture coordinates by which it lies on the mesh (glTF's `texCoord`).
+    /// The set of texture coordinates that maps it onto the mesh (glTF's `texCoord`).
     pub uv_set: usize,
-    /// What lies beyond its edges along u and v.
+    /// The wrap modes along u and v.
     pub wrap: [Wrap; 2],
 }
 
@@ -72,7 +72,7 @@ pub enum MeshImage {
     File(PathBuf),
     /// In the mesh file itself or in one of its buffers: the index among the file's images.
     Embedded(usize),
-    /// At a place outside of the folder of the mesh file, as the file has it.
+    /// Outside the folder of the mesh file: the URI as written in the file.
     Elsewhere(String),
 }
 

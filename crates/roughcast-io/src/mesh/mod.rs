@@ -30,13 +30,13 @@ use roughcast_scene::{Mesh, MeshFault, TriangleMesh};
 pub use error::{MeshFileError, MeshFileFault};
 pub use material::{AlphaMode, MeshImage, MeshMaterial, MeshTexture};
 
-/// The largest file that is read, and the most bytes of buffers of a glTF file.
+/// Maximum size of a file in bytes, and of all buffers of a glTF file.
 pub const MAX_FILE_BYTES: usize = 1 << 29;
-/// The most sets of texture coordinates of a primitive that are read: they may share one buffer, so the size of the file
-/// does not bound them.
+/// Maximum number of sets of texture coordinates read for a primitive: they may share one buffer, so the file size does
+/// not bound them.
 pub const MAX_FILE_UV_SETS: usize = 8;
 
-/// What a mesh file contains.
+/// The contents of a mesh file.
 #[derive(Debug, Default)]
 #[non_exhaustive]
 pub struct MeshFile {
@@ -44,7 +44,7 @@ pub struct MeshFile {
     pub primitives: Vec<Primitive>,
     /// The materials, in the order of the file.
     pub materials: Vec<MeshMaterial>,
-    /// Sets of texture coordinates after the first that the file declares and that cannot be used.
+    /// Sets of texture coordinates after the first that the file declares but that cannot be used.
     pub skipped_uv_sets: Vec<SkippedUvSet>,
 }
 
@@ -56,8 +56,8 @@ pub struct Primitive {
     pub name: Option<String>,
     /// Its material: an index of [`MeshFile::materials`]. `None` for the default material.
     pub material: Option<usize>,
-    /// Its vertices and triangles in world space: the transforms of glTF's nodes are applied. Attributes that the file lacks
-    /// are empty.
+    /// Its vertices and triangles in world space: the transforms of glTF's nodes are applied. Attributes missing from
+    /// the file are empty.
     pub triangles: TriangleMesh,
 }
 
@@ -74,10 +74,10 @@ pub struct SkippedUvSet {
 }
 
 impl MeshFile {
-    /// One mesh of all primitives, with missing normals and tangents computed; see [`Mesh::new`].
+    /// Merges all primitives into one mesh and computes missing normals and tangents; see [`Mesh::new`].
     ///
     /// # Errors
-    /// The fault in the numbers of the file, which the reader has not checked.
+    /// The fault in the numbers of the file, which the reader does not check.
     pub fn into_mesh(self) -> Result<Mesh, MeshFault> {
         Mesh::new(self.primitives.into_iter().map(|primitive| primitive.triangles).collect())
     }
@@ -86,9 +86,10 @@ impl MeshFile {
 /// Reads a mesh file: Wavefront OBJ (`.obj`) or glTF 2.0 (`.gltf`, `.glb`).
 ///
 /// From glTF it reads all triangles of the default scene, placed by its nodes, but no skins, morph targets,
-/// animations or extensions. From OBJ it reads polygons, cut into triangles, but no lines and points, and no `.mtl` files:
-/// a material is a name. It reads no images. It keeps the tangents of a file as they are. Some exporters write them
-/// with the bitangent along growing v, against the convention of [`TriangleMesh`]; maps for such a mesh have green down.
+/// animations or extensions. From OBJ it reads polygons, cut into triangles, but no lines and points, and no `.mtl`
+/// files: a material is a name. It reads no images. It keeps the tangents of a file as they are. Some exporters write
+/// them with the bitangent along growing v, against the convention of [`TriangleMesh`]; maps for such a mesh have green
+/// down.
 ///
 /// # Errors
 /// [`MeshFileError`], one line with the path.
@@ -116,14 +117,14 @@ fn contents(path: &Path) -> Result<MeshFile, MeshFileFault> {
     }
 }
 
-/// The bytes of a file, or an error before more than the limit is in memory.
+/// The bytes of a file, or an error before more bytes than the limit are in memory.
 fn read_file(path: &Path) -> Result<Vec<u8>, MeshFileFault> {
     let too_large = MeshFileFault::TooLarge { what: "bytes", limit: MAX_FILE_BYTES };
     let file = std::fs::File::open(path)?;
     if file.metadata()?.len() > MAX_FILE_BYTES as u64 {
         return Err(too_large);
     }
-    // Pipes and devices do not state their length.
+    // Pipes and devices do not report their length.
     let mut bytes = Vec::new();
     file.take(MAX_FILE_BYTES as u64 + 1).read_to_end(&mut bytes)?;
     if bytes.len() > MAX_FILE_BYTES { Err(too_large) } else { Ok(bytes) }

@@ -10,8 +10,8 @@ use roughcast_scene::{MAX_TRIANGLES, MAX_VERTICES, TriangleMesh};
 
 use super::{MeshFile, MeshFileFault, MeshMaterial, Primitive};
 
-/// The triangles of all objects, a primitive for each material of an object. Polygons are cut into fans; lines and points are
-/// left out.
+/// The triangles of all objects, one primitive for each material of an object. Polygons are split into fans; lines and
+/// points are left out.
 pub(super) fn read(bytes: &[u8]) -> Result<MeshFile, MeshFileFault> {
     // Names and comments may be in any encoding; numbers are ASCII.
     let text = String::from_utf8_lossy(bytes);
@@ -19,8 +19,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<MeshFile, MeshFileFault> {
     let names = material_names(&text);
     let options =
         tobj::LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
-    // tobj knows a material by a library alone. It gets one, before the first line, that has every name; the file's own are
-    // not read.
+    // tobj only recognises materials from a library. It is given one with every name, before the first line; the
+    // file's own libraries are not read.
     let library = RefCell::new(Some(library(&names)));
     let load = |_: &std::path::Path| Ok(library.take().unwrap_or_default());
     let mut lines = Cursor::new("mtllib names\n").chain(Cursor::new(text.as_bytes()));
@@ -32,7 +32,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<MeshFile, MeshFileFault> {
     Ok(MeshFile { primitives, materials, skipped_uv_sets: Vec::new() })
 }
 
-/// The names of all materials that faces use, in the order of their first use.
+/// The names of all materials used by faces, in the order of first use.
 fn material_names(text: &str) -> Vec<String> {
     let mut seen = std::collections::HashSet::new();
     let used = text.lines().filter(|line| line.split_whitespace().next() == Some("usemtl"));
@@ -67,7 +67,7 @@ fn groups<const N: usize>(values: &[f32]) -> Vec<[f32; N]> {
     values.chunks_exact(N).map(|c| std::array::from_fn(|i| c[i])).collect()
 }
 
-/// What the corners of a face refer to, in their order, and the lines that declare them.
+/// The elements that the corners of a face refer to, in the order of the indices, and the keywords that declare them.
 const KINDS: [(&str, &str); 3] = [("v", "position"), ("vt", "texture coordinate"), ("vn", "normal")];
 
 /// Refuses dangling indices, with the line, and too many faces, before `tobj` sees them: it multiplies indices
@@ -97,7 +97,7 @@ fn check(text: &str) -> Result<(), MeshFileFault> {
         for (kind, index) in words.flat_map(|corner| corner.split('/').enumerate().take(3)) {
             // tobj reports empty and non-numeric indices.
             let Ok(index) = index.parse::<i64>() else { continue };
-            // Negative ones count back from the last that was declared.
+            // Negative indices count back from the last declared element.
             let there = if index < 0 { index >= -so_far[kind] } else { (1..=total[kind]).contains(&index) };
             if !there {
                 let fault = format!("there is no {} {index}", KINDS[kind].1);

@@ -1,8 +1,8 @@
-//! Where a glTF file's buffers are: `data:` URIs (RFC 2397) and relative paths (RFC 3986).
+//! Locations of a glTF file's buffers: `data:` URIs (RFC 2397) and relative paths (RFC 3986).
 
 use std::path::{Component, Path, PathBuf};
 
-/// The bytes of a base64 `data:` URI; None if it is another URI, an error if it is broken.
+/// The bytes of a base64 `data:` URI; `None` for any other URI, an error if it is broken.
 pub(super) fn data_uri(uri: &str) -> Option<Result<Vec<u8>, String>> {
     let rest = uri.strip_prefix("data:")?;
     Some(match rest.split_once(";base64,") {
@@ -23,7 +23,7 @@ fn base64(text: &str) -> Option<Vec<u8>> {
         for &c in group {
             bits = bits << 6 | u32::from(sextet(c)?);
         }
-        // A group of n characters holds n - 1 bytes, in the upper of its bits.
+        // A group of n characters contains n - 1 bytes, in its upper bits.
         let aligned = bits << (6 * (4 - group.len()));
         bytes.extend_from_slice(&aligned.to_be_bytes()[1..group.len()]);
     }
@@ -41,7 +41,7 @@ fn sextet(c: u8) -> Option<u8> {
     })
 }
 
-/// The path of a relative URI that stays within the folder of the file that names it; None for any other.
+/// The path of a relative URI that stays within the folder of the referencing file; `None` for any other.
 pub(super) fn relative_path(uri: &str) -> Option<PathBuf> {
     let decoded = percent_decoded(uri)?;
     let path = Path::new(&decoded);

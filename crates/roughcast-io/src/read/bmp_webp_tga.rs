@@ -11,12 +11,12 @@ use roughcast::{Image, Samples};
 use super::memory::{check_size, malformed, unsupported, zeros};
 use crate::{Decoded, FileInfo, Limits, ReadError};
 
-/// Memory that a decoder may use beside the image, per pixel: a frame of RGBA and one of indices.
+/// Memory that a decoder may use in addition to the image, per pixel: an RGBA frame and a frame of indices.
 const WORKING_BYTES_PER_PIXEL: u64 = 16;
-/// Memory that a decoder may use beside that: tables and single rows.
+/// Further memory that a decoder may use, for tables and single rows.
 const WORKING_BYTES: u64 = 64 << 20;
 
-/// Reads a BMP: RGB, or RGBA where it has an alpha mask. Palettes become RGB.
+/// Reads a BMP as RGB, or as RGBA if it has an alpha mask. Palettes become RGB.
 pub(super) fn read_bmp(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
     let header = BmpHeader(bytes);
     header.check_masks()?;
@@ -54,7 +54,7 @@ impl BmpHeader<'_> {
         }
     }
 
-    /// Refuses runs that leave out pixels: some programs make them black, others the first colour of the palette.
+    /// Refuses runs that skip pixels: some programs make these pixels black, others the first palette colour.
     fn check_runs(&self) -> Result<(), ReadError> {
         if self.leaves_out_pixels() == Some(true) {
             return Err(unsupported("BMP", "run-length coding that leaves out pixels", "save it as PNG"));
@@ -90,7 +90,7 @@ impl BmpHeader<'_> {
     }
 }
 
-/// Reads a WebP: RGB, or RGBA where it has an alpha channel. Animations are refused.
+/// Reads a WebP as RGB, or as RGBA if it has an alpha channel. Animations are refused.
 pub(super) fn read_webp(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
     let decoder = WebPDecoder::new(Cursor::new(bytes)).map_err(|e| fault("WebP", e))?;
     if decoder.has_animation() {
@@ -100,8 +100,8 @@ pub(super) fn read_webp(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadEr
     decode("WebP", decoder, limits)
 }
 
-/// Refuses what the decoder accepts: a file that was truncated within its last rows, which it fills with the row above, and
-/// a lossy frame larger than the image, for which it allocates before it compares the two.
+/// Refuses files that the decoder accepts but should not: a file truncated within its last rows, which the decoder
+/// fills with the row above, and a lossy frame larger than the image, which it allocates before comparing the sizes.
 fn check_webp_chunks(bytes: &[u8], limits: &Limits) -> Result<(), ReadError> {
     /// Tag, start code, width and height of 14 bits each: RFC 6386, 9.1.
     const FRAME_HEADER: usize = 10;
@@ -124,7 +124,7 @@ fn check_webp_chunks(bytes: &[u8], limits: &Limits) -> Result<(), ReadError> {
 
 /// Reads a TGA: grey, grey and alpha, RGB or RGBA. Palettes become RGB or RGBA, five bits become eight.
 pub(super) fn read_tga(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
-    // A format without a signature: its header is the only sign of the format.
+    // TGA has no signature: only the header identifies the format.
     const IMAGE_TYPE_OFFSET: usize = 2;
     const IMAGE_TYPES: [u8; 6] = [1, 2, 3, 9, 10, 11];
     const HEADER_BYTES: usize = 18;
@@ -138,7 +138,7 @@ pub(super) fn read_tga(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadErr
     decode("TGA", TgaDecoder::new(Cursor::new(bytes)).map_err(|e| fault("TGA", e))?, limits)
 }
 
-/// Refuses what the decoder ignores, and what the format leaves undefined.
+/// Refuses features that the decoder ignores or that the format leaves undefined.
 fn check_tga_pixels(image_type: u8, bits: u8, descriptor: u8) -> Result<(), ReadError> {
     const GREY: [u8; 2] = [3, 11];
     const ATTRIBUTE_BITS: u8 = 0b1111;
@@ -147,7 +147,7 @@ fn check_tga_pixels(image_type: u8, bits: u8, descriptor: u8) -> Result<(), Read
         return Err(unsupported("TGA", "interleaved rows", "save it without interleaving"));
     }
     if GREY.contains(&image_type) && bits == 16 && descriptor & ATTRIBUTE_BITS == 0 {
-        // Some programs mean grey and alpha, others grey of 16 bits.
+        // Some programs use this for grey with alpha, others for 16-bit grey.
         return Err(unsupported(
             "TGA",
             "grey of 16 bits whose header does not say whether half of them are alpha",
@@ -215,7 +215,7 @@ fn fault(format: &'static str, error: ImageError) -> ReadError {
 mod tests {
     use super::*;
 
-    /// A BMP with a header of 40 bytes: its bits, its compression, what lies before the pixels, and the pixels.
+    /// A BMP with a 40-byte header, from its bit depth, its compression, the bytes before the pixels, and the pixels.
     fn bmp(
         (width, height): (u32, u32),
         bits: u32,
@@ -255,7 +255,7 @@ mod tests {
     fn bmp_runs_must_fill_the_picture() {
         let palette: Vec<u8> = (0..=255).flat_map(|grey| [grey, grey, grey, 0]).collect();
         let read = |pixels: &[u8]| read_bmp(&bmp((4, 2), 8, 1, &palette, pixels), &Limits::default());
-        // The lower row comes first: four times 7, then 1, 2, 3 as they are (and a byte of padding), and 9.
+        // The bottom row comes first: a run of four 7s, then the literals 1, 2, 3 (and a byte of padding), and 9.
         let whole = [4, 7, 0, 0, 0, 3, 1, 2, 3, 0, 1, 9, 0, 1];
         let grey: Vec<u8> = samples(read(&whole).unwrap()).into_iter().step_by(3).collect();
         assert_eq!(grey, [1, 2, 3, 9, 7, 7, 7, 7]);

@@ -3,10 +3,10 @@
 use crate::texels::{Source, swizzled};
 use crate::{Decoded, ReadError, ReadOptions};
 
-/// The picture with the channels that the options name, in that order, or unchanged if they name none.
+/// The picture with the channels named in the options, in that order; unchanged if the options name none.
 ///
 /// # Errors
-/// [`ReadError::NoSuchChannel`], also if a layer is named.
+/// [`ReadError::NoSuchChannel`] if a channel does not exist or a layer is named.
 pub(super) fn chosen(decoded: Decoded, options: &ReadOptions) -> Result<Decoded, ReadError> {
     let Decoded { image, mut info } = decoded;
     let missing = |wanted: &str| ReadError::NoSuchChannel {
@@ -27,7 +27,7 @@ pub(super) fn chosen(decoded: Decoded, options: &ReadOptions) -> Result<Decoded,
     let places = options.channels.iter().map(place).collect::<Result<Vec<usize>, _>>()?;
     let sources: Vec<Source> = places.iter().map(|&place| Source::Channel(place)).collect();
     let image = swizzled(&image, &sources);
-    // A channel chosen by name is read for its values, even an alpha.
+    // A channel chosen by name, even alpha, is treated as data.
     let called = |place: usize| {
         if info.channels[place] == "A" { "alpha".to_owned() } else { info.channels[place].clone() }
     };

@@ -1,7 +1,7 @@
-//! Radiance HDR (`.hdr`, `.pic`), after the Radiance file format document and `color.c` of Radiance.
+//! Radiance HDR (`.hdr`, `.pic`), following the Radiance file format document and Radiance's `color.c`.
 //!
-//! Not read with the `image` crate, which knows only one of the two signatures in use and whose count of
-//! old run lengths overflows on damaged files.
+//! The `image` crate is not used: it knows only one of the two signatures in use, and its counter for old-style run
+//! lengths overflows on damaged files.
 
 use std::collections::BTreeMap;
 
@@ -45,12 +45,12 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> 
     Ok(Decoded { image, info })
 }
 
-/// What one step of a mantissa is worth: `2^(exponent - 128 - 8)`, and nothing at all for exponent 0.
+/// The value of one mantissa step: `2^(exponent - 128 - 8)`, or 0 for exponent 0.
 fn scale_of_exponent(exponent: u8) -> f32 {
     if exponent == 0 { 0.0 } else { 2f64.powi(i32::from(exponent) - 136) as f32 }
 }
 
-/// The bytes that are left.
+/// The remaining bytes.
 struct Input<'a>(&'a [u8]);
 
 impl<'a> Input<'a> {
@@ -97,8 +97,8 @@ fn read_header(input: &mut Input<'_>) -> Result<BTreeMap<String, String>, ReadEr
     }
 }
 
-/// How the pixels lie in the file, from a line like `-Y 512 +X 1024`: the axis from line to line and that along a line,
-/// each with its length, and whether the coordinate grows. Y points up.
+/// The order of the pixels in the file, from a line like `-Y 512 +X 1024`: the axis from line to line and the axis
+/// along a line, each with its length and the sign of its direction. Y points up.
 struct Resolution {
     /// Lines are columns of the image.
     in_columns: bool,
@@ -138,7 +138,7 @@ impl Resolution {
         if self.in_columns { self.line_length } else { self.lines }
     }
 
-    /// Where the pixel of this line and index belongs.
+    /// The position in the image of the pixel at this line and index.
     fn place(&self, line: usize, index: usize, (width, height): (usize, usize)) -> (usize, usize) {
         let (x, y) = if self.in_columns { (line, index) } else { (index, line) };
         let x = if self.from_right { width - 1 - x } else { x };
@@ -147,9 +147,9 @@ impl Resolution {
     }
 }
 
-/// One line, in whichever of the two ways it is stored.
+/// Reads one line, stored in either of the two encodings.
 fn read_line(input: &mut Input<'_>, row: &mut [Rgbe]) -> Result<(), ReadError> {
-    // Rows of these widths may be stored channel by channel; they then begin with 2, 2 and the width.
+    // Rows of these widths may be stored channel by channel. They then begin with 2, 2 and the width.
     const PLANAR_WIDTHS: std::ops::Range<usize> = 8..0x8000;
     let first = input.rgbe()?;
     if PLANAR_WIDTHS.contains(&row.len()) && first[0] == 2 && first[1] == 2 && first[2] < 128 {
@@ -180,7 +180,8 @@ fn read_channel(input: &mut Input<'_>, row: &mut [Rgbe], channel: usize) -> Resu
     Ok(())
 }
 
-/// Whole pixels, where (1, 1, 1, n) repeats the last one n times; more such in a row count in steps of 256.
+/// Whole pixels, where (1, 1, 1, n) repeats the last pixel n times. The k-th consecutive marker counts in units of
+/// 256^(k - 1).
 fn read_interleaved(input: &mut Input<'_>, first: Rgbe, row: &mut [Rgbe]) -> Result<(), ReadError> {
     let mut next = Some(first);
     let mut last = None;
@@ -196,7 +197,7 @@ fn read_interleaved(input: &mut Input<'_>, first: Rgbe, row: &mut [Rgbe]) -> Res
             (last, shift, x) = (Some(pixel), 0, x + 1);
             continue;
         };
-        // No row is so long that a fifth marker could still count.
+        // No row is long enough for a fifth consecutive marker.
         let count = if shift < 32 { usize::from(count) << shift } else { usize::MAX };
         let end = x.checked_add(count).filter(|&end| end <= row.len());
         match (last, end) {
@@ -245,7 +246,7 @@ mod tests {
 
     #[test]
     fn every_orientation_is_turned() {
-        // The pixels 1 to 6 as they lie in the file, and the rows of the image from the top.
+        // Pixels 1 to 6 in file order, and the rows of the image from the top.
         let pixels: Vec<u8> = (1..=6).flat_map(|red| [red, 0, 0, 136]).collect();
         let cases = [
             ("-Y 2 +X 3", 3, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),

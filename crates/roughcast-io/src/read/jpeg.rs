@@ -1,11 +1,13 @@
-//! JPEG, by the `jpeg-decoder` crate.
+//! JPEG, decoded by the `jpeg-decoder` crate.
 //!
-//! It is the only pure Rust decoder that handles every layout of samples and scans: for 953 files written by libjpeg-turbo
-//! (22 choices of sampling factors, interleaved and other scans, progressive with successive approximation, restart intervals,
-//! odd sizes, grey and RGB) it differs by at most 4 of 255 from libjpeg's pixels in all but 18, which
-//! [`layout::Layout::check`] refuses. zune-jpeg 0.5.15, which is 10 % faster, decodes 222 of them wrongly without an error.
+//! It is the only pure Rust decoder that handles every layout of samples and scans: for 953 files written by
+//! libjpeg-turbo (22 choices of sampling factors, interleaved and other scans, progressive with successive
+//! approximation, restart intervals, odd sizes, grey and RGB) it differs by at most 4 of 255 from libjpeg's pixels in
+//! all but 18, which [`layout::Layout::check`] refuses. zune-jpeg 0.5.15, which is 10 % faster, decodes 222 of them
+//! wrongly without an error.
 //!
-//! Chroma is interpolated as libjpeg does by default ("fancy upsampling"); what remains is the rounding of the cosine transform.
+//! Chroma is interpolated as libjpeg does by default ("fancy upsampling"); the remaining differences come from rounding
+//! in the cosine transform.
 
 mod layout;
 
@@ -26,7 +28,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> 
     let (width, height) = check_size(FORMAT, layout.width.into(), layout.height.into(), limits)?;
     layout.check()?;
     let mut decoder = Decoder::new(Cursor::new(bytes));
-    // Sizes are checked above, by pixels; the crate's own limit counts bytes.
+    // The size in pixels is checked above; the crate's own limit counts bytes.
     decoder.set_max_decoding_buffer_size(usize::MAX);
     let samples = decoder.decode().map_err(fault)?;
     let stored = decoder.info().ok_or_else(|| malformed(FORMAT, "it has no header"))?;

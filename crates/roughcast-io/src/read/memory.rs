@@ -8,7 +8,7 @@ use crate::{Limits, ReadError};
 /// (<https://zlib.net/zlib_tech.html>, "maximum compression factor")
 pub(super) const DEFLATE_MAX_RATIO: u64 = 1032;
 
-/// The sides of an image, if there are pixels and not too many.
+/// Checks the width and height of an image against zero and the limit.
 ///
 /// # Errors
 /// [`ReadError::Malformed`] if a side is zero, [`ReadError::TooLarge`] if the pixels exceed the limit.
@@ -31,7 +31,7 @@ pub(crate) fn check_size(
     }
 }
 
-/// `len` zeros. Unlike `vec!` it returns an error if memory runs out.
+/// Allocates `len` zeros. Unlike `vec!` it returns an error if memory runs out.
 pub(super) fn zeros<T: bytemuck::Zeroable>(len: usize) -> Result<Vec<T>, ReadError> {
     bytemuck::allocation::try_zeroed_vec(len).map_err(|()| {
         let message = format!("not enough memory for {len} samples");
@@ -49,7 +49,7 @@ pub(super) fn unsupported(format: &'static str, what: impl Display, remedy: &'st
     ReadError::Unsupported { format, what: one_line(&what.to_string()), remedy }
 }
 
-/// A decoder may quote the file, so the file controls line breaks and length up to here.
+/// A decoder's message may quote the file, so it may contain line breaks and be of any length.
 fn one_line(text: &str) -> String {
     const MAX_CHARS: usize = 200;
     let words: Vec<&str> =

@@ -1,7 +1,7 @@
-//! Reading image files: identifies a file's format and picks its reader.
+//! Reads image files: identifies the format and picks the reader.
 //!
-//! The first bytes of a file identify its format, whatever its name; only TGA, which need not have a signature, is identified by
-//! its extension.
+//! The first bytes of a file identify its format, whatever its name; only TGA, which need not have a signature, is
+//! identified by its extension.
 
 mod bmp_webp_tga;
 mod choice;
@@ -39,8 +39,9 @@ enum Format {
 /// range), 16-bit ones `U16`, half floats `F16`, floats and doubles `F32`. Grey stays one channel, named `Y`; colour
 /// profiles and gamma are ignored, since these files hold data, not colours.
 ///
-/// EXR may contain many layers and channels: [`ReadOptions::layer`] and [`ReadOptions::channels`] choose. TIFF may contain many
-/// images, which the former selects by number. In the other formats, which have no layers, channels are chosen by their names in [`crate::FileInfo::channels`].
+/// An EXR may contain many layers and channels: [`ReadOptions::layer`] and [`ReadOptions::channels`] select from them.
+/// A TIFF may contain many images: [`ReadOptions::layer`] selects one by number. The other formats have no layers;
+/// channels are chosen by their names in [`crate::FileInfo::channels`].
 ///
 /// `extension`, in lower case and without the dot, matters only for TGA files without a footer: all other formats are
 /// identified by their first bytes.
@@ -72,13 +73,13 @@ pub fn read_image(
 /// Reads level 0 of layer 0 of an image file, by [`read_image`].
 ///
 /// # Errors
-/// [`ReadError::Io`] if the file cannot be read, and all of [`read_image`].
+/// [`ReadError::Io`] if the file cannot be read, and all errors of [`read_image`].
 pub fn read_image_file(path: &Path, options: &ReadOptions) -> Result<Decoded, ReadError> {
     read_image_of(path, &std::fs::read(path)?, options)
 }
 
-/// Reads level 0 of layer 0 of an image file with these bytes, by [`read_image`]. Only the extension of the path
-/// counts, and only if the bytes do not identify the format.
+/// Reads level 0 of layer 0 of an image file with these bytes, by [`read_image`]. Only the extension of the path is
+/// used, and only if the bytes do not identify the format.
 ///
 /// # Errors
 /// As [`read_image`].
@@ -87,7 +88,7 @@ pub fn read_image_of(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result
     read_image(bytes, extension.as_deref(), options)
 }
 
-/// The format, by the first bytes, or for TGA by the last ones or the extension.
+/// Identifies the format by the first bytes, or TGA by the last bytes or the extension.
 fn format_of(bytes: &[u8], extension: Option<&str>) -> Result<Format, ReadError> {
     const SIGNATURES: [(&[u8], Format); 13] = [
         (b"\x89PNG\r\n\x1a\n", Format::Png),
@@ -101,10 +102,10 @@ fn format_of(bytes: &[u8], extension: Option<&str>) -> Result<Format, ReadError>
         (b"#?RADIANCE", Format::Hdr),
         (b"#?RGBE", Format::Hdr),
         (b"\x76\x2f\x31\x01", Format::Exr),
-        // Version 1, too: the reader of KTX2 refuses it with advice.
+        // Also version 1: the KTX2 reader refuses it with advice.
         (b"\xabKTX ", Format::Ktx2),
         (b"DDS ", Format::Dds),
-        // A file truncated by a failed upload: recognised here, so that it is reported as a broken PNG, not as an unknown format.
+        // A file truncated by a failed upload is recognised here, so that it is reported as a broken PNG.
         (b"\x89PNG", Format::Png),
     ];
     const TGA_FOOTER: &[u8] = b"TRUEVISION-XFILE.\0";
@@ -112,7 +113,7 @@ fn format_of(bytes: &[u8], extension: Option<&str>) -> Result<Format, ReadError>
     if bytes.is_empty() {
         return Err(ReadError::Empty);
     }
-    // The two letters of a BMP may begin a TGA too; then the extension or the footer decides.
+    // A TGA may also begin with the two letters of a BMP; then the extension or the footer decides.
     let is_tga = extension == Some("tga") || bytes.ends_with(TGA_FOOTER);
     let by_signature = SIGNATURES.iter().find(|(signature, _)| bytes.starts_with(signature));
     match by_signature {

@@ -1,4 +1,4 @@
-//! PNG, by the `png` crate, straight into the image's own buffer.
+//! PNG, decoded by the `png` crate directly into the image's buffer.
 
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -11,15 +11,16 @@ use crate::metadata::{MAX_VALUE_BYTES, insert};
 use crate::{Decoded, FileInfo, Limits, ReadError};
 
 const FORMAT: &str = "PNG";
-/// Memory that the chunks beside the pixels may use.
+/// Memory limit for chunks other than the pixels.
 const CHUNK_BYTES: usize = 64 << 20;
-/// Samples whose bytes one task swaps: enough to hide the cost of the task, small enough to stay in the cache.
+/// Samples per byte-swapping task: large enough to hide the cost of a task, small enough to stay in the cache.
 const SWAP_CHUNK: usize = 1 << 16;
 
-/// Reads a PNG. Palettes become RGB, or RGBA with a transparency chunk; 1, 2 and 4 bits become 8 of full range.
+/// Reads a PNG. Palettes become RGB, or RGBA with a transparency chunk; 1, 2 and 4 bits are scaled to the full 8-bit
+/// range.
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> {
     let mut options = png::DecodeOptions::default();
-    // A wrong checksum means that the pixels are not those that were written: these are data, so it is an error.
+    // A wrong checksum means that the pixels differ from those written. The pixels are data, so this is an error.
     options.set_ignore_adler32(false);
     options.set_ignore_iccp_chunk(true);
     let mut decoder = png::Decoder::new_with_options(Cursor::new(bytes), options);
@@ -36,7 +37,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Decoded, ReadError> 
         ));
     }
     let stored = format_words(header);
-    // Expanding a row makes it 32 times as long at most: one bit of a palette to RGBA of 8 bits.
+    // Expansion makes a row at most 32 times as long: from a 1-bit palette to 8-bit RGBA.
     decoder.set_limits(png::Limits { bytes: CHUNK_BYTES + 32 * row_bytes });
 
     let mut reader = decoder.read_info().map_err(fault)?;
@@ -98,7 +99,7 @@ fn format_words(header: &png::Info<'_>) -> String {
     format!("{color} {}-bit{interlaced}", header.bit_depth as u8)
 }
 
-/// The text chunks. Compressed ones are unpacked up to the bound of a value; what does not fit is left out.
+/// The text chunks. Compressed ones are unpacked up to the size limit for a value; larger ones are left out.
 fn text_pairs(info: &png::Info<'_>) -> BTreeMap<String, String> {
     let mut pairs = BTreeMap::new();
     for chunk in &info.uncompressed_latin1_text {

@@ -5,10 +5,10 @@ use roughcast::Samples;
 
 use crate::ValueRange;
 
-/// A block code that is read.
+/// A block format that can be read.
 ///
-/// BC4 and BC5 interpolate between 8-bit end points; their values are kept to 16 bits (unsigned) or as floats (signed),
-/// which is what graphics processors do, too. The others are decoded to 8 bits.
+/// BC4 and BC5 interpolate between 8-bit end points; their values are decoded to 16 bits (unsigned) or floats (signed),
+/// as graphics processors do. The others are decoded to 8 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum BlockCode {
     /// BC1 whose alpha is ignored: three channels.
@@ -50,7 +50,7 @@ impl BlockCode {
         }
     }
 
-    /// What the decoded samples mean.
+    /// The meaning of the decoded samples.
     pub fn range(self) -> ValueRange {
         match self {
             BlockCode::Bc4Snorm | BlockCode::Bc5Snorm => ValueRange::Snorm,
@@ -93,14 +93,14 @@ impl BlockCode {
     }
 }
 
-/// Values are multiples of 1 / (255 * 7) or 1 / (255 * 5), never half-way between two steps of 1 / 65535.
+/// Values are multiples of 1 / (255 * 7) or 1 / (255 * 5), so they are never half-way between two steps of 1 / 65535.
 fn round_to_16_bits(values: &[f32], out: &mut [u16]) {
     for (out, value) in out.iter_mut().zip(values) {
         *out = (value * 65535.0).round() as u16;
     }
 }
 
-/// The largest number of samples that a block decodes to.
+/// Maximum number of samples in a decoded block.
 const MAX_BLOCK_SAMPLES: usize = 16 * 4;
 
 struct Level<'a> {
@@ -111,7 +111,7 @@ struct Level<'a> {
 }
 
 impl Level<'_> {
-    /// Decodes rows of blocks in parallel, and cuts off what lies outside of the level.
+    /// Decodes rows of blocks in parallel, and discards texels outside the level.
     fn decode<T>(&self, decode_block: impl Fn(&[u8], &mut [T]) + Sync) -> Vec<T>
     where
         T: Copy + Default + Send + Sync,

@@ -13,12 +13,12 @@ pub(crate) use rearrange::{Axis, Source, flipped, swizzled};
 use crate::ValueRange;
 use roughcast::Image;
 
-/// How the texels of a level lie in the file.
+/// Storage format of the texels of a level.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum TexelFormat {
     /// Channels of 8, 16 or 32 bits, one after the other.
     Plain(Plain),
-    /// Channels cut out of a small integer by masks.
+    /// Channels extracted from a small integer by masks.
     Packed(Packed),
     /// Blocks of 4 x 4 texels.
     Blocks(BlockCode),
@@ -37,7 +37,7 @@ impl TexelFormat {
         units.checked_mul(unit_bytes)
     }
 
-    /// What the decoded samples mean.
+    /// The meaning of the decoded samples.
     pub fn range(&self) -> ValueRange {
         match self {
             TexelFormat::Plain(plain) => plain.encoding.range(),
@@ -60,8 +60,8 @@ impl TexelFormat {
 
     /// Decodes one layer of a level.
     ///
-    /// `bytes` must be [`TexelFormat::bytes`] long and neither side zero: the readers have checked both against the
-    /// file before they come here.
+    /// `bytes` must be [`TexelFormat::bytes`] long, and neither side may be zero. The readers check both against the
+    /// file before they call this.
     pub fn decode(&self, bytes: &[u8], width: usize, height: usize) -> Image {
         assert_eq!(Some(bytes.len()), self.bytes(width, height), "the reader has cut the level to its size");
         let samples = match self {
@@ -73,7 +73,7 @@ impl TexelFormat {
     }
 }
 
-/// `R`, `G`, `B`, `A`, as many as there are channels (1 to 4).
+/// The first of `R`, `G`, `B`, `A`, one per channel (1 to 4).
 pub(crate) fn rgba_names(channels: usize) -> &'static [&'static str] {
     &["R", "G", "B", "A"][..channels]
 }

@@ -1,4 +1,4 @@
-//! Channels cut out of an integer of one to four bytes by masks: the pixel formats of Direct3D 9.
+//! Channels extracted by masks from an integer of one to four bytes: the pixel formats of Direct3D 9.
 
 use roughcast::Samples;
 
@@ -10,7 +10,7 @@ struct Field {
 }
 
 impl Field {
-    /// Where the mask is one run of bits.
+    /// The field of a mask, if the mask is one run of bits.
     fn of_mask(mask: u32) -> Option<Self> {
         let shift = mask.trailing_zeros();
         let ones = mask.checked_shr(shift)?;
@@ -36,16 +36,17 @@ impl Field {
     }
 }
 
-/// How the bits of the fields are to be read.
+/// Interpretation of the bits of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Numbers {
-    /// 0 up to all ones stands for 0 ..= 1.
+    /// 0 to all ones stands for 0 ..= 1.
     Unsigned,
-    /// Two's complement: n bits stand for -1 ..= 1 when divided by `2^(n-1) - 1`; the one number below is -1 too.
+    /// Two's complement: n bits, divided by `2^(n-1) - 1`, stand for -1 ..= 1; the one value below is clamped to -1.
     Signed,
 }
 
-/// A packed format. Unsigned fields of up to 8 bits are decoded to 8 bits, longer ones to 16, signed ones to floats.
+/// A packed format. Unsigned fields of up to 8 bits are decoded to 8 bits, longer ones to 16 bits, signed ones to
+/// floats.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Packed {
     texel_bytes: usize,
@@ -55,8 +56,8 @@ pub(crate) struct Packed {
 }
 
 impl Packed {
-    /// A format from the mask of each named channel; `None` if a mask is empty, is not one run of bits, or reaches
-    /// outside of the texel.
+    /// A format from the mask of each named channel; `None` if a mask is empty, is not one run of bits, or extends
+    /// beyond the texel.
     pub fn new(texel_bytes: usize, masks: &[u32], names: &'static [&'static str]) -> Option<Self> {
         assert_eq!(masks.len(), names.len(), "a name for each mask");
         if !(1..=4).contains(&texel_bytes) {
@@ -67,12 +68,12 @@ impl Packed {
         inside.then_some(Self { texel_bytes, fields, numbers: Numbers::Unsigned, names })
     }
 
-    /// The same bits as signed numbers.
+    /// The same format with signed fields.
     pub fn signed(self) -> Self {
         Self { numbers: Numbers::Signed, ..self }
     }
 
-    /// How the bits are read.
+    /// Interpretation of the bits.
     pub fn numbers(&self) -> Numbers {
         self.numbers
     }

@@ -34,7 +34,7 @@ impl Encoding {
         }
     }
 
-    /// What the decoded samples mean.
+    /// The meaning of the decoded samples.
     pub fn range(self) -> ValueRange {
         match self {
             Encoding::Unorm8 | Encoding::Unorm16 => ValueRange::Unorm,
@@ -43,7 +43,7 @@ impl Encoding {
         }
     }
 
-    /// The encoding in which samples are written; it holds them bit for bit.
+    /// The encoding for writing samples, which preserves every bit.
     pub fn of_samples(sample_type: SampleType) -> Self {
         match sample_type {
             SampleType::U8 => Encoding::Unorm8,
@@ -63,7 +63,7 @@ pub(crate) enum Order {
     Bgra,
 }
 
-/// A format of equal channels.
+/// A format whose channels all have the same type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Plain {
     /// 1 to 4.
@@ -121,7 +121,7 @@ fn swap_red_and_blue<T>(samples: &mut [T], channels: usize) {
     }
 }
 
-/// The samples as the bytes of a file; borrowed where the machine is little-endian itself.
+/// The samples as little-endian bytes; borrowed on little-endian machines.
 pub(crate) fn little_endian_bytes(samples: &Samples) -> Cow<'_, [u8]> {
     if cfg!(target_endian = "little") {
         return Cow::Borrowed(match samples {

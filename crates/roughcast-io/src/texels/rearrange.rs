@@ -20,7 +20,7 @@ pub(crate) enum Source {
     One,
 }
 
-/// The image, flipped along `axis`.
+/// Flips the image along `axis`.
 pub(crate) fn flipped(image: Image, axis: Axis) -> Image {
     let (width, height, channels) = (image.width(), image.height(), image.channels());
     let flip = Flip { row: width * channels, channels, axis };
@@ -51,7 +51,7 @@ impl Flip {
     }
 }
 
-/// An image whose channel k is `sources[k]` of `image`.
+/// Returns an image whose channel k is `sources[k]` of `image`.
 pub(crate) fn swizzled(image: &Image, sources: &[Source]) -> Image {
     let channels = image.channels();
     let samples = match image.samples() {

@@ -1,4 +1,4 @@
-//! The names of the files of a texture.
+//! Names of the files of a texture.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ pub fn level_path(path: &Path, level: usize) -> PathBuf {
     path.with_extension(format!("L{level}.png"))
 }
 
-/// The path of a file: the path itself for a layout of one file, else `NAME.PART.ext` or `NAME.LAYER.ext`.
+/// The path of a file: the path itself for a layout of one file, otherwise `NAME.PART.ext` or `NAME.LAYER.ext`.
 pub fn file_path(path: &Path, info: &TextureInfo) -> PathBuf {
     let names = name_of_part(info.part).into_iter().chain(name_of_layer(info));
     let mut extension = OsString::new();
@@ -30,7 +30,7 @@ pub fn name_of_part(part: Part) -> Option<&'static str> {
     (!matches!(part, Part::Whole | Part::Split)).then_some(part.name())
 }
 
-/// The layer in the name of a file, if each has a file of its own.
+/// The layer in the name of a file, if each layer has its own file.
 pub fn name_of_layer(info: &TextureInfo) -> Option<&'static str> {
     info.layer.and(layers_of(info).first()).map(|layer| layer.name)
 }
@@ -42,7 +42,7 @@ pub fn leftover_parts(output: &Path, layout: Layout, written: &[PathBuf]) -> Vec
     paths.filter(|path| path != output && !written.contains(path) && path.exists()).collect()
 }
 
-/// `NAME.png` of `NAME.L2.png`; other names are unchanged.
+/// `NAME.png` for `NAME.L2.png`; other names are unchanged.
 pub(super) fn without_level(path: &Path) -> PathBuf {
     let stem = path.with_extension("");
     let is_level = |name: &str| {
@@ -55,7 +55,7 @@ pub(super) fn without_level(path: &Path) -> PathBuf {
     }
 }
 
-/// `NAME.ext` of `NAME.PART.ext`; the path of a renamed file is unchanged, and its other parts are not found.
+/// `NAME.ext` for `NAME.PART.ext`. The path of a renamed file is unchanged, so its other parts are not found.
 pub(super) fn whole_path(path: &Path, info: &TextureInfo) -> PathBuf {
     let path = if path.extension().is_some_and(|extension| extension == "png") {
         without_level(path)
@@ -69,7 +69,7 @@ pub(super) fn whole_path(path: &Path, info: &TextureInfo) -> PathBuf {
             stem.set_extension("");
         }
     }
-    // Not `set_extension`, which would replace what follows a dot in the name.
+    // `set_extension` would replace anything after a dot in the name.
     let mut name = stem.into_os_string();
     name.push(".");
     name.push(extension);

@@ -43,7 +43,7 @@ pub enum ReadFilesError {
         /// Level 0 of the texture.
         first: PathBuf,
     },
-    /// A PNG has other channels than its layout.
+    /// The channels of a PNG differ from those of its layout.
     #[error("{}: its {channels} channels are not those of its layout", path.display())]
     OtherChannels {
         /// The file.
@@ -51,7 +51,7 @@ pub enum ReadFilesError {
         /// Its channels.
         channels: usize,
     },
-    /// Two files have the names of one set, but are of different bakes.
+    /// Two files have the names of one set, but come from different bakes.
     #[error("{} does not belong to the same bake as {}", path.display(), first.display())]
     OtherBake {
         /// The file.
@@ -80,8 +80,8 @@ pub fn is_baked(path: &Path, limits: &Limits) -> bool {
     read.is_some_and(|decoded| layout_named_in(&decoded.info).is_some())
 }
 
-/// Reads a file written by roughcast and the others of its set beside it: the parts of the layout, and the layers if each
-/// has a file of its own. Of PNG, any level may be named.
+/// Reads a file written by roughcast and the other files of its set in the same folder: the parts of the layout, and
+/// the layers if each has its own file. For PNG, the path may name any level.
 ///
 /// # Errors
 /// [`ReadFilesError`].
@@ -108,14 +108,14 @@ pub fn with_other_parts(
         }
         if beside.exists() {
             let array = read(&beside, limits)?;
-            // The name alone is not enough.
+            // A matching name alone is not enough.
             if arrays[0].info.set != array.info.set {
                 return Err(ReadFilesError::OtherBake { path: beside, first: path.to_owned() });
             }
             arrays.push(array);
         }
     }
-    // The decoder reports a missing layer; without the others there is nothing to join.
+    // The decoder reports the missing layer; without the other files there is nothing to join.
     join_layers(arrays).map_err(|source| ReadFilesError::Join { path: path.to_owned(), source })
 }
 
@@ -128,7 +128,7 @@ fn of_file(path: &Path, error: impl Into<ReadError>) -> ReadFilesError {
     ReadFilesError::File { path: path.to_owned(), source: error.into() }
 }
 
-/// Reads one file written by roughcast, given its bytes; for PNG any level, with the others beside it.
+/// Reads one file written by roughcast from its bytes. For PNG this may be any level; the other levels are read too.
 ///
 /// # Errors
 /// [`ReadFilesError`].
@@ -151,7 +151,7 @@ pub fn read_texture_bytes(
     read.map_err(|error| of_file(path, error))
 }
 
-/// A PNG written by roughcast, with its meaning.
+/// A PNG written by roughcast, with its metadata.
 fn decoded(path: &Path, bytes: &[u8], limits: &Limits) -> Result<(TextureInfo, Decoded), ReadFilesError> {
     let decoded = read_image_of(path, bytes, &(*limits).into()).map_err(|error| of_file(path, error))?;
     let info = TextureInfo::from_pairs(&decoded.info.metadata).map_err(|error| of_file(path, error))?;
@@ -176,7 +176,7 @@ fn read_png(path: &Path, bytes: &[u8], limits: &Limits) -> Result<TextureArray, 
     for (level, size) in sizes.into_iter().enumerate().skip(1) {
         let path = level_path(&whole, level);
         let (of_level, Decoded { image, .. }) = decoded(&path, &open(&path, level)?, limits)?;
-        // Not a comparison of all of it, since a base that varies is not a number.
+        // Comparing everything would fail, since a varying base is NaN.
         let belongs = (of_level.set, of_level.part, of_level.layer) == (info.set, info.part, info.layer)
             && (image.width(), image.height(), image.channels()) == (size.0, size.1, levels[0].channels());
         if !belongs {
@@ -193,7 +193,7 @@ fn read_png(path: &Path, bytes: &[u8], limits: &Limits) -> Result<TextureArray, 
     Ok(TextureArray { info, layers: vec![texture] })
 }
 
-/// What else may lie beside a file with this meaning.
+/// The other files that may accompany a file with this metadata.
 fn others_of(info: &TextureInfo) -> Vec<TextureInfo> {
     if info.layer.is_some() {
         let layers = split_infos(&info.of_whole_part());

@@ -1,4 +1,4 @@
-//! Writing textures: all files of a set appear, or none.
+//! Writes textures: either all files of a set appear, or none.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -13,7 +13,7 @@ use crate::{
     AtomicFile, AtomicSet, Container, Stored, Supercompression, WriteError, dds, exr, ktx2, png_levels,
 };
 
-/// Why the files of a texture could not be written. None of them has changed, but see [`AtomicSet::commit`].
+/// Why the files of a texture could not be written. No file has changed, except as described at [`AtomicSet::commit`].
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteFilesError {
@@ -23,7 +23,7 @@ pub enum WriteFilesError {
         /// The path given.
         path: PathBuf,
     },
-    /// The file is one of those that were read, which would be lost.
+    /// The file is one of the inputs, which would be lost.
     #[error("{} is an input and would be overwritten", path.display())]
     OverInput {
         /// The path.
@@ -37,12 +37,13 @@ pub enum WriteFilesError {
         /// Why.
         source: WriteError,
     },
-    /// A file cannot take its place; the message of the source starts with its path.
+    /// A file cannot be moved to its destination; the message of the source starts with its path.
     #[error("the files cannot take their places")]
     Commit(#[source] io::Error),
 }
 
-/// Refuses a destination that cannot be written to, before any work is done. `first` is the first file that will be written.
+/// Refuses a destination that cannot be written to, before any work is done. `first` is the first file that will be
+/// written.
 ///
 /// # Errors
 /// [`WriteFilesError::File`].
@@ -55,19 +56,20 @@ pub fn check_destination(
         Container::Png => path.with_extension("L0.png"),
         _ => file_path(path, first),
     };
-    // Creating the temporary file finds whatever is wrong; it vanishes when dropped.
+    // Creating the temporary file reveals any problem; the file is deleted when dropped.
     match AtomicFile::create(&target) {
         Ok(_) => Ok(()),
         Err(error) => Err(WriteFilesError::File { path: target, source: error.into() }),
     }
 }
 
-/// Whether two paths lead to the same file.
+/// Whether two paths refer to the same file.
 pub fn is_same_file(a: &Path, b: &Path) -> bool {
     matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
-/// The files of one output. They take their places together at [`TextureFiles::commit`]; if dropped before that, they vanish.
+/// The files of one output. [`TextureFiles::commit`] moves them to their destinations together; if dropped before that,
+/// they are deleted.
 #[derive(Debug)]
 pub struct TextureFiles {
     path: PathBuf,
@@ -102,8 +104,8 @@ impl TextureFiles {
         &self.written
     }
 
-    /// Writes a part to a file of its own: to the path given, or to `NAME.PART.ext` or `NAME.LAYER.ext` where there are several, of
-    /// PNG to one for each level.
+    /// Writes a part to its own file: to the path given, or to `NAME.PART.ext` or `NAME.LAYER.ext` if there are
+    /// several. PNG gets one file per level.
     ///
     /// # Errors
     /// [`WriteFilesError::OverInput`] and [`WriteFilesError::File`].
@@ -140,7 +142,7 @@ impl TextureFiles {
         self.file(&target, |out| Ok(writeln!(out, "{text}")?))
     }
 
-    /// Puts all files in their places, and returns their paths.
+    /// Moves all files to their destinations and returns their paths.
     ///
     /// # Errors
     /// [`WriteFilesError::Commit`].
@@ -149,7 +151,7 @@ impl TextureFiles {
         Ok(self.written)
     }
 
-    /// `NAME.L0.png` …, one for each level of the one layer.
+    /// `NAME.L0.png` …, one file for each level of the single layer.
     fn png(&mut self, path: &Path, array: &TextureArray) -> Result<(), WriteFilesError> {
         let text = array.info.to_pairs();
         for (level, image) in array.layers.iter().flat_map(|texture| texture.levels.iter().enumerate()) {

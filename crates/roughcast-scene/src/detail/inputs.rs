@@ -1,4 +1,4 @@
-//! Which textures of a bake a renderer samples: the same choice for every renderer.
+//! Selects which textures of a bake a renderer samples. All renderers share this selection.
 
 use roughcast::Anisotropy;
 use roughcast::shading::{Shading, Wanted};
@@ -8,11 +8,11 @@ use roughcast::texture::{
 
 use crate::MipmapError;
 
-/// Why textures are no source of bumps.
+/// Why textures are not a source of bumps.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DetailError {
-    /// The textures of a layout are not complete.
+    /// The textures of a layout are incomplete.
     #[error(
         "the textures lack the layer '{layer}' of the part '{part}'; bake the model's layout, without block compression"
     )]
@@ -22,13 +22,13 @@ pub enum DetailError {
         /// The layer.
         layer: &'static str,
     },
-    /// A layout whose textures have more channels than a sampler returns.
+    /// The layout's textures have more channels than a sampler returns.
     #[error("textures of the layout '{0}' have more channels than a sampler returns; bake another layout")]
     NotSampled(Layout),
     /// There are no textures.
     #[error("there are no textures; give those of a bake")]
     Empty,
-    /// Textures are not of one shape.
+    /// The textures do not have the same shape.
     #[error(transparent)]
     Shape(#[from] DecodeError),
     /// A texture cannot be sampled.
@@ -41,30 +41,30 @@ pub enum DetailError {
 pub struct TextureInputs<'a> {
     /// How their texels are read.
     pub reader: &'static TexelReader,
-    /// In the order of the reader's inputs.
+    /// The textures, in the order of the reader's inputs.
     pub textures: Vec<&'a Texture>,
-    /// The channel of the second texture that takes the place of its first: that of the roughness.
+    /// The roughness channel of the second texture; it replaces the first channel.
     pub roughness_channel: usize,
     /// How texels are unpacked.
     pub packing: Packing,
-    /// What the first texture's texels mean.
+    /// The meaning of the first texture's texels.
     pub info: TextureInfo,
 }
 
 /// The textures of the [layout](Shading::layout) that a model is made for.
 ///
 /// # Errors
-/// As [`texture_inputs`]; [`DetailError::MissingTexture`] also where the files are those of another layout.
+/// As [`texture_inputs`]; [`DetailError::MissingTexture`] also if the files belong to another layout.
 pub fn model_inputs(shading: Shading, arrays: &[TextureArray]) -> Result<TextureInputs<'_>, DetailError> {
     inputs_of(shading.layout(), shading.wanted(), arrays)
 }
 
-/// The textures of any layout that tell what is wanted. Roughness may be in the first channel of its texture, in the second, or
-/// packed with occlusion and metalness.
+/// The textures that provide what is wanted, from the files of any layout. Roughness may be stored in the first or
+/// second channel of its texture, or packed with occlusion and metalness.
 ///
 /// # Errors
-/// [`DetailError::MissingTexture`] where one is not there, [`DetailError::Shape`] where one lacks levels,
-/// [`DetailError::NotSampled`] where no sampler returns its channels.
+/// [`DetailError::MissingTexture`] if a texture is missing, [`DetailError::Shape`] if a texture lacks levels,
+/// [`DetailError::NotSampled`] if a texture has more channels than a sampler returns.
 pub fn texture_inputs(wanted: Wanted, arrays: &[TextureArray]) -> Result<TextureInputs<'_>, DetailError> {
     let first = arrays.first().ok_or(DetailError::Empty)?;
     inputs_of(first.info.layout, wanted, arrays)

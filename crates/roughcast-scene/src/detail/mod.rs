@@ -1,10 +1,10 @@
-//! Detail: whatever has bumps. The one interface between sources of bumps and renderers.
+//! Detail: the interface between sources of bumps and renderers.
 //!
-//! A renderer asks two questions at a point of a surface: the exact slope there, for ground truth, and the distribution of slopes
-//! under a pixel, for everything else. What answers may be textures of any layout ([`TextureDetail`]), the slopes of a map
-//! ([`SlopeDetail`]), or anything else that has bumps.
+//! A renderer makes two queries at a point of a surface: the exact slope there, for the ground truth, and the
+//! distribution of slopes under a pixel, for everything else. The source may be textures of any layout
+//! ([`TextureDetail`]), the slopes of a map ([`SlopeDetail`]), or anything else that has bumps.
 //!
-//! Without the feature `render` only the choice of textures is left, which the GPU renderer makes too.
+//! Without the feature `render` this module only selects textures; the GPU renderer uses the same selection.
 
 mod inputs;
 #[cfg(feature = "render")]

@@ -1,15 +1,16 @@
-//! How a texture of slopes lies on a surface: by which texture coordinates, and how high its bumps are there.
+//! How a texture of slopes is placed on a surface: which texture coordinates it uses, and how high its bumps are.
 
 use roughcast::SlopeMatrix;
 
 use super::DetailPoint;
 use crate::SlopeFrame;
 
-/// By which texture coordinates a texture lies on a surface, and how high its bumps are.
+/// The texture coordinates that place a texture on a surface, and the height of its bumps.
 ///
-/// By default that is the first set, and slopes are taken for slopes of the tangent frame as they are, which is glTF's convention for
-/// normal maps: stretching a texture does not change how steep its bumps are. With a world height the bumps have a size, and stretching,
-/// shearing and mirroring change them as they would change real ones: see [`SlopeFrame`].
+/// By default the first set is used, and slopes are interpreted in the tangent frame unchanged. This is glTF's
+/// convention for normal maps: stretching a texture does not change the steepness of its bumps. With a world height the
+/// bumps have a size, and stretching, shearing and mirroring change them as they would change real bumps: see
+/// [`SlopeFrame`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Placement {
     uv_set: usize,
@@ -17,13 +18,13 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// By this set of texture coordinates.
+    /// The same placement with this set of texture coordinates.
     #[must_use]
     pub fn with_uv_set(self, uv_set: usize) -> Self {
         Self { uv_set, ..self }
     }
 
-    /// With bumps of a size: one texel of height is so high in world space.
+    /// The same placement with bumps of a size: the world-space height that corresponds to one texel of height.
     #[must_use]
     pub fn with_world_height_per_texel(self, height: f64) -> Self {
         Self { world_height_per_texel: Some(height), ..self }
@@ -34,7 +35,8 @@ impl Placement {
         self.uv_set
     }
 
-    /// Takes slopes of a texture of these texels to the frame of the hit. `None` where they are the same.
+    /// The matrix that transforms slopes of a texture with this size in texels to the frame of the hit. `None` if the
+    /// slopes are the same in both.
     #[inline]
     pub(super) fn matrix(&self, texels: (usize, usize), at: &DetailPoint<'_>) -> Option<SlopeMatrix> {
         let height = self.world_height_per_texel?;

@@ -1,4 +1,4 @@
-//! The interface of a source of bumps, and the point at which a renderer asks it.
+//! The interface of a source of bumps, and the point at which a renderer queries it.
 
 use glam::DVec2;
 use roughcast::shading::ShadingOptions;
@@ -7,22 +7,22 @@ use roughcast::{Distribution, Slope};
 use crate::filter::Quad;
 use crate::{Footprint, Hit, Ray};
 
-/// A source of bumps on a surface. Slopes are those of the tangent frame of the hit.
+/// A source of bumps on a surface. Slopes are in the tangent frame of the hit.
 pub trait Detail: Sync {
-    /// The exact slope at a point, as ground truth samples it.
+    /// The exact slope at a point, as sampled by the ground truth.
     fn slope(&self, at: &DetailPoint<'_>) -> Slope;
 
     /// The distribution of slopes under the pixel.
     fn distribution(&self, at: &DetailPoint<'_>, options: &ShadingOptions) -> Distribution;
 
-    /// The options with what the source itself states of the base roughness.
+    /// The options, with overrides if the source itself specifies the base roughness.
     fn options(&self, options: ShadingOptions) -> ShadingOptions {
         options
     }
 }
 
-/// The exact slopes of a source in the place of its distributions: no bumps hide under a pixel. One sample a pixel of it shimmers; many make
-/// ground truth.
+/// Replaces the distributions of a source with its exact slopes, so that no bumps are hidden under a pixel. One sample
+/// per pixel shimmers; many samples give the ground truth.
 #[derive(Clone, Copy)]
 pub struct Resolved<'a>(pub &'a dyn Detail);
 
@@ -40,24 +40,25 @@ impl Detail for Resolved<'_> {
     }
 }
 
-/// A point of a surface as a source of bumps sees it.
+/// A surface point as seen by a source of bumps.
 #[derive(Clone, Copy, Debug)]
 pub struct DetailPoint<'a> {
     hit: &'a Hit<'a>,
     repeats: f64,
-    /// In the surface's own parameters, from which it follows for every set of texture coordinates.
+    /// The footprint in the surface's own parameters, from which the footprint in every set of texture coordinates
+    /// follows.
     surface_footprint: Footprint,
     quad: Quad,
 }
 
 impl<'a> DetailPoint<'a> {
-    /// A point alone, under no pixel. Textures repeat `repeats` times over texture coordinates from 0 to 1.
+    /// A point without a pixel footprint. Textures repeat `repeats` times over texture coordinates from 0 to 1.
     #[inline]
     pub fn new(hit: &'a Hit<'a>, repeats: f64) -> Self {
         Self { hit, repeats, surface_footprint: Footprint::default(), quad: Quad::of(0, 0) }
     }
 
-    /// The point under the pixel in this column and row, whose neighbours to the right and below have these rays.
+    /// The point under the pixel in this column and row. The rays are those of its neighbours to the right and below.
     #[inline]
     pub fn under_pixel(hit: &'a Hit<'a>, repeats: f64, (x, y): (u32, u32), right: &Ray, below: &Ray) -> Self {
         Self { hit, repeats, surface_footprint: hit.surface_footprint(right, below), quad: Quad::of(x, y) }
@@ -73,24 +74,26 @@ impl<'a> DetailPoint<'a> {
         self.repeats
     }
 
-    /// What the pixel covers in the surface's own parameters (s, t): for sources that need no texture coordinates. Zero for a point alone.
+    /// The pixel's footprint in the surface's own parameters (s, t), for sources that need no texture coordinates. Zero
+    /// for a point without a pixel.
     pub fn surface_footprint(&self) -> &Footprint {
         &self.surface_footprint
     }
 
-    /// Texture coordinates of a set, repeats included.
+    /// Texture coordinates of a set, scaled by the repeats.
     #[inline]
     pub fn uv(&self, set: usize) -> DVec2 {
         self.hit.uv(set) * self.repeats
     }
 
-    /// What the pixel covers of a texture: the change of [`DetailPoint::uv`] to the next pixels. Zero for a point alone.
+    /// The pixel's footprint in a texture: the change of [`DetailPoint::uv`] to the adjacent pixels. Zero for a point
+    /// without a pixel.
     #[inline]
     pub fn footprint(&self, set: usize) -> Footprint {
         self.hit.footprint_in_set(set, &self.surface_footprint).scaled(self.repeats)
     }
 
-    /// Which neighbours derivatives are taken from.
+    /// Which neighbours are used to compute derivatives.
     pub(crate) fn quad(&self) -> Quad {
         self.quad
     }

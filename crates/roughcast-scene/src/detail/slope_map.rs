@@ -1,4 +1,4 @@
-//! A map's slopes at level 0, between whose texels the truth interpolates.
+//! A map's slopes at level 0. The ground truth interpolates between its texels.
 
 use glam::DVec2;
 use roughcast::texture::{Layout, MomentLevel, decode};
@@ -7,17 +7,17 @@ use roughcast::{Bake, BakeError, BakeOptions, Image, SampleType, Slope, SourceOp
 use crate::mipmap::{square_at, whole_and_rest, wrapped};
 
 roughcast::named_enum! {
-    /// What the surface is between the texels of its map.
+    /// The shape of the surface between the texels of its map.
     pub enum Reconstruction: "reconstruction" {
-        /// Slopes are interpolated bilinearly: a surface without creases, what one sees of a texture from near. Where
-        /// slopes change from texel to texel, it is a little smoother than the map's own moments say.
+        /// Slopes are interpolated bilinearly, which gives a surface without creases, as seen in a texture viewed from
+        /// near. If slopes change from texel to texel, it is a little smoother than the map's own moments indicate.
         Linear = "linear",
-        /// A facet a texel: creased, and its moments over whole texels are exactly the map's.
+        /// One facet per texel. The surface is creased, and its moments over whole texels are exactly the map's.
         Facets = "facets",
     }
 }
 
-/// Slopes, row by row from the top, in single floats and before any packing.
+/// Slopes, row by row from the top, as single floats before any packing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SlopeMap {
     width: usize,
@@ -26,10 +26,10 @@ pub struct SlopeMap {
 }
 
 impl SlopeMap {
-    /// The slopes of a map, as the library reads them.
+    /// The slopes of a map, as read by the library.
     ///
     /// # Errors
-    /// [`BakeError`] where the map cannot be read.
+    /// [`BakeError`] if the map cannot be read.
     pub fn of(map: &Image, options: &SourceOptions) -> Result<Self, BakeError> {
         let floats = BakeOptions::default().with_layout(Layout::Moments).with_sample_type(SampleType::F32);
         let baked = Bake::of(map).source(*options).options(floats).run()?;

@@ -1,4 +1,4 @@
-//! The slopes of a map at level 0 as a source of bumps: what ground truth is made of.
+//! The slopes of a map at level 0 as a source of bumps: the basis of the ground truth.
 
 use roughcast::shading::ShadingOptions;
 use roughcast::{Covariance, Distribution, Moments, Normal, Slope, Wrap, normal_from_slope};
@@ -6,35 +6,35 @@ use roughcast::{Covariance, Distribution, Moments, Normal, Slope, Wrap, normal_f
 use super::{Detail, DetailPoint, Placement, Reconstruction, SlopeMap};
 use crate::render::pixel_filter_quantile;
 
-/// Samples along each side of a pixel of [`SlopeDetail`]'s distribution.
+/// Samples along each side of a pixel for the distribution of [`SlopeDetail`].
 const SIDE: u32 = 16;
 
-/// The slopes of a map, and what lies between its texels and beyond its edges.
+/// The slopes of a map, and how to continue them between its texels and beyond its edges.
 #[derive(Clone, Debug)]
 pub struct SlopeDetail {
     /// The slopes of level 0.
     pub slopes: SlopeMap,
-    /// What the surface is between texels.
+    /// The shape of the surface between texels.
     pub reconstruction: Reconstruction,
     /// What lies beyond the map's edges.
     pub wrap: Wrap,
-    /// How the map lies on the surface.
+    /// How the map is placed on the surface.
     pub placement: Placement,
 }
 
 impl SlopeDetail {
-    /// Slopes that are interpolated between texels, on the first set of texture coordinates.
+    /// Slopes that are interpolated between texels and placed by the first set of texture coordinates.
     pub fn new(slopes: SlopeMap, wrap: Wrap) -> Self {
         Self { slopes, reconstruction: Reconstruction::Linear, wrap, placement: Placement::default() }
     }
 
-    /// The same, with another surface between texels.
+    /// The same slopes with another surface shape between texels.
     #[must_use]
     pub fn with_reconstruction(self, reconstruction: Reconstruction) -> Self {
         Self { reconstruction, ..self }
     }
 
-    /// The same, lying on the surface in another way.
+    /// The same slopes with another placement on the surface.
     #[must_use]
     pub fn placed(self, placement: Placement) -> Self {
         Self { placement, ..self }
@@ -48,8 +48,8 @@ impl Detail for SlopeDetail {
         self.placement.matrix(self.slopes.size(), at).map_or(slope, |matrix| slope.transformed(matrix))
     }
 
-    /// Mean and covariance of 256 slopes, drawn from the pixel filter, a Gaussian: what the textures of a bake approximate. Footprints of
-    /// more than a few dozen texels want more samples; ground truth takes them one by one.
+    /// Mean and covariance of 256 slopes drawn from the Gaussian pixel filter; the textures of a bake approximate
+    /// these. Footprints of more than a few dozen texels need more samples; the ground truth takes samples one by one.
     fn distribution(&self, at: &DetailPoint<'_>, _options: &ShadingOptions) -> Distribution {
         let set = self.placement.uv_set();
         let (uv, footprint) = (at.uv(set), at.footprint(set));

@@ -9,12 +9,12 @@ use super::{Detail, DetailPoint, Placement};
 use crate::filter::Lookup;
 use crate::{Filter, Footprint, Mipmap, Sampler};
 
-/// The place of a material's roughness among its textures.
+/// The index of a material's roughness among its textures.
 const ROUGHNESS: usize = 1;
-/// No layout has more textures.
+/// Maximum number of textures in a layout.
 const MAX_TEXTURES: usize = 3;
 
-/// The textures of a layout as a sampler sees them, and what their texels mean.
+/// The textures of a layout as a sampler reads them, and the meaning of their texels.
 #[derive(Clone, Debug)]
 pub struct BakedTextures {
     reader: &'static TexelReader,
@@ -24,18 +24,18 @@ pub struct BakedTextures {
 }
 
 impl BakedTextures {
-    /// The textures out of the files of any layout. Roughness may be packed with occlusion and metalness.
+    /// The textures from the files of any layout. Roughness may be packed with occlusion and metalness.
     ///
     /// # Errors
-    /// [`DetailError::MissingTexture`] where one is not there, [`DetailError::Shape`] where one lacks levels.
+    /// [`DetailError::MissingTexture`] if a texture is missing, [`DetailError::Shape`] if a texture lacks levels.
     pub fn new(wanted: Wanted, arrays: &[TextureArray]) -> Result<Self, DetailError> {
         Self::of_inputs(texture_inputs(wanted, arrays)?)
     }
 
-    /// The textures of the [layout](Shading::layout) that a model is made for, and no more of them than it needs.
+    /// The textures of the [layout](Shading::layout) that a model is made for, limited to those that it needs.
     ///
     /// # Errors
-    /// As [`BakedTextures::new`]; [`DetailError::MissingTexture`] also where the files are those of another layout.
+    /// As [`BakedTextures::new`]; [`DetailError::MissingTexture`] also if the files belong to another layout.
     pub fn of_model(shading: Shading, arrays: &[TextureArray]) -> Result<Self, DetailError> {
         Self::of_inputs(model_inputs(shading, arrays)?)
     }
@@ -55,7 +55,7 @@ impl BakedTextures {
         self.textures[0].size()
     }
 
-    /// The textures through a sampler: a source of bumps.
+    /// The textures read through a sampler, as a source of bumps.
     pub fn sampled(&self, sampler: Sampler) -> TextureDetail<'_> {
         TextureDetail { textures: self, sampler, placement: Placement::default() }
     }
@@ -68,18 +68,18 @@ pub struct TextureDetail<'a> {
     pub textures: &'a BakedTextures,
     /// The texture filter.
     pub sampler: Sampler,
-    /// How the textures lie on the surface.
+    /// How the textures are placed on the surface.
     pub placement: Placement,
 }
 
 impl<'a> TextureDetail<'a> {
-    /// The same, lying on the surface in another way.
+    /// The same textures with another placement on the surface.
     #[must_use]
     pub fn placed(self, placement: Placement) -> Self {
         Self { placement, ..self }
     }
 
-    /// Texture coordinates at a point, and a footprint there.
+    /// The texture coordinates at a point, with the given footprint.
     fn lookup(&self, at: &DetailPoint<'_>, footprint: Footprint) -> Lookup {
         Lookup { uv: at.uv(self.placement.uv_set()), footprint, quad: at.quad() }
     }
@@ -112,7 +112,7 @@ impl Detail for TextureDetail<'_> {
         let ratio = reader.mean_input.map_or(FootprintRatio::WHOLE, |input| {
             self.sampler.footprint_ratio(&textures[input], packing.slope, texels[input], &lookup, options)
         });
-        // Changed in place: a distribution that is copied as soon as it is written stalls the processor.
+        // Changed in place: copying a distribution right after it is written stalls the processor.
         let mut seen = reader.read_pixel(&texels[..textures.len()], &ratio, packing, options);
         if let Some(matrix) = self.placement.matrix(self.textures.size(), at) {
             seen = seen.transformed(matrix);

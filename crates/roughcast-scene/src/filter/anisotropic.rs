@@ -1,7 +1,7 @@
 //! Anisotropic filtering as in graphics hardware: trilinear taps along the footprint's longer axis.
 //!
 //! Source: EXT_texture_filter_anisotropic, with the axes of the footprint's ellipse instead of the two derivatives,
-//! which are its axes only if they are at right angles.
+//! which are the ellipse's axes only if they are perpendicular.
 
 use glam::DVec2;
 use roughcast::Wrap;
@@ -11,15 +11,16 @@ use super::trilinear;
 use crate::Footprint;
 use crate::mipmap::Mipmap;
 
-/// The most taps, and so the largest ratio of the axes before the shorter is lengthened.
+/// Maximum number of taps, and thus the maximum ratio of the axes before the shorter axis is lengthened.
 pub(super) const MAX_TAPS: f64 = 16.0;
-/// How far rounding may raise a ratio of axes above a whole number without adding a tap.
+/// How far rounding may raise the ratio of the axes above an integer without adding a tap.
 const RATIO_ROUNDING: f64 = 1e-9;
 
-/// The mean of equal taps over a footprint in texels of level 0. Their level is that of the shorter axis, plus a bias.
+/// The mean of equally weighted taps over a footprint in texels of level 0. The taps' level is that of the shorter
+/// axis, plus a bias.
 pub(super) fn sample(mipmap: &Mipmap, uv: DVec2, texels: &Footprint, bias: f64, wrap: Wrap) -> [f64; 4] {
     let ellipse = Ellipse::of(texels);
-    // Below a texel, interpolation smooths anyway; closer taps would add nothing.
+    // Below one texel, interpolation smooths anyway, so closer taps would add nothing.
     let minor = ellipse.minor.max(ellipse.major / MAX_TAPS).max(1.0);
     let taps = (ellipse.major / minor - RATIO_ROUNDING).ceil().clamp(1.0, MAX_TAPS);
     let level = minor.log2() + bias;

@@ -1,7 +1,7 @@
 //! Elliptical weighted average: P. Heckbert, "Fundamentals of Texture Mapping and Image Warping", 1989, section 3.
 //!
-//! The pixel filter is a Gaussian with a standard deviation of half a pixel, that of the ground truth. Its image in the texture is a
-//! Gaussian with an elliptical contour, which weights the texels of one level.
+//! The pixel filter is a Gaussian with a standard deviation of half a pixel, as in the ground truth. Its image in the
+//! texture is a Gaussian with an elliptical contour, which weights the texels of one level.
 
 use glam::DVec2;
 use roughcast::Wrap;
@@ -11,29 +11,33 @@ use super::footprint::Ellipse;
 use crate::Footprint;
 use crate::mipmap::{Level, Mipmap, wrapped};
 
-/// Standard deviations at which the Gaussian ends; beyond lies 1 % of its weight, which is distributed over the texels within.
+/// Number of standard deviations at which the Gaussian is truncated. The 1 % of its weight beyond is distributed over
+/// the texels within.
 const RADIUS: f64 = 3.0;
-/// Variance of a plane Gaussian over that of the same Gaussian ended at [`RADIUS`], `1 / (1 - x / (e^x - 1))` with
-/// `x = RADIUS^2 / 2`. Widened by it, the truncated Gaussian has the wanted variance.
+/// Variance of a two-dimensional Gaussian divided by that of the same Gaussian truncated at [`RADIUS`],
+/// `1 / (1 - x / (e^x - 1))` with `x = RADIUS^2 / 2`. Widening by this factor gives the truncated Gaussian the wanted
+/// variance.
 const WIDENING: f64 = 1.053244;
-/// The shorter standard deviation has at least this many texels of the level, and less than twice as many: enough that a sum over
-/// texels matches the integral to one per cent.
+/// Minimum of the shorter standard deviation in texels of the chosen level; it is less than twice as long. At this
+/// length, a sum over texels matches the integral to one per cent.
 const TEXELS: f64 = 1.0;
-/// Largest ratio of the axes. Beyond it the shorter is lengthened, so that a sample costs at most some 4000 texels.
+/// Maximum ratio of the axes. Beyond it the shorter axis is lengthened, so that a sample reads at most some 4000
+/// texels.
 pub(super) const MAX_ECCENTRICITY: f64 = 32.0;
-/// Smallest variance, in texels squared: that of bilinear interpolation, to which magnified textures converge.
+/// Minimum variance, in texels squared: that of bilinear interpolation, to which magnified textures converge.
 const INTERPOLATION_VARIANCE: f64 = 1.0 / 6.0;
-/// On the last level standard deviations grow to at most this many times its longer side: everything has been averaged long before.
+/// On the last level, standard deviations are limited to this many times its longer side; by then everything is
+/// averaged.
 const LAST_LEVEL_SIDES: f64 = 2.0;
 
-/// Standard deviations along the axes of the ellipse, in texels of level 0: the longer, and the shorter, which is at least what the largest ratio
-/// of axes allows.
+/// Standard deviations along the axes of the ellipse, in texels of level 0: the longer one first. The shorter one is at
+/// least what the maximum ratio of axes allows.
 fn deviations(ellipse: &Ellipse) -> [f64; 2] {
     let [major, minor] = [ellipse.major, ellipse.minor].map(|axis| f64::from(PIXEL_DEVIATION) * axis);
     [major, minor.max(major / MAX_ECCENTRICITY)]
 }
 
-/// The level at which the shorter standard deviation has its texels.
+/// The level at which the shorter standard deviation spans the required number of texels.
 fn level_of(minor: f64) -> usize {
     (minor / TEXELS).max(1.0).log2() as usize
 }
@@ -47,7 +51,7 @@ pub(super) fn sample(mipmap: &Mipmap, uv: DVec2, texels: &Footprint, wrap: Wrap)
     let level = &mipmap.levels()[number];
 
     let (width, height) = mipmap.size();
-    // Texels of this level in one of level 0; the two directions differ if sizes were odd.
+    // Texels of this level per texel of level 0; the two directions differ if sizes were odd.
     let shrink = DVec2::new(level.width() as f64 / width as f64, level.height() as f64 / height as f64);
     let longest =
         if number == last { LAST_LEVEL_SIDES * level.width().max(level.height()) as f64 } else { f64::MAX };
@@ -56,7 +60,7 @@ pub(super) fn sample(mipmap: &Mipmap, uv: DVec2, texels: &Footprint, wrap: Wrap)
         axis * (longest / axis.length().max(f64::MIN_POSITIVE)).min(1.0)
     };
     let (long, short) = (axis(ellipse.direction, major), axis(ellipse.direction.perp(), minor));
-    // The texels of a coarser level are averages over their own area already; that variance is not added twice.
+    // Texels of coarser levels are already averages over their own area; that variance must not be added twice.
     let texel_area = (1.0 - 0.25_f64.powi(number as i32)) / 12.0;
     let variance = |squared: f64| (WIDENING * (squared - texel_area)).max(INTERPOLATION_VARIANCE);
     let (along, across) = (variance(long.length_squared()), variance(short.length_squared()));
@@ -64,8 +68,8 @@ pub(super) fn sample(mipmap: &Mipmap, uv: DVec2, texels: &Footprint, wrap: Wrap)
     Gaussian::new(direction, along, across).average(level, uv, wrap)
 }
 
-/// Variances along the axes of the footprint, in texels of level 0, squared: those that [`sample`] gives its Gaussian, and for
-/// stored variances those of the area under each texel.
+/// Variances along the axes of the footprint, in squared texels of level 0: those that [`sample`] gives its Gaussian,
+/// and for stored variances those of the area under each texel.
 pub(super) fn variances(texels: &Footprint) -> FilterVariances {
     let [major, minor] = deviations(&Ellipse::of(texels));
     let under_texel = (4.0_f64.powi(level_of(minor) as i32) - 1.0) / 12.0;
@@ -75,9 +79,9 @@ pub(super) fn variances(texels: &Footprint) -> FilterVariances {
 
 /// A Gaussian over the texels of a level.
 struct Gaussian {
-    /// Quadratic form of the exponent: xx, xy (once), yy.
+    /// Quadratic form of the exponent: xx, xy (counted once), yy.
     inverse: [f64; 3],
-    /// Half the size of the box around its contour.
+    /// Half the size of the bounding box of its contour.
     reach: DVec2,
 }
 
@@ -112,7 +116,7 @@ impl Gaussian {
                 weights += weight;
             }
         }
-        // The smallest contour has a radius of 1.22 texels; it contains at least one centre.
+        // The smallest contour has a radius of 1.22 texels, so it contains at least one texel centre.
         sum.map(|sum| sum / weights)
     }
 }

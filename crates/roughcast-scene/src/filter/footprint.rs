@@ -5,12 +5,12 @@ use roughcast::Wrap;
 
 use crate::Footprint;
 
-/// Texels beyond which footprints are equivalent: any texture has been averaged as a whole long before.
+/// Footprint size in texels beyond which all footprints are equivalent: any texture is averaged as a whole.
 const HUGE: f64 = 1e9;
-/// Distance in textures beyond which clamped coordinates are equivalent: the texel is the edge's.
+/// Distance in texture widths beyond which clamped coordinates are equivalent: all give the edge texel.
 const FAR: f64 = 1e6;
 
-/// The footprint in texels of level 0. Non-finite values become the largest footprint.
+/// Converts the footprint to texels of level 0. Non-finite values become the largest footprint.
 pub(super) fn in_texels(footprint: &Footprint, (width, height): (usize, usize)) -> Footprint {
     let size = DVec2::new(width as f64, height as f64);
     let texels = |axis: DVec2| {
@@ -20,7 +20,7 @@ pub(super) fn in_texels(footprint: &Footprint, (width, height): (usize, usize)) 
     Footprint { dx: texels(footprint.dx), dy: texels(footprint.dy) }
 }
 
-/// Texture coordinates within the period of their wrap mode, so that they keep their digits. Non-finite values become 0.
+/// Reduces texture coordinates to the period of their wrap mode, to keep their precision. Non-finite values become 0.
 pub(super) fn reduced(uv: DVec2, wrap: Wrap) -> DVec2 {
     let reduce = |x: f64| {
         let x = finite(x, 0.0);
@@ -44,7 +44,7 @@ pub(super) struct Ellipse {
     pub direction: DVec2,
     /// Length of the longer axis, in the footprint's units.
     pub major: f64,
-    /// Length of the shorter one.
+    /// Length of the shorter axis.
     pub minor: f64,
 }
 
@@ -55,7 +55,8 @@ impl Ellipse {
         let (xx, yy, xy) = (x.x * x.x + y.x * y.x, x.y * x.y + y.y * y.y, x.x * x.y + y.x * y.y);
         let squared = 0.5 * (xx + yy) + (0.5 * (xx - yy)).hypot(xy);
         let major = squared.sqrt();
-        // The determinant is the product of both lengths; so the shorter keeps its digits beside a much longer one.
+        // The determinant is the product of both lengths, so the shorter length stays precise even if the other is much
+        // longer.
         let minor = if major > 0.0 { (x.perp_dot(y).abs() / major).min(major) } else { 0.0 };
         let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
         Self { direction: DVec2::from_angle(angle), major, minor }
@@ -71,7 +72,7 @@ mod tests {
         const ROUNDING: f64 = 1e-12; // f64, a few operations
         for degrees in [0.0_f64, 10.0, 45.0, 90.0, 133.0] {
             let along = DVec2::from_angle(degrees.to_radians());
-            // A rotation of the picture does not change the ellipse.
+            // Rotating the picture does not change the ellipse.
             for turn in [0.0_f64, 0.3, 2.0] {
                 let (sin, cos) = turn.sin_cos();
                 let (a, b) = (along * 8.0, along.perp() * 0.5);

@@ -1,5 +1,5 @@
-//! Texture filters, one per file. All use non-negative weights that sum to one: so constants are preserved, and the
-//! covariance of filtered moments stays a covariance.
+//! Texture filters, one per file. All use non-negative weights that sum to one. Constants are therefore preserved, and
+//! the covariance of filtered moments remains a valid covariance.
 
 mod anisotropic;
 mod ewa;
@@ -19,14 +19,14 @@ use glam::DVec2;
 use crate::mipmap::Mipmap;
 use crate::{Filter, Footprint, Sampler};
 
-/// More levels than any texture has: beyond them nothing changes.
+/// More levels than any texture has; higher values have the same effect.
 const MAX_LEVEL: f64 = 32.0;
 
 impl Sampler {
     /// The texture's four channels at texture coordinates, averaged over a footprint in units of the texture.
     ///
-    /// Non-finite coordinates and footprints give finite values: a coordinate becomes 0, an
-    /// axis the largest one.
+    /// Non-finite coordinates and footprints give finite values: a non-finite coordinate becomes 0, a non-finite axis
+    /// the maximum.
     pub fn sample(&self, texture: &Mipmap, uv: DVec2, footprint: &Footprint) -> [f32; 4] {
         let (width, height) = texture.size();
         let uv = footprint::reduced(uv, self.wrap);
@@ -51,7 +51,7 @@ impl Sampler {
         mean.map(|value| value as f32)
     }
 
-    /// The given level, 0 or more. NaN becomes the finest.
+    /// The given level, 0 or more. NaN becomes the finest level.
     fn fixed_level(&self) -> Option<f64> {
         self.level.map(|level| if level > 0.0 { level.min(MAX_LEVEL) } else { 0.0 })
     }
@@ -60,7 +60,7 @@ impl Sampler {
         if self.mip_bias.is_finite() { self.mip_bias.clamp(-MAX_LEVEL, MAX_LEVEL) } else { 0.0 }
     }
 
-    /// The footprint in texels of a filter without levels.
+    /// The footprint in texels for a filter without levels.
     fn covered(&self, texels: &Footprint) -> Footprint {
         match self.fixed_level() {
             Some(level) => {

@@ -1,4 +1,4 @@
-//! Point sampling: the nearest texel of a single level.
+//! Point sampling: the nearest texel of one level.
 
 use glam::DVec2;
 use roughcast::Wrap;

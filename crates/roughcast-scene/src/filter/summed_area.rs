@@ -1,6 +1,7 @@
 //! Summed-area tables: F. Crow, "Summed-Area Tables for Texture Mapping", 1984.
 //!
-//! The mean over the box around the footprint, of any size and with exact fractional edges, from sums of level 0 in f64.
+//! Computes the mean over the bounding box of the footprint from f64 sums of level 0. The box may have any size, and
+//! its fractional edges are exact.
 
 use glam::DVec2;
 use roughcast::Wrap;
@@ -9,10 +10,10 @@ use roughcast::shading::FilterVariances;
 use crate::Footprint;
 use crate::mipmap::Level;
 
-/// Periods of the texture at which a box is cut: the mean over more of them is the texture's.
+/// Maximum number of texture periods in a box. The mean over more of them is that of the texture.
 const MAX_PERIODS: f64 = 64.0;
 
-/// Sums of all texels above and to the left of each corner of a texel.
+/// Sums of all texels above and to the left of each texel corner.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SummedAreaTable {
     width: usize,
@@ -22,7 +23,7 @@ pub struct SummedAreaTable {
 }
 
 impl SummedAreaTable {
-    /// The table of a level.
+    /// Computes the table of a level.
     pub fn of(level: &Level) -> Self {
         let (width, height) = (level.width(), level.height());
         let mut sums = vec![[0.0; 4]; (width + 1) * (height + 1)];
@@ -39,8 +40,8 @@ impl SummedAreaTable {
         Self { width, height, sums }
     }
 
-    /// The mean over the box around a footprint, which is in texels of level 0. A box has at least a texel each way, and
-    /// with that size it is bilinear interpolation.
+    /// The mean over the bounding box of a footprint in texels of level 0. A box is at least one texel wide and high;
+    /// at that size the result equals bilinear interpolation.
     pub(super) fn sample(&self, uv: DVec2, texels: &Footprint, wrap: Wrap) -> [f64; 4] {
         let size = texels.dx.abs() + texels.dy.abs();
         let x = difference(uv.x * self.width as f64, size.x, self.width, wrap);
@@ -56,8 +57,8 @@ impl SummedAreaTable {
     }
 }
 
-/// Variances along a direction of the texture and across it, in texels of level 0, squared: those of the box over texels that are
-/// areas with one value each. Stored variances of level 0 have none.
+/// Variances along and across a direction of the texture, in squared texels of level 0: those of the box over texels
+/// that are areas of constant value. The stored variances of level 0 have none.
 pub(super) fn variances(texels: &Footprint, direction: DVec2) -> FilterVariances {
     let sides = (texels.dx.abs() + texels.dy.abs()).max(DVec2::ONE);
     let box_and_texel = (sides * sides + 1.0) / 12.0;
@@ -67,18 +68,18 @@ pub(super) fn variances(texels: &Footprint, direction: DVec2) -> FilterVariances
     FilterVariances { moments, variances: [0.0; 2] }
 }
 
-/// An integral along one axis, as weights of the table's corners.
+/// An integral along one axis, expressed as weights of the table's corners.
 struct Difference {
     terms: [(usize, f64); 6],
     length: f64,
 }
 
-/// The integral over `length` texels about `centre`.
+/// The integral over `length` texels around `centre`.
 fn difference(centre: f64, length: f64, texels: usize, wrap: Wrap) -> Difference {
     let n = texels as f64;
     let length = length.clamp(1.0, MAX_PERIODS * n);
     let centre = match wrap {
-        // Further out there is only the edge's texel, and large coordinates would cost digits.
+        // Further out there is only the edge texel, and large coordinates would lose precision.
         Wrap::Clamp => centre.clamp(-0.5 * length, n + 0.5 * length),
         Wrap::Repeat | Wrap::Mirror => centre,
     };
@@ -91,7 +92,7 @@ fn difference(centre: f64, length: f64, texels: usize, wrap: Wrap) -> Difference
     Difference { terms, length }
 }
 
-/// The integral from 0 to `at`, in texels, continued beyond the edges by the wrap mode.
+/// The integral from 0 to `at`, in texels, extended beyond the edges by the wrap mode.
 fn antiderivative(at: f64, texels: usize, wrap: Wrap) -> [(usize, f64); 3] {
     let n = texels as f64;
     let inside = |at: f64, sign: f64| {
@@ -112,7 +113,7 @@ fn antiderivative(at: f64, texels: usize, wrap: Wrap) -> [(usize, f64); 3] {
             let [a, b] = if mirrored { inside(2.0 * n - rest, -1.0) } else { inside(rest, 1.0) };
             [a, b, (texels, 2.0 * periods + if mirrored { 2.0 } else { 0.0 })]
         }
-        // Beyond the edges the outermost texel continues: its integral is the difference of two corners.
+        // Beyond the edges the outermost texel is repeated; its integral is the difference of two corners.
         Wrap::Clamp => {
             let within = at.clamp(0.0, n);
             let [a, b] = inside(within, 1.0);

@@ -1,4 +1,4 @@
-//! Laws of all filters, and each against a naive oracle in f64.
+//! Invariants that hold for all filters, and a test of each filter against a naive f64 reference.
 
 use std::f64::consts::TAU;
 
@@ -7,14 +7,14 @@ use roughcast::Wrap;
 use super::*;
 use crate::mipmap::{Level, wrapped};
 
-/// Rounding of f32 results of f64 sums of numbers near one.
+/// Rounding error of f64 sums of numbers near one that are stored as f32.
 const ROUNDING: f64 = 1e-6;
-/// Constants of [`ewa`] are stated with this many digits.
+/// Accuracy to which the constants of [`ewa`] are stated.
 const CONSTANT_DIGITS: f64 = 1e-4;
-/// Rounding of the smaller eigenvalue of a covariance: moments up to 4 rounded to f32, `M - B^2` in f64.
+/// Rounding error of the smaller eigenvalue of a covariance: moments up to 4 rounded to f32, `M - B^2` in f64.
 const COVARIANCE_ROUNDING: f64 = 2e-6;
 
-/// Numbers from 0 to 1 that are the same on every run.
+/// Pseudo-random numbers from 0 to 1 that are the same on every run.
 struct Random(u64);
 
 impl Random {
@@ -27,14 +27,14 @@ impl Random {
         low + (high - low) * self.next()
     }
 
-    /// A footprint whose axes are from far below a texel to far beyond the texture, in any ratio and direction.
+    /// A footprint whose axes range from far below a texel to far beyond the texture, in any ratio and direction.
     fn footprint(&mut self) -> Footprint {
         let mut axis = || DVec2::from_angle(self.between(0.0, TAU)) * self.between(-12.0, 4.0).exp2();
         Footprint { dx: axis(), dy: axis() }
     }
 }
 
-/// The levels that the area averages of `top` make, for any size.
+/// The levels that result from area averages of `top`, for any size.
 fn mipmap(width: usize, height: usize, top: impl FnMut(usize) -> [f32; 4]) -> Mipmap {
     let mut levels = vec![Level::new(width, height, (0..width * height).map(top).collect()).unwrap()];
     for (width, height) in roughcast::level_sizes(width, height).into_iter().skip(1) {
@@ -97,7 +97,7 @@ fn constants_stay_constant() {
 
 #[test]
 fn weights_are_never_negative() {
-    // A single bright texel shows its own weight; so does one dark texel among bright ones.
+    // A single bright texel reveals its own weight, and so does a single dark texel among bright ones.
     for (width, height) in SIZES {
         let mut random = Random(2);
         let lit = (random.next() * (width * height) as f64) as usize;
@@ -164,7 +164,7 @@ fn results_are_finite_and_within_the_texture_for_any_footprint() {
 
 #[test]
 fn a_huge_footprint_gives_the_mean_of_the_texture() {
-    // Fewer than all texels count equally in the last levels of odd sizes; a power of two has no such remainder.
+    // In the last levels of odd sizes not all texels have the same weight; powers of two avoid this.
     let texture = noise(32, 16, 6);
     let top = &texture.levels()[0];
     let mean = (0..16).flat_map(|y| top.row(y)).map(|t| f64::from(t[0])).sum::<f64>() / 512.0;
@@ -173,7 +173,7 @@ fn a_huge_footprint_gives_the_mean_of_the_texture() {
         let got = Sampler { filter, ..Sampler::default() }.sample(&texture, DVec2::new(0.3, 0.8), &huge)[0];
         assert!((f64::from(got) - mean).abs() < ROUNDING, "{filter}: {got} {mean}");
     }
-    // A box of b periods leaves a remainder of at most a part of one, 1 / b of the whole.
+    // A box of b periods leaves a remainder of at most part of one period, 1 / b of the whole.
     let got = Sampler { filter: Filter::SummedArea, ..Sampler::default() }.sample(
         &texture,
         DVec2::new(0.3, 0.8),
@@ -184,7 +184,7 @@ fn a_huge_footprint_gives_the_mean_of_the_texture() {
 
 #[test]
 fn magnified_textures_are_interpolated_bilinearly() {
-    // The naive oracle: every texel, of every period nearby, under a tent.
+    // The naive reference: every texel of every period nearby, weighted by a tent.
     for (width, height) in SIZES {
         let texture = noise(width, height, 7);
         let mut random = Random(8);
@@ -228,7 +228,7 @@ fn nearest_is_the_texel_that_contains_the_point() {
 #[test]
 fn a_fixed_level_is_that_level_and_a_bias_is_added() {
     let texture = noise(32, 32, 10);
-    // The centre of a texel of level 3, where interpolation gives that texel itself.
+    // The centre of a texel of level 3, where interpolation returns that texel itself.
     let uv = DVec2::new(1.5 / 4.0, 2.5 / 4.0);
     let tiny = Footprint { dx: DVec2::new(1.0 / 32.0, 0.0), dy: DVec2::new(0.0, 1.0 / 32.0) };
     for filter in [Filter::Trilinear, Filter::Anisotropic] {
@@ -238,7 +238,7 @@ fn a_fixed_level_is_that_level_and_a_bias_is_added() {
         let (got, want) = (biased.sample(&texture, uv, &tiny)[0], texture.levels()[3].texel(1, 2)[0]);
         assert!(f64::from(got - want).abs() < ROUNDING, "{got} {want}");
     }
-    // The box of 8 by 8 texels about the same place is the same average.
+    // The box of 8 by 8 texels around the same point is the same average.
     let table = Sampler { filter: Filter::SummedArea, mip_bias: 3.0, ..Sampler::default() };
     let (got, want) = (table.sample(&texture, uv, &tiny)[0], texture.levels()[3].texel(1, 2)[0]);
     assert!(f64::from(got - want).abs() < ROUNDING, "{got} {want}");
@@ -246,7 +246,7 @@ fn a_fixed_level_is_that_level_and_a_bias_is_added() {
 
 #[test]
 fn summed_areas_are_the_mean_over_the_box() {
-    // The naive oracle: every texel, of every period nearby, by the part of it that the box covers.
+    // The naive reference: every texel of every period nearby, weighted by the fraction of it that the box covers.
     for (width, height) in SIZES {
         let texture = noise(width, height, 11);
         let mut random = Random(12);
@@ -279,7 +279,7 @@ fn summed_areas_are_the_mean_over_the_box() {
     }
 }
 
-/// A wave of whole periods across the texture, in red.
+/// A wave with an integer number of periods across the texture, in red.
 fn wave(size: usize, periods: DVec2) -> Mipmap {
     mipmap(size, size, |i| {
         let at = DVec2::new((i % size) as f64 + 0.5, (i / size) as f64 + 0.5) / size as f64;
@@ -289,15 +289,15 @@ fn wave(size: usize, periods: DVec2) -> Mipmap {
 
 #[test]
 fn elliptical_weights_are_the_gaussian_of_the_footprint() {
-    /// What truncating the Gaussian at 3 standard deviations, with corrected variance, does to a wave, and interpolation if a
-    /// footprint is no wider than a texel.
+    /// Error for a wave from truncating the Gaussian at 3 standard deviations, with corrected variance, and from
+    /// interpolation if a footprint is no wider than a texel.
     const TRUNCATION: f64 = 0.02;
     let size = 256;
     let mut random = Random(13);
     let mut largest = 0.0_f64;
     for _ in 0..300 {
         let periods = DVec2::new(random.between(-20.0, 20.0).round(), random.between(-20.0, 20.0).round());
-        // Axes from one texel to 64, up to 8:1.
+        // Axes from one texel to 64 texels, with ratios up to 8:1.
         let (minor, ratio) = (random.between(0.0, 3.0).exp2(), random.between(0.0, 3.0).exp2());
         let direction = DVec2::from_angle(random.between(0.0, TAU));
         let footprint = Footprint {
@@ -310,7 +310,7 @@ fn elliptical_weights_are_the_gaussian_of_the_footprint() {
             uv,
             &footprint,
         )[0];
-        // A Gaussian's effect on a wave is its characteristic function.
+        // A Gaussian scales a wave by its characteristic function.
         let deviations = 0.5 * TAU * DVec2::new(footprint.dx.dot(periods), footprint.dy.dot(periods));
         let want = (-0.5 * deviations.length_squared()).exp() * (TAU * periods.dot(uv)).cos();
         largest = largest.max((f64::from(got) - want).abs());
@@ -320,7 +320,7 @@ fn elliptical_weights_are_the_gaussian_of_the_footprint() {
 
 #[test]
 fn elliptical_weights_match_a_naive_sum() {
-    // Footprints whose shorter axis is below four texels use level 0: then every texel can be summed up.
+    // Footprints whose shorter axis is below four texels use level 0, so all texels can be summed directly.
     let size = 24_i64;
     let texture = noise(24, 24, 14);
     let mut random = Random(15);
@@ -353,7 +353,8 @@ fn elliptical_weights_match_a_naive_sum() {
 #[test]
 fn anisotropic_taps_follow_the_footprint() {
     let size = 256;
-    // A footprint of 32 by 4 texels along x. A wave of 16 texels across it survives, one of 16 texels along it does not.
+    // A footprint of 32 by 4 texels along x. It preserves a wave of 16 texels across it and removes one of 16 texels
+    // along it.
     let footprint = Footprint { dx: DVec2::new(32.0, 0.0) / 256.0, dy: DVec2::new(0.0, 4.0) / 256.0 };
     let amplitude = |filter, periods: DVec2| {
         let sampler = Sampler { filter, ..Sampler::default() };
@@ -377,7 +378,7 @@ fn anisotropic_is_trilinear_for_a_round_footprint() {
         let footprint = Footprint { dx: axis, dy: axis.perp() };
         let uv = DVec2::new(random.next(), random.next());
         let sample = |filter| Sampler { filter, ..Sampler::default() }.sample(&texture, uv, &footprint)[0];
-        // The ellipse's axes are equal up to rounding, which may ask for a second tap half an axis away.
+        // The ellipse's axes are equal up to rounding, which may add a second tap half an axis away.
         let (got, want) = (sample(Filter::Anisotropic), sample(Filter::Trilinear));
         assert!(f64::from(got - want).abs() < ROUNDING, "{got} {want}");
     }

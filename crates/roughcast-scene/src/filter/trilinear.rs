@@ -7,15 +7,15 @@ use super::footprint::Ellipse;
 use crate::Footprint;
 use crate::mipmap::{Level, Mipmap, whole_and_rest};
 
-/// The level of detail at which a footprint is about a texel wide: the logarithm of its larger extent, in texels.
+/// The level of detail at which a footprint is about one texel wide: the logarithm of its larger extent in texels.
 ///
-/// Hardware takes the longer of the two derivatives. That is at most the ellipse's longer axis, and at least the axis over
-/// the root of two: there up to half a level sharper.
+/// Hardware uses the longer of the two derivatives. That is at most the ellipse's longer axis and at least that axis
+/// divided by the square root of two, so hardware may be up to half a level sharper.
 pub(super) fn level_of(texels: &Footprint) -> f64 {
     Ellipse::of(texels).major.max(f64::MIN_POSITIVE).log2()
 }
 
-/// The texture at a level of detail, clamped to 0 and the last level.
+/// Samples the texture at a level of detail, clamped to 0 and the last level.
 pub(super) fn sample(mipmap: &Mipmap, uv: DVec2, level: f64, wrap: Wrap) -> [f64; 4] {
     let levels = mipmap.levels();
     let last = levels.len() - 1;

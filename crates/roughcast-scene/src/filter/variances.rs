@@ -1,4 +1,4 @@
-//! The part of the variance under a texture filter that is under the pixel, for every filter of the CPU renderer.
+//! The fraction of the variance under a texture filter that lies under the pixel, for every filter of the CPU renderer.
 
 use glam::DVec2;
 use roughcast::shading::{
@@ -10,8 +10,8 @@ use super::footprint::{Ellipse, in_texels, reduced};
 use super::{Filter, Sampler, anisotropic, ewa, summed_area};
 use crate::{Footprint, Mipmap};
 
-/// The position of a pixel among the four whose differences graphics hardware uses as derivatives: the sign of the step to its
-/// neighbour in the row, and in the column.
+/// The position of a pixel in the 2x2 quad whose differences graphics hardware uses as derivatives: the sign of the
+/// step to its neighbour in the row and in the column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Quad {
     x: f64,
@@ -19,28 +19,28 @@ pub(crate) struct Quad {
 }
 
 impl Quad {
-    /// For the pixel in this column and row.
+    /// The quad position of the pixel in this column and row.
     pub fn of(x: u32, y: u32) -> Self {
         let sign = |i: u32| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
         Self { x: sign(x), y: sign(y) }
     }
 }
 
-/// Where a pixel looks a texture up.
+/// The coordinates and footprint with which a pixel samples a texture.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lookup {
     /// Texture coordinates.
     pub uv: DVec2,
-    /// How they change to the next pixels.
+    /// Their change to the adjacent pixels.
     pub footprint: Footprint,
-    /// Which neighbours the derivatives of texels are taken from.
+    /// Which neighbours are used for the derivatives of texels.
     pub quad: Quad,
 }
 
 impl Sampler {
-    /// The part of the variance that is under the pixel, for a texture whose first two channels contain the mean slope, as `slope` unpacks it.
-    /// `mean` is that texture's texel at this point. Derivatives of the mean are differences of samples, as in graphics
-    /// hardware.
+    /// The fraction of the variance that lies under the pixel, for a texture whose first two channels contain the mean
+    /// slope as unpacked by `slope`. `mean` is that texture's texel at this point. Derivatives of the mean are
+    /// differences of samples, as in graphics hardware.
     pub(crate) fn footprint_ratio(
         &self,
         texture: &Mipmap,

@@ -1,8 +1,8 @@
 //! The nearest triangle on a ray.
 //!
 //! The `obvhs` crate's bounding volume hierarchy finds candidates in single floats; each is then intersected in f64. To
-//! avoid losing candidates by rounding, the hierarchy is built in units of the mesh's bounding sphere,
-//! rays are started close to it, and boxes are padded.
+//! avoid losing candidates through rounding, the hierarchy is built in units of the mesh's bounding sphere, rays start
+//! close to the sphere, and boxes are padded.
 
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
@@ -14,11 +14,12 @@ use super::intersect::{Found, Intersector};
 use super::{corners, position};
 use crate::{Bounds, Ray, TriangleMesh};
 
-/// Least padding of boxes, in radii of the mesh. Coordinates of vertices and of the ray's origin, at most 3 in size, are off by
-/// 1.2e-7 after rounding, distances of up to 5 along a rounded direction by 6e-7, and the test of a box rounds thrice.
+/// Minimum padding of boxes, in radii of the mesh. The rounding errors are 1.2e-7 for the coordinates of vertices and
+/// ray origins, which are at most 3 in size, and 6e-7 for distances of up to 5 along a rounded direction; the box test
+/// rounds three times.
 const PADDING: f32 = 4e-6;
 
-/// Rays start this many radii before the point nearest to the mesh's middle, if their eye is farther away.
+/// Rays from more distant eyes start this many mesh radii before the point nearest to the middle of the mesh.
 const START: f64 = 2.0;
 
 /// The hierarchy of a mesh's triangles, one per leaf.
@@ -40,7 +41,7 @@ impl TriangleBvh {
             })
             .collect();
         let triangles = (0..boxes.len() as u32).collect();
-        // No reinsertion of nodes: it may deepen the tree beyond the depth that the traversal's stack is made for.
+        // Reinsertion of nodes is disabled: it may deepen the tree beyond the fixed depth of the traversal's stack.
         let bvh = PlocBuilder::with_capacity(boxes.len()).build(
             PlocSearchDistance::Medium,
             &boxes,
@@ -80,8 +81,8 @@ impl TriangleBvh {
     }
 }
 
-/// A number in 0 .. 1 that differs from one triangle to the next. The hierarchy joins boxes that are each other's best
-/// partner; among equal boxes hardly any two are, and building it would take time that grows with their square.
+/// A number in 0 .. 1 that differs from one triangle to the next. The builder merges boxes that are each other's best
+/// partner; among equal boxes hardly any two are, and build time would grow with the square of their number.
 fn unevenness(triangle: usize) -> f32 {
     // The fractional parts of multiples of the golden ratio, as 32-bit integers.
     let spread = (triangle as u32).wrapping_mul(0x9e37_79b9);
@@ -105,7 +106,7 @@ mod tests {
         mesh
     }
 
-    /// Evenly spread unit vectors (Vogel's spiral).
+    /// Evenly distributed unit vectors (Vogel's spiral).
     fn directions(count: usize) -> impl Iterator<Item = DVec3> {
         (0..count).map(move |i| {
             let z = 1.0 - (2 * i + 1) as f64 / count as f64;
@@ -124,7 +125,7 @@ mod tests {
             let bvh = TriangleBvh::new(&mesh, bounds);
             let mut hits = 0;
             for (i, direction) in directions(400).enumerate() {
-                // Eyes inside, near and very far; rays at and past the mesh, some along the axes.
+                // Eyes inside, near and very far away; rays that hit and miss the mesh, some along the axes.
                 let away = [0.0, 0.7, 3.0, 1e5][i % 4] * bounds.radius;
                 let aim = bounds.centre + directions(97).nth(i % 97).unwrap() * bounds.radius * 0.9;
                 let origin = bounds.centre + direction * away;
@@ -144,7 +145,7 @@ mod tests {
         let mesh = mesh(1.0, [0.0; 3]);
         let bounds = super::super::merge::bounds(&mesh).unwrap();
         let bvh = TriangleBvh::new(&mesh, bounds);
-        // From the middle of the tube every ray must meet it, and hardest at corners and on edges.
+        // From the middle of the tube every ray must hit the mesh; corners and edges are the hardest cases.
         let origin = DVec3::new(0.0, 0.0, 1.0);
         for triangle in 0..mesh.indices.len() / 3 {
             let [a, b, c] = corners(&mesh, triangle).map(|i| position(&mesh, i));

@@ -1,18 +1,18 @@
-//! Why a mesh cannot be used.
+//! Reasons why a mesh cannot be used.
 
 /// What is wrong with a mesh, and the remedy.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshFault {
-    /// More than [`super::MAX_TRIANGLES`] or [`super::MAX_VERTICES`].
+    /// More triangles than [`super::MAX_TRIANGLES`] or more vertices than [`super::MAX_VERTICES`].
     #[error("more {what} than the limit of {limit}: simplify the mesh or split it")]
     TooLarge {
         /// Triangles or vertices.
         what: &'static str,
-        /// The most there may be.
+        /// The maximum number.
         limit: usize,
     },
-    /// No triangle can be hit.
+    /// The mesh has no triangle with an area.
     #[error("no triangle with an area: give a mesh with a surface")]
     NoTriangles,
     /// A triangle refers to a missing vertex.
@@ -20,17 +20,17 @@ pub enum MeshFault {
     IndexOutOfRange {
         /// The index, counted from zero.
         index: u32,
-        /// Vertices of that part.
+        /// Number of vertices of the part.
         vertices: usize,
     },
-    /// Indices that are not triples, or attributes of different lengths.
+    /// The indices are not triples, or attributes differ in length.
     #[error("{count} {what} do not fit {expected}: export the mesh again")]
     Count {
-        /// Which.
+        /// Name of the array.
         what: &'static str,
-        /// How many there are.
+        /// Its actual length.
         count: usize,
-        /// What they should fit.
+        /// The expected length.
         expected: String,
     },
     /// NaN or infinity.
@@ -38,23 +38,23 @@ pub enum MeshFault {
     NotFinite {
         /// Positions, normals, tangents or texture coordinates.
         what: &'static str,
-        /// The first such vertex, counted from zero.
+        /// The first invalid vertex, counted from zero.
         vertex: usize,
     },
-    /// Too small or too large for the arithmetic of single floats.
+    /// The mesh is too small or too large for single-float arithmetic.
     #[error(
         "the mesh has a radius of {radius:e}, {middle:e} from the origin: rescale it to a radius of \
          {MIN_RADIUS:e} to {MAX_RADIUS:e} and a middle no farther away"
     )]
     Size {
-        /// Of the bounding sphere.
+        /// Radius of the bounding sphere.
         radius: f64,
         /// Distance of its middle from the origin.
         middle: f64,
     },
 }
 
-/// Smallest radius of a mesh: squares and fourth powers of it are still normal single floats.
+/// Minimum radius of a mesh: its square and fourth power are still normal single floats.
 pub(super) const MIN_RADIUS: f64 = 1e-9;
-/// Largest radius of a mesh, and largest distance of its middle from the origin.
+/// Maximum radius of a mesh, and maximum distance of its middle from the origin.
 pub(super) const MAX_RADIUS: f64 = 1e9;

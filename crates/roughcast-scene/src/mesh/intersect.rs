@@ -1,4 +1,4 @@
-//! Where a ray meets triangles.
+//! Intersects rays with triangles.
 
 use glam::DVec3;
 
@@ -17,8 +17,8 @@ pub(super) struct Found {
     pub weights: DVec3,
 }
 
-/// The nearest triangle on a ray, found by testing all of them: used without the feature `render`, and as the reference for
-/// the hierarchy.
+/// Finds the nearest triangle on a ray by testing all of them. Used without the feature `render`, and as the reference
+/// for the hierarchy.
 #[cfg(any(test, not(feature = "render")))]
 #[derive(Clone)]
 pub(super) struct AllTriangles;
@@ -43,11 +43,11 @@ impl AllTriangles {
 /// A ray prepared for intersection with triangles.
 ///
 /// After Woop, Benthin and Wald, Watertight Ray/Triangle Intersection, 2013: space is sheared so that the ray is its z
-/// axis, and a point is inside where it lies on the same side of three edges. An edge that two triangles share is
-/// computed from the same numbers for both, with the opposite sign, so no ray passes between them.
+/// axis, and a point is inside if it lies on the same side of all three edges. For an edge shared by two triangles,
+/// both compute the same numbers with opposite signs, so no ray passes between them.
 pub(super) struct Intersector {
     origin: DVec3,
-    /// The axes in the order (x, y, z) of the sheared space: z is the one along which the ray is longest.
+    /// The axes in the order (x, y, z) of the sheared space; z is the axis along which the ray's direction is largest.
     axes: [usize; 3],
     shear: DVec3,
 }
@@ -78,7 +78,7 @@ impl Intersector {
         let sum = sides.x + sides.y + sides.z;
         let weights = sides / sum;
         let distance = weights.dot(DVec3::new(a.z, b.z, c.z));
-        // False for NaN: a triangle viewed edge-on, whose sides are all zero.
+        // False for NaN, which results for triangles seen edge-on, whose edge functions are all zero.
         (distance > 0.0 && distance.is_finite()).then_some((distance, weights))
     }
 }

@@ -1,4 +1,5 @@
-//! Merges the parts of a mesh into one set of checked arrays, in which missing normals, tangents and texture coordinates are zero.
+//! Merges the parts of a mesh into one set of checked arrays. Missing normals, tangents and texture coordinates become
+//! zero.
 
 use std::collections::HashSet;
 
@@ -8,7 +9,7 @@ use super::error::{MAX_RADIUS, MIN_RADIUS};
 use super::{MAX_TRIANGLES, MAX_VERTICES, MeshFault, position};
 use crate::{Bounds, TriangleMesh};
 
-/// One mesh of all parts, whose triangles have an area and differ.
+/// Merges all parts into one mesh without duplicate triangles or triangles without an area.
 pub(super) fn merge(parts: Vec<TriangleMesh>) -> Result<TriangleMesh, MeshFault> {
     let mut merged = TriangleMesh::default();
     for part in parts {
@@ -31,20 +32,20 @@ pub(super) fn merge(parts: Vec<TriangleMesh>) -> Result<TriangleMesh, MeshFault>
     if merged.indices.is_empty() { Err(MeshFault::NoTriangles) } else { Ok(merged) }
 }
 
-/// Appends the attribute of a part with this many vertices, or zeros if it has none.
+/// Appends the attribute of a part with this many vertices, or zeros if the part lacks it.
 fn append<const N: usize>(to: &mut Vec<[f32; N]>, from: Vec<[f32; N]>, vertices: usize) {
     let length = to.len() + vertices;
     to.extend(from);
     to.resize(length, [0.0; N]);
 }
 
-/// The number of sets of texture coordinates of a part: those before the first empty one.
+/// The number of texture coordinate sets of a part: those before the first empty one.
 pub(super) fn uv_set_count(part: &TriangleMesh) -> usize {
     part.uv_sets.iter().take_while(|set| !set.is_empty()).count()
 }
 
-/// Appends the texture coordinates of a part with this many vertices after the existing `before` ones. Vertices without a
-/// set that another part has get zeros.
+/// Appends the texture coordinates of a part with this many vertices to those of the `before` existing vertices.
+/// Vertices without a set that another part has get zeros.
 fn append_sets(to: &mut Vec<Vec<[f32; 2]>>, mut from: Vec<Vec<[f32; 2]>>, before: usize, vertices: usize) {
     to.resize(to.len().max(from.len()), vec![[0.0; 2]; before]);
     from.resize(to.len(), Vec::new());
@@ -53,7 +54,7 @@ fn append_sets(to: &mut Vec<Vec<[f32; 2]>>, mut from: Vec<Vec<[f32; 2]>>, before
     }
 }
 
-/// Checks that the arrays and indices of a part fit together and all numbers are finite.
+/// Checks that the arrays and indices of a part are consistent and all numbers are finite.
 fn check(part: &TriangleMesh) -> Result<(), MeshFault> {
     let vertices = part.positions.len();
     if !part.indices.len().is_multiple_of(3) {
@@ -87,15 +88,16 @@ fn check_attribute<const N: usize>(
     }
 }
 
-/// Drops triangles without an area, and those that repeat an earlier one's positions: no ray meets them first, and the
-/// time that tangents take grows with the square of the number of triangles on one edge.
+/// Drops triangles without an area, and those that repeat an earlier one's positions. No ray hits them first, and the
+/// time to compute tangents grows with the square of the number of triangles on one edge.
 fn drop_unseen_triangles(mesh: &mut TriangleMesh) {
     let mut seen = HashSet::with_capacity(mesh.indices.len() / 3);
     let mut kept = Vec::with_capacity(mesh.indices.len());
     for triangle in mesh.indices.chunks_exact(3) {
         let vertices: [usize; 3] = std::array::from_fn(|i| triangle[i] as usize);
         let [a, b, c] = vertices.map(|i| position(mesh, i));
-        // The same triangle may start at any of its vertices; with reversed order it is a different one, the back of a sheet.
+        // The same triangle may start at any of its vertices. With reversed order it is a different triangle, the back
+        // of a sheet.
         let mut key = vertices.map(|i| mesh.positions[i].map(f32::to_bits));
         let least = (0..3).min_by_key(|&i| key[i]).unwrap_or(0);
         key.rotate_left(least);
@@ -106,7 +108,7 @@ fn drop_unseen_triangles(mesh: &mut TriangleMesh) {
     mesh.indices = kept;
 }
 
-/// The sphere about the middle of the bounding box of all triangles.
+/// The bounding sphere about the middle of the bounding box of all triangles.
 pub(super) fn bounds(mesh: &TriangleMesh) -> Result<Bounds, MeshFault> {
     let vertices = || mesh.indices.iter().map(|&i| position(mesh, i as usize));
     let (low, high) =

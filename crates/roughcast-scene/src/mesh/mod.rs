@@ -20,19 +20,19 @@ use bvh::TriangleBvh as Triangles;
 #[cfg(not(feature = "render"))]
 use intersect::AllTriangles as Triangles;
 
-/// The most triangles of a mesh. Reading one this large from a file takes about two gigabytes.
+/// Maximum number of triangles of a mesh. Reading a mesh of this size from a file takes about two gigabytes.
 pub const MAX_TRIANGLES: usize = 1 << 22;
-/// The most vertices of a mesh.
+/// Maximum number of vertices of a mesh.
 pub const MAX_VERTICES: usize = 3 * MAX_TRIANGLES;
 
 /// A triangle mesh with a frame and, if it has them, texture coordinates at each vertex.
 #[derive(Clone)]
 pub struct Mesh {
     triangles: TriangleMesh,
-    /// The number of sets that every part has.
+    /// Number of texture coordinate sets that every part has.
     uv_set_count: usize,
     bounds: Bounds,
-    /// Finds the triangle that a ray hits.
+    /// Finds the triangle hit by a ray.
     finder: Triangles,
 }
 
@@ -48,13 +48,13 @@ impl std::fmt::Debug for Mesh {
 }
 
 impl Mesh {
-    /// A mesh of one or more parts.
+    /// Creates a mesh from one or more parts.
     ///
-    /// Each part needs positions and indices; its other arrays may be empty. Missing normals are computed, smooth across
-    /// all triangles that meet at a position and weighted by their areas; missing tangents by MikkTSpace. A triangle that
-    /// turns clockwise seen from the side that its normals point to is reversed. Triangles without an area,
-    /// and duplicates, are dropped. The mesh has the sets of texture coordinates that all parts
-    /// have: none, if one part has none.
+    /// Each part needs positions and indices; its other arrays may be empty. Missing normals are computed as the
+    /// area-weighted mean over all triangles that meet at a position; missing tangents are computed by MikkTSpace. A
+    /// triangle that is clockwise as seen from the side its normals point to is reversed. Duplicates and triangles
+    /// without an area are dropped. The mesh has only the sets of texture coordinates that all parts have: none if one
+    /// part has none.
     pub fn new(parts: Vec<TriangleMesh>) -> Result<Self, MeshFault> {
         let uv_set_count = parts.iter().map(merge::uv_set_count).min().unwrap_or(0);
         let mut triangles = merge::merge(parts)?;
@@ -66,8 +66,8 @@ impl Mesh {
         Ok(Self { triangles, uv_set_count, bounds, finder })
     }
 
-    /// Whether every part has texture coordinates. Without them hits have no set of them, and a frame with an arbitrary
-    /// tangent.
+    /// Whether every part has texture coordinates. Without them, hits have no texture coordinate sets, and the frame's
+    /// tangent is arbitrary.
     pub fn has_texture_coordinates(&self) -> bool {
         self.uv_set_count > 0
     }
@@ -92,15 +92,15 @@ impl Mesh {
         self.bounds
     }
 
-    /// See [`crate::Shape::hit`]. Its time grows with the logarithm of the number of triangles; without the feature `render`,
-    /// which has the hierarchy for it, with their number. The point, the texture coordinates and the geometric normal are those of the flat triangle;
-    /// the frame is interpolated between its vertices.
+    /// See [`crate::Shape::hit`]. Time grows with the logarithm of the number of triangles, or linearly without the
+    /// feature `render`, which provides the hierarchy. The point, the texture coordinates and the geometric normal are
+    /// those of the flat triangle; the frame is interpolated between its vertices.
     pub fn hit(&self, ray: &Ray) -> Option<Hit<'_>> {
         let found = self.finder.nearest(&self.triangles, ray)?;
         Some(facing(self.hit_on_triangle(found.triangle, found.weights, found.distance), ray))
     }
 
-    /// The point of a triangle with the given barycentric coordinates, seen from its front.
+    /// The point of a triangle with the given barycentric coordinates, as seen from the front.
     fn hit_on_triangle(&self, triangle: usize, weights: DVec3, distance: f64) -> Hit<'_> {
         let mesh = &self.triangles;
         let k = corners(mesh, triangle);

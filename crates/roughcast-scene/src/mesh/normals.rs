@@ -1,4 +1,4 @@
-//! Vertex normals: orients triangles by the file's normals, and computes smooth ones if the file has none.
+//! Vertex normals: orients triangles by the normals in the file, and computes smooth normals if there are none.
 
 use std::collections::HashMap;
 
@@ -7,8 +7,8 @@ use glam::{DVec3, Vec3};
 use super::{corners, position};
 use crate::TriangleMesh;
 
-/// Reverses the triangles that turn clockwise seen from where their vertices' normals point, so that the geometric
-/// normal and the handedness of tangents agree with the outer side of the file.
+/// Reverses the triangles that are clockwise as seen from the side their vertex normals point to, so that the geometric
+/// normal and the handedness of tangents match the outer side in the file.
 pub(super) fn turn_towards_normals(mesh: &mut TriangleMesh) {
     for triangle in 0..mesh.indices.len() / 3 {
         let k = corners(mesh, triangle);
@@ -20,7 +20,7 @@ pub(super) fn turn_towards_normals(mesh: &mut TriangleMesh) {
     }
 }
 
-/// Makes all normals unit; those that are zero become the mean of the triangles at their position, weighted by area.
+/// Normalises all normals. Zero normals are replaced by the area-weighted mean of the triangles at their position.
 pub(super) fn complete(mesh: &mut TriangleMesh) {
     let missing = mesh.normals.contains(&[0.0; 3]);
     let smooth = if missing { sums_by_position(mesh) } else { HashMap::new() };
@@ -28,12 +28,13 @@ pub(super) fn complete(mesh: &mut TriangleMesh) {
         let given = Vec3::from(*normal).as_dvec3();
         let wanted =
             if given == DVec3::ZERO { smooth.get(&key(*p)).copied().unwrap_or_default() } else { given };
-        // Opposite triangles may cancel, and unused vertices have no triangle; no hit uses the direction then.
+        // Opposite triangles may cancel, and unused vertices have no triangle; no hit uses the direction in these
+        // cases.
         *normal = wanted.normalize_or(DVec3::Y).as_vec3().into();
     }
 }
 
-/// The sum of twice the area vectors of the triangles that meet at each position.
+/// The sum of the doubled area vectors of the triangles that meet at each position.
 fn sums_by_position(mesh: &TriangleMesh) -> HashMap<[u32; 3], DVec3> {
     let mut sums = HashMap::new();
     for triangle in 0..mesh.indices.len() / 3 {
@@ -46,7 +47,7 @@ fn sums_by_position(mesh: &TriangleMesh) -> HashMap<[u32; 3], DVec3> {
     sums
 }
 
-/// A position as a key; both zeros are equal.
+/// A position as a hash key; positive and negative zero are equal.
 fn key(position: [f32; 3]) -> [u32; 3] {
     position.map(|x| (x + 0.0).to_bits())
 }

@@ -1,4 +1,5 @@
-//! Vertex tangents, by MikkTSpace if the file has none: Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008.
+//! Vertex tangents, computed by MikkTSpace if the file has none: Mikkelsen, Simulation of Wrinkled Surfaces Revisited,
+//! 2008.
 //!
 //! MikkTSpace's bitangent is along growing v. Ours is along falling v, so we pass (u, 1 - v).
 
@@ -10,15 +11,16 @@ use glam::{Vec3, Vec4};
 use super::corners;
 use crate::TriangleMesh;
 
-/// Makes all tangents unit and orthogonal to their normals; triangles with a vertex without a tangent get new ones,
-/// for which vertices are split if triangles disagree.
+/// Makes all tangents unit and orthogonal to their normals. Triangles with a vertex that has no tangent get new
+/// tangents; vertices are split if triangles disagree.
 pub(super) fn complete(mesh: &mut TriangleMesh) {
     let faces: Vec<usize> = (0..mesh.indices.len() / 3)
         .filter(|&triangle| corners(mesh, triangle).iter().any(|&i| mesh.tangents[i][..3] == [0.0; 3]))
         .collect();
     if !faces.is_empty() {
         let mut generated = Generated { tangents: vec![[0.0; 4]; 3 * faces.len()], faces, mesh };
-        // Its error has no variants. If one is added, the tangents would stay zero and arbitrary ones would be used.
+        // The error type has no variants. If one is added, the tangents would stay zero and arbitrary ones would be
+        // used.
         let _ = generate_tangents(&mut generated);
         let Generated { tangents, faces, .. } = generated;
         split_vertices(mesh, &faces, &tangents);
@@ -70,7 +72,7 @@ impl Geometry for Generated<'_> {
     }
 }
 
-/// Gives the corners of `faces` their tangents; a vertex that gets several becomes several.
+/// Assigns tangents to the corners of `faces`. A vertex that gets several tangents is split.
 fn split_vertices(mesh: &mut TriangleMesh, faces: &[usize], tangents: &[[f32; 4]]) {
     let mut vertices = HashMap::new();
     let mut taken = vec![false; mesh.positions.len()];
@@ -79,7 +81,8 @@ fn split_vertices(mesh: &mut TriangleMesh, faces: &[usize], tangents: &[[f32; 4]
             let place = 3 * triangle + corner;
             let (old, tangent) = (mesh.indices[place] as usize, tangents[3 * face + corner]);
             let new = *vertices.entry((old, tangent.map(f32::to_bits))).or_insert_with(|| {
-                // The first keeps the vertex, unless its tangent is a given one, which other triangles may use.
+                // The first tangent keeps the vertex, unless the vertex has a tangent from the file, which other
+                // triangles may use.
                 if !std::mem::replace(&mut taken[old], true) && mesh.tangents[old][..3] == [0.0; 3] {
                     mesh.tangents[old] = tangent;
                     return old as u32;
@@ -95,7 +98,7 @@ fn split_vertices(mesh: &mut TriangleMesh, faces: &[usize], tangents: &[[f32; 4]
     }
 }
 
-/// The tangent made unit and orthogonal to the normal, with a handedness of one or minus one; an arbitrary one if it is zero.
+/// The tangent made unit and orthogonal to the normal, with a handedness of one or minus one; arbitrary if it is zero.
 fn orthonormal(tangent: [f32; 4], normal: [f32; 3]) -> [f32; 4] {
     let (tangent, normal) = (Vec4::from(tangent), Vec3::from(normal));
     let along = tangent.truncate().reject_from_normalized(normal);

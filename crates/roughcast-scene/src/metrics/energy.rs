@@ -1,10 +1,10 @@
-//! Error of the highlights' energy.
+//! Error of the highlights' energy relative to the ground truth.
 
 use super::{MetricError, covered};
 use crate::Picture;
 
-/// Relative error of the energy of the highlights: the sum of the specular radiance over covered pixels and all channels,
-/// divided by the ground truth's, minus one. Negative if the picture is too dark.
+/// Relative error of the energy of the highlights: the sum of the specular radiance over covered pixels and all
+/// channels, divided by the ground truth's, minus one. Negative if the picture is too dark.
 ///
 /// # Errors
 /// [`MetricError::NoHighlight`] if the ground truth has no specular light; [`MetricError::Sizes`],

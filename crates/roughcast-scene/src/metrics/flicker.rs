@@ -5,11 +5,13 @@ use crate::Picture;
 
 /// Temporal variance in excess of the ground truth's, over the frames of a slow camera move.
 ///
-/// For each pixel and channel, `max(0, var(picture) - var(truth))` with the population variance over the frames; then the
-/// mean over all channels and over the pixels that are covered in every frame of both. The unit is radiance squared; no
-/// root is taken, so that the flicker of parts of a picture adds up, and a ratio of two flickers is a ratio of energies.
+/// For each pixel and channel, `max(0, var(picture) - var(truth))` with the population variance over the frames; then
+/// the mean over all channels and over the pixels that are covered in every frame of both. The unit is radiance
+/// squared; no root is taken, so that the flicker of parts of a picture adds up, and a ratio of two flickers is a ratio
+/// of energies.
 ///
-/// The changes in the ground truth itself, as bumps pass a pixel, are thus allowed, even if a method shows less of them.
+/// Changes in the ground truth itself, as bumps pass a pixel, are thus not counted, even if a method shows fewer of
+/// them.
 ///
 /// # Errors
 /// [`MetricError::Frames`] for fewer than two frames or different numbers; [`MetricError::Sizes`],
@@ -50,7 +52,7 @@ mod tests {
         let still = sequence(|_, x| x as f32);
         let blinking = sequence(|frame, x| x as f32 + if frame % 2 == 0 { 0.5 } else { -0.5 });
         assert_eq!(flicker(&blinking, &still), Ok(0.25));
-        // The ground truth may blink, and a method may blink less.
+        // The ground truth may blink, and a method may blink less without being penalised.
         assert_eq!(flicker(&still, &blinking), Ok(0.0));
         assert_eq!(flicker(&blinking, &blinking), Ok(0.0));
     }

@@ -1,4 +1,4 @@
-//! FLIP, the difference that a viewer sees when flipping between two pictures.
+//! FLIP, the difference that a viewer perceives when flipping between two pictures.
 //!
 //! Source: P. Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", 2020 (LDR), and P. Andersson,
 //! J. Nilsson, P. Shirley, T. Akenine-Möller, "Visualizing Errors in Rendered High Dynamic Range Images", 2021 (HDR).
@@ -10,27 +10,28 @@ use super::{COVERED, MetricError, covered};
 use crate::Picture;
 use crate::picture::luminance;
 
-/// Pixels to a degree of the view: 3840 of them on a screen 0.7 m wide, seen from 0.7 m.
+/// Pixels per degree of visual angle: 3840 pixels on a screen 0.7 m wide, viewed from 0.7 m.
 pub const DEFAULT_PIXELS_PER_DEGREE: f32 = 67.020_64;
 
 /// Exponent of the colour difference.
 const COLOUR_EXPONENT: f32 = 0.7;
-/// Exponent of the difference of features.
+/// Exponent of the feature difference.
 const FEATURE_EXPONENT: f32 = 0.5;
-/// Where the error's scale bends: this part of the largest colour difference ...
+/// The error scale bends where the colour difference is this fraction of its maximum ...
 const BEND_AT: f32 = 0.4;
-/// ... becomes this error.
+/// ... and that difference becomes this error.
 const BEND_TO: f32 = 0.95;
-/// The white of CIE's D65, as XYZ.
+/// The D65 white point of the CIE, as XYZ.
 const WHITE: [f32; 3] = [0.950_428_55, 1.0, 1.088_900_4];
 
-/// Numerator and denominator of the tone curve of HDR-FLIP, by falling power: the fit of ACES by K. Narkowicz, its
-/// exposure of 0.6 within.
+/// Numerator and denominator of the tone curve of HDR-FLIP, coefficients by falling power: K. Narkowicz's fit of ACES,
+/// including its exposure of 0.6.
 const TONE_NUMERATOR: [f32; 3] = [0.6 * 0.6 * 2.51, 0.6 * 0.03, 0.0];
 const TONE_DENOMINATOR: [f32; 3] = [0.6 * 0.6 * 2.43, 0.6 * 0.59, 0.14];
-/// The exposures lie between the one that shows the brightest pixel at this value, and the one that shows the median at it.
+/// The exposure range extends from the exposure that maps the brightest pixel to this value to the one that maps the
+/// median to it.
 const TONE_TARGET: f32 = 0.85;
-/// The most stops that are used. The paper sets no bound; without one, a mostly black ground truth would need all.
+/// Maximum number of stops. The paper sets no bound; without one, a mostly black ground truth would require all stops.
 const MAX_STOPS: f32 = 20.0;
 
 /// The errors of all pixels, and their mean.
@@ -40,11 +41,11 @@ pub struct FlipMap {
     pub width: usize,
     /// Errors, 0 ..= 1, row by row; 0 where a picture is not covered.
     pub errors: Vec<f32>,
-    /// Mean error over the covered pixels.
+    /// Mean error over the covered pixels of both pictures.
     pub mean: f64,
 }
 
-/// LDR-FLIP of two pictures of linear RGB within 0 ..= 1; other values are clamped.
+/// LDR-FLIP of two pictures in linear RGB within 0 ..= 1; other values are clamped.
 ///
 /// # Errors
 /// [`MetricError::Sizes`], [`MetricError::NothingCovered`].
@@ -56,7 +57,8 @@ pub fn ldr_flip(picture: &Picture, truth: &Picture, pixels_per_degree: f32) -> R
     Ok(FlipMap::over(&pixels, truth.width, errors))
 }
 
-/// HDR-FLIP of two pictures of linear radiance: the largest LDR-FLIP over exposures that the ground truth's covered pixels determine.
+/// HDR-FLIP of two pictures of linear radiance: the largest LDR-FLIP over a range of exposures that is determined by
+/// the ground truth's covered pixels.
 ///
 /// # Errors
 /// [`MetricError::Sizes`], [`MetricError::NothingCovered`].
@@ -82,7 +84,8 @@ impl FlipMap {
     }
 }
 
-/// The picture, with the ground truth's pixels where either is not fully covered: the filters would spread them.
+/// The picture with pixels replaced by the ground truth's if either is not fully covered, because the filters would
+/// spread them.
 fn alike(picture: &Picture, truth: &Picture) -> Picture {
     let mut picture = picture.clone();
     for i in 0..truth.len() {
@@ -100,21 +103,21 @@ fn unit(x: f32) -> f32 {
 
 /// The tone curve.
 fn toned(x: f32) -> f32 {
-    /// Beyond this the curve is constant, and squares would leave the range of f32.
+    /// Above this value the curve is constant, and squares would exceed the range of f32.
     const BRIGHTEST: f32 = 1e9;
     let x = if x > 0.0 { x.min(BRIGHTEST) } else { 0.0 };
     let polynomial = |[a, b, c]: [f32; 3]| (a * x + b) * x + c;
     unit(polynomial(TONE_NUMERATOR) / polynomial(TONE_DENOMINATOR))
 }
 
-/// The exposure factors, from the ground truth (HDR-FLIP, section 3.2).
+/// The exposure factors, derived from the ground truth (HDR-FLIP, section 3.2).
 pub(super) fn exposures(mut luminances: Vec<f32>) -> Vec<f32> {
     luminances.retain(|y| y.is_finite());
     luminances.sort_by(f32::total_cmp);
     let Some(brightest) = luminances.last().copied().filter(|y| *y > 0.0) else { return vec![1.0] };
     let median = luminances[(luminances.len() - 1) / 2];
 
-    // The radiance that the curve shows at the target: the positive root of a quadratic.
+    // The radiance that the curve maps to the target: the positive root of a quadratic.
     let [a, b, c] = std::array::from_fn(|i| TONE_NUMERATOR[i] - TONE_TARGET * TONE_DENOMINATOR[i]);
     let target = (-b + (b * b - 4.0 * a * c).sqrt()) / (2.0 * a);
     let start = (target / brightest).log2();
@@ -123,7 +126,7 @@ pub(super) fn exposures(mut luminances: Vec<f32>) -> Vec<f32> {
     (0..count as usize).map(|i| (start + (stop - start) * i as f32 / (count - 1.0)).exp2()).collect()
 }
 
-/// LDR-FLIP's error of each pixel, from linear RGB within 0 ..= 1.
+/// The LDR-FLIP error of each pixel, from linear RGB within 0 ..= 1.
 fn errors(test: &[[f32; 3]], reference: &[[f32; 3]], width: usize, pixels_per_degree: f32) -> Vec<f32> {
     let [test, reference] = [test, reference].map(|rgb| {
         let opponent: Vec<[f32; 3]> =
@@ -153,7 +156,7 @@ fn errors(test: &[[f32; 3]], reference: &[[f32; 3]], width: usize, pixels_per_de
 
 // ---- colour --------------------------------------------------------------------------------------------------------
 
-/// XYZ of linear sRGB.
+/// Converts linear sRGB to XYZ.
 fn xyz_from_rgb([r, g, b]: [f32; 3]) -> [f32; 3] {
     [
         0.412_386_56 * r + 0.357_591_5 * g + 0.180_450_5 * b,
@@ -162,7 +165,7 @@ fn xyz_from_rgb([r, g, b]: [f32; 3]) -> [f32; 3] {
     ]
 }
 
-/// Linear sRGB of XYZ: the inverse of [`xyz_from_rgb`].
+/// Converts XYZ to linear sRGB: the inverse of [`xyz_from_rgb`].
 fn rgb_from_xyz([x, y, z]: [f32; 3]) -> [f32; 3] {
     [
         3.241_003_3 * x - 1.537_398_9 * y - 0.498_615_86 * z,
@@ -171,7 +174,7 @@ fn rgb_from_xyz([x, y, z]: [f32; 3]) -> [f32; 3] {
     ]
 }
 
-/// The opponent space YCxCz: L*a*b* without its cube root, so that it is linear and may be filtered.
+/// Converts XYZ to the opponent space YCxCz: L*a*b* without its cube root, so that it is linear and can be filtered.
 fn opponent_from_xyz(xyz: [f32; 3]) -> [f32; 3] {
     let [x, y, z] = std::array::from_fn(|i| xyz[i] / WHITE[i]);
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
@@ -192,7 +195,7 @@ fn lab_from_xyz(xyz: [f32; 3]) -> [f32; 3] {
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
 }
 
-/// A filtered opponent colour in L*a*b*, with the Hunt effect: dark colours look less colourful.
+/// Converts a filtered opponent colour to L*a*b*, with the Hunt effect: dark colours look less colourful.
 fn perceived(opponent: [f32; 3]) -> [f32; 3] {
     let rgb = rgb_from_xyz(xyz_from_opponent(opponent)).map(unit);
     let [l, a, b] = lab_from_xyz(xyz_from_rgb(rgb));
@@ -204,13 +207,13 @@ fn distance(a: [f32; 3], b: [f32; 3]) -> f32 {
     (a[0] - b[0]).abs() + (a[1] - b[1]).hypot(a[2] - b[2])
 }
 
-/// The largest difference that two colours of the RGB cube have, green and blue, raised as differences are.
+/// The largest difference of two colours of the RGB cube, that of green and blue, raised to the colour exponent.
 fn largest_colour_difference() -> f32 {
     let colour = |rgb| perceived(opponent_from_xyz(xyz_from_rgb(rgb)));
     distance(colour([0.0, 1.0, 0.0]), colour([0.0, 0.0, 1.0])).powf(COLOUR_EXPONENT)
 }
 
-/// A difference on a scale of 0 to 1 that leaves little room to the largest ones (section 4.1.3).
+/// Maps a difference to 0 to 1, compressing the largest differences (section 4.1.3).
 fn colour_error(distance: f32, largest: f32) -> f32 {
     let (raised, bend) = (distance.powf(COLOUR_EXPONENT), BEND_AT * largest);
     if raised < bend {

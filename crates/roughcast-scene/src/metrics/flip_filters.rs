@@ -14,7 +14,7 @@ pub(super) struct Plane {
     pub values: Vec<f32>,
 }
 
-/// A Gaussian of the contrast sensitivity function, `a sqrt(pi / b) exp(-pi^2 x^2 / b)` with x in degrees: (a, b).
+/// A Gaussian term (a, b) of the contrast sensitivity function, `a sqrt(pi / b) exp(-pi^2 x^2 / b)` with x in degrees.
 type Term = (f32, f32);
 
 /// Sensitivity to changes of luminance.
@@ -23,22 +23,22 @@ pub(super) const ACHROMATIC: &[Term] = &[(1.0, 0.0047)];
 pub(super) const RED_GREEN: &[Term] = &[(1.0, 0.0053)];
 /// Sensitivity to changes between blue and yellow.
 pub(super) const BLUE_YELLOW: &[Term] = &[(34.1, 0.04), (13.5, 0.025)];
-/// The widest b of all: it sets the reach of all kernels.
+/// The largest b of all terms; it determines the radius of all kernels.
 const WIDEST: f32 = 0.04;
-/// Distance from peak to trough of the eye's edge detector, in degrees: twice the standard deviation of its Gaussian.
+/// Distance from peak to trough of the eye's edge detector, in degrees: twice the Gaussian's standard deviation.
 const FEATURE_WIDTH: f32 = 0.082;
-/// Standard deviations at which kernels end.
+/// Number of standard deviations at which kernels are truncated.
 const STANDARD_DEVIATIONS: f32 = 3.0;
 
-/// A kernel of odd length, its middle in the middle.
+/// A centred kernel of odd length.
 fn kernel(radius: i32, weight: impl Fn(f32) -> f32) -> Vec<f32> {
     (-radius..=radius).map(|i| weight(i as f32)).collect()
 }
 
-/// A plane as perceived by the eye: filtered by a contrast sensitivity function, normalised to a sum of one.
+/// A plane as perceived by the eye: filtered by a contrast sensitivity function that is normalised to a sum of one.
 pub(super) fn seen(plane: &Plane, terms: &[Term], pixels_per_degree: f32) -> Plane {
     let radius = (STANDARD_DEVIATIONS * (WIDEST / (2.0 * PI * PI)).sqrt() * pixels_per_degree).ceil() as i32;
-    // A Gaussian in the plane is the product of two along the axes; a sum of two is filtered in two parts.
+    // A two-dimensional Gaussian is the product of two along the axes; a sum of two Gaussians is filtered in two parts.
     let parts: Vec<(f32, Vec<f32>)> = terms
         .iter()
         .map(|(a, b)| {
@@ -56,7 +56,7 @@ pub(super) fn seen(plane: &Plane, terms: &[Term], pixels_per_degree: f32) -> Pla
     result
 }
 
-/// How strongly each pixel of a luminance plane (0 ..= 1) is an edge, and how strongly a point.
+/// The strength of edges and of points at each pixel of a luminance plane (0 ..= 1).
 pub(super) fn features(plane: &Plane, pixels_per_degree: f32) -> [Plane; 2] {
     let deviation = 0.5 * FEATURE_WIDTH * pixels_per_degree;
     let radius = (STANDARD_DEVIATIONS * deviation).ceil() as i32;
@@ -74,7 +74,7 @@ pub(super) fn features(plane: &Plane, pixels_per_degree: f32) -> [Plane; 2] {
     })
 }
 
-/// The positive weights sum to one, and the negative ones to minus one.
+/// Scales the weights so that the positive ones sum to one and the negative ones to minus one.
 fn balanced(mut weights: Vec<f32>) -> Vec<f32> {
     let positive: f32 = weights.iter().filter(|w| **w > 0.0).sum();
     let negative: f32 = -weights.iter().filter(|w| **w < 0.0).sum::<f32>();
@@ -84,8 +84,8 @@ fn balanced(mut weights: Vec<f32>) -> Vec<f32> {
     weights
 }
 
-/// A plane correlated with a separable kernel, one along the rows and one down the columns. Beyond the edges
-/// the edge pixels repeat.
+/// Correlates a plane with a separable kernel, given as one kernel along the rows and one down the columns. Edge pixels
+/// are repeated beyond the edges.
 fn separable(plane: &Plane, along: &[f32], down: &[f32]) -> Plane {
     let (width, height) = (plane.width, plane.values.len() / plane.width);
     let at =
@@ -131,7 +131,8 @@ mod tests {
             |at: fn(usize) -> f32| Plane { width: 64, values: (0..64 * 64).map(|i| at(i % 64)).collect() };
         let [edges, points] = features(&plane(|x| if x < 32 { 0.0 } else { 1.0 }), PIXELS_PER_DEGREE);
         let middle = 32 * 64 + 32;
-        // A full step has half of a kernel's positive weights on its bright side: nearly all of one.
+        // At a full step, half of the kernel lies on the bright side with nearly all positive weights, so the response
+        // is nearly one.
         assert!(edges.values[middle] > 0.9 && edges.values[middle - 20] < ROUNDING);
         let [line_edges, line_points] = features(&plane(|x| f32::from(u8::from(x == 32))), PIXELS_PER_DEGREE);
         assert!(line_points.values[middle] > line_edges.values[middle]);

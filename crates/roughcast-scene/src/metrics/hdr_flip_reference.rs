@@ -1,6 +1,8 @@
-//! HDR-FLIP against NVIDIA's own, `flip-evaluator` 1.7 from PyPI, whose numbers `tools/hdr_flip.py` writes.
+//! Tests HDR-FLIP against NVIDIA's implementation, `flip-evaluator` 1.7 from PyPI. `tools/hdr_flip.py` writes the
+//! reference numbers.
 //!
-//! The pictures follow a formula whose values are exact in single floats, so that both read the same.
+//! The pictures are computed by a formula whose values are exact in single floats, so that both implementations read
+//! the same input.
 
 use super::flip::exposures;
 use super::test_pictures::picture;
@@ -11,13 +13,13 @@ use crate::picture::luminance;
 const WIDTH: usize = 48;
 const HEIGHT: usize = 40;
 
-/// Pixels whose error [`Expected`] lists.
+/// Pixels whose errors [`Expected`] lists.
 const PIXELS: [(usize, usize); 8] =
     [(0, 0), (47, 39), (12, 8), (23, 20), (24, 20), (31, 7), (40, 30), (5, 33)];
 
 struct Expected {
     name: &'static str,
-    /// First and last exposure in stops, and their number.
+    /// First and last exposure in stops, and the number of exposures.
     exposures: (f32, f32, usize),
     mean: f64,
     errors: [f32; 8],
@@ -44,14 +46,15 @@ const EXPECTED: [Expected; 3] = [
     },
 ];
 
-/// Stops: their coefficients of luminance differ from ours in the fifth digit. Largest measured: 2.4e-5.
+/// Tolerance of stops: the reference's coefficients of luminance differ from ours in the fifth digit. Largest measured:
+/// 2.4e-5.
 const STOPS: f32 = 1e-4;
-/// Error of a pixel: both compute in f32, with roots that amplify rounding, as in LDR-FLIP.
+/// Tolerance of a pixel's error: both compute in f32, with roots that amplify rounding, as in LDR-FLIP.
 const PIXEL: f32 = 2e-4;
-/// Error of the mean, as in LDR-FLIP.
+/// Tolerance of the mean error, as in LDR-FLIP.
 const MEAN: f64 = 3e-5;
 
-/// The stops above one of a block of pixels.
+/// The stops above one for a block of pixels.
 fn stops(name: &str, x: usize, y: usize) -> i32 {
     match name {
         "steps" => ((x / 8 + 2 * (y / 8)) % 10) as i32 - 3,
@@ -68,7 +71,7 @@ fn reference(name: &str) -> Picture {
     })
 }
 
-/// The reference with a darker stripe, a redder one, and every ninth pixel twice as bright.
+/// The reference with a darker stripe, a redder stripe, and every ninth pixel twice as bright.
 fn test(name: &str) -> Picture {
     let mut test = reference(name);
     for (i, pixel) in test.radiance.iter_mut().enumerate() {
@@ -84,7 +87,7 @@ fn test(name: &str) -> Picture {
     test
 }
 
-/// Deviations from the expected values.
+/// Describes a deviation from the expected values.
 fn fault(map: &FlipMap, expected: &Expected) -> Option<String> {
     let mean = (map.mean - expected.mean).abs();
     if mean.is_nan() || mean > MEAN {
@@ -123,7 +126,7 @@ fn exposures_match_nvidias() {
 #[test]
 fn a_wrong_error_is_detected() {
     let expected = &EXPECTED[0];
-    // Another picture, one pixel that is off, a viewer who is nearer, and LDR-FLIP's answer.
+    // Another picture, one wrong pixel, a nearer viewer, and LDR-FLIP's result.
     let mut one = ours("steps");
     one.errors[20 * WIDTH + 23] += 2.0 * PIXEL;
     let nearer = hdr_flip(&test("steps"), &reference("steps"), 0.9 * DEFAULT_PIXELS_PER_DEGREE);

@@ -1,5 +1,5 @@
-//! Image metrics, one per file: how far a picture is from the ground truth. All take linear radiance, and use only pixels that a
-//! surface covers fully in both pictures: the antialiasing of silhouettes is not measured.
+//! Image metrics, one per file, which compare a picture with the ground truth. All take linear radiance and use only
+//! pixels that a surface covers fully in both pictures, so the antialiasing of silhouettes is not measured.
 
 mod energy;
 mod flicker;
@@ -16,7 +16,7 @@ pub use rmse::rmse;
 
 use crate::Picture;
 
-/// Coverage from which a pixel counts as covered: a sum of equal weights may miss one by a rounding.
+/// Minimum coverage of a pixel that counts as covered: rounding may keep a sum of equal weights from reaching one.
 const COVERED: f32 = 1.0 - 1e-5;
 
 /// Why pictures cannot be compared.
@@ -25,7 +25,7 @@ pub enum MetricError {
     /// The pictures differ in size.
     #[error("the pictures differ in size: {0}x{1} and {2}x{3}; render both at the same size")]
     Sizes(usize, usize, usize, usize),
-    /// No pixel is covered by the surface in both.
+    /// No pixel is covered by the surface in both pictures.
     #[error("no pixel is covered by the surface in both pictures; move the camera so that it sees it")]
     NothingCovered,
     /// The ground truth has no specular light to compare with.
@@ -55,7 +55,7 @@ fn covered<'a>(
     if all.is_empty() { Err(MetricError::NothingCovered) } else { Ok(all) }
 }
 
-/// Pictures for the tests of measures.
+/// Pictures for the tests of metrics.
 #[cfg(test)]
 mod test_pictures {
     use super::Picture;

@@ -23,7 +23,7 @@ mod tests {
     fn a_known_difference_is_measured_and_equal_pictures_give_zero() {
         let truth = picture(4, 2, |x, y| [x as f32, y as f32, 0.0]);
         assert_eq!(rmse(&truth, &truth), Ok(0.0));
-        // Two channels off by 3 and 4, in every second pixel: mean of squares (9 + 16) / 3 / 2.
+        // Two channels are off by 3 and 4 in every second pixel: mean of squares (9 + 16) / 3 / 2.
         let other = picture(4, 2, |x, y| {
             if x % 2 == 0 { [x as f32 + 3.0, y as f32, -4.0] } else { [x as f32, y as f32, 0.0] }
         });

@@ -1,9 +1,9 @@
-//! Why a picture or a texture is refused.
+//! Reasons why a picture or a texture is refused.
 
 use super::{MAX_PIXELS, MAX_SAMPLES};
 use crate::CameraError;
 
-/// Why nothing was rendered.
+/// Reasons why nothing was rendered.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
@@ -12,13 +12,13 @@ pub enum RenderError {
         "a picture of {0}x{1} pixels cannot be rendered; choose at least 1x1 and at most {MAX_PIXELS} pixels"
     )]
     Size(u32, u32),
-    /// The camera shows nothing.
+    /// The camera is invalid.
     #[error(transparent)]
     Camera(#[from] CameraError),
-    /// A number of samples that is not a square, or too large.
+    /// The number of samples is not a square, or is too large.
     #[error("{0} samples per pixel cannot be stratified; choose a square number from 1 to {MAX_SAMPLES}")]
     Samples(u32),
-    /// The caller asked to stop.
+    /// The caller cancelled the rendering.
     #[error("rendering was stopped")]
     Cancelled,
 }
@@ -27,15 +27,15 @@ pub enum RenderError {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MipmapError {
-    /// More channels than a sampler returns.
+    /// The texture has more channels than a sampler returns.
     #[error("the texture '{name}' has {channels} channels and a sampler returns four; bake another layout")]
     Channels {
         /// The texture.
         name: String,
-        /// Its channels.
+        /// Its number of channels.
         channels: usize,
     },
-    /// No level, or a level whose number of texels does not match its size.
+    /// There are no levels, or a level's number of texels does not match its size.
     #[error(
         "level {level} of {width}x{height} has {got} texels; a texture needs at least one level, and every texel of it"
     )]
@@ -46,7 +46,7 @@ pub enum MipmapError {
         width: usize,
         /// Its height.
         height: usize,
-        /// Its texels.
+        /// Its number of texels.
         got: usize,
     },
 }

@@ -1,4 +1,4 @@
-//! A shading method as a GPU runs it: one sample per pixel, at its centre, from filtered detail.
+//! A shading method as it runs on a GPU: one sample per pixel, at its centre, from filtered detail.
 
 use roughcast::shading::{Shading, ShadingOptions};
 
@@ -6,15 +6,15 @@ use super::shade::Shaded;
 use super::{Progress, RenderError, render_rows};
 use crate::{Detail, DetailPoint, Picture, Scene};
 
-/// A method under test: a model, where its bumps come from, and how it evaluates its lobe.
+/// A method under test: a model, the source of its bumps, and how it evaluates its lobe.
 #[derive(Clone, Copy)]
 pub struct Method<'a> {
     /// The model.
     pub shading: Shading,
     /// The source of the bumps.
     pub detail: &'a dyn Detail,
-    /// The lobe. Properties that the detail states itself, such as an exponent that is baked into its textures, take precedence over
-    /// these options.
+    /// The lobe. Properties that the detail itself specifies, such as an exponent baked into its textures, take
+    /// precedence over these options.
     pub options: ShadingOptions,
 }
 

@@ -1,6 +1,7 @@
-//! The CPU renderer: shading methods as a GPU runs them, and the supersampled ground truth that they are compared with.
+//! The CPU renderer: shading methods as they run on a GPU, and the supersampled ground truth that they are compared
+//! with.
 //!
-//! Without the feature `render` it contains only what renderers share: limits and errors.
+//! Without the feature `render` it contains only the limits and errors that renderers share.
 
 mod error;
 #[cfg(feature = "render")]
@@ -28,13 +29,13 @@ pub use truth::{PIXEL_FILTER_DEVIATION, PIXEL_FILTER_RADIUS, Truth};
 #[cfg(feature = "render")]
 use rows::{render_rows, render_rows_of_each};
 
-/// The most pixels of a picture; 2 GB.
+/// Maximum number of pixels of a picture; they take 2 GB.
 pub const MAX_PIXELS: u64 = 1 << 26;
-/// The most samples per pixel.
+/// Maximum number of samples per pixel.
 pub const MAX_SAMPLES: u32 = 4096;
 
-/// Receives how many rows are done, and of how many; called from any thread, once per row. If it breaks, rendering ends soon
-/// with [`RenderError::Cancelled`].
+/// Receives the number of completed rows and the total; called from any thread, once per row. If it returns `Break`,
+/// rendering soon ends with [`RenderError::Cancelled`].
 #[cfg(feature = "render")]
 pub type Progress<'a> = &'a (dyn Fn(usize, usize) -> ControlFlow<()> + Sync);
 

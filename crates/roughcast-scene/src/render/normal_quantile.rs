@@ -1,7 +1,7 @@
 //! The quantile function of the normal distribution.
 //!
-//! Source: P. J. Acklam, "An algorithm for computing the inverse normal cumulative distribution function", 2003: rational
-//! approximations with a relative error below 1.15e-9.
+//! Source: P. J. Acklam, "An algorithm for computing the inverse normal cumulative distribution function", 2003:
+//! rational approximations with a relative error below 1.15e-9.
 
 const CENTRE_NUMERATOR: [f64; 6] = [
     -3.969_683_028_665_376e1,
@@ -32,7 +32,7 @@ const TAIL_DENOMINATOR: [f64; 5] =
 /// Probability where the tails begin.
 const TAIL: f64 = 0.024_25;
 
-/// The value that a standard normal variable stays below with this probability, between 0 and 1.
+/// The value that a standard normal variable stays below with this probability (between 0 and 1).
 pub(super) fn normal_quantile(probability: f64) -> f64 {
     let tail = |p: f64| {
         let q = (-2.0 * p.ln()).sqrt();
@@ -59,10 +59,10 @@ mod tests {
 
     #[test]
     fn the_quantile_inverts_the_integral_of_the_density() {
-        /// Error of the approximation, at four standard deviations, and of the sum.
+        /// Tolerance for the approximation error at four standard deviations, and for the error of the sum.
         const TOLERANCE: f64 = 1e-7;
         let density = |x: f64| (-0.5 * x * x).exp() / std::f64::consts::TAU.sqrt();
-        // Midpoint rule from far out.
+        // Midpoint rule, starting far out in the tail.
         let (steps, start) = (200_000, -9.0);
         let step = -start / f64::from(steps);
         let mut probability = 0.0;

@@ -8,8 +8,8 @@ use super::shade::Shaded;
 use super::{MAX_PIXELS, Progress, RenderError};
 use crate::{Picture, Scene};
 
-/// Fills a picture. The result is bitwise the same for any number of threads, since no pixel depends on
-/// another.
+/// Fills a picture. The result is bitwise the same for any number of threads, because pixels do not depend on each
+/// other.
 pub(super) fn render_rows(
     scene: &Scene,
     size: (u32, u32),
@@ -20,7 +20,7 @@ pub(super) fn render_rows(
     Ok(pictures.remove(0))
 }
 
-/// Fills `count` pictures at once, as [`render_rows`] does for one; `pixel` gets a slot for each.
+/// Fills `count` pictures at once, like [`render_rows`]; `pixel` gets one slot per picture.
 pub(super) fn render_rows_of_each(
     count: usize,
     scene: &Scene,
@@ -65,7 +65,7 @@ impl Row<'_> {
     }
 }
 
-/// For every row, that row of each picture.
+/// For every row index, that row of each picture.
 fn rows_of_each(pictures: &mut [Picture], height: usize) -> Vec<Vec<Row<'_>>> {
     let mut rows: Vec<Vec<Row<'_>>> = (0..height).map(|_| Vec::with_capacity(pictures.len())).collect();
     for picture in pictures {

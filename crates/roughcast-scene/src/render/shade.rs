@@ -4,26 +4,26 @@ use roughcast::shading::{LightSample, ShadingOptions, Surface, ambient_radiance,
 
 use crate::{Hit, Ray, Scene};
 
-/// A pixel, or a sample of one.
+/// The shading result of a pixel or of one of its samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Shaded {
     /// Radiance towards the viewer.
     pub radiance: [f32; 3],
-    /// The part of it from specular lobes.
+    /// The part of the radiance that comes from specular lobes.
     pub specular: [f32; 3],
-    /// Whether there was a surface, as a fraction of the pixel.
+    /// The fraction of the pixel that a surface covers.
     pub coverage: f32,
 }
 
 impl Shaded {
-    /// Where there is no surface.
+    /// The background, for rays that hit no surface.
     pub fn background(scene: &Scene) -> Self {
         Self { radiance: scene.background, ..Self::default() }
     }
 
-    /// The light of all lights, and ambient light, that a surface reflects back along a ray.
+    /// The light from all lights and the ambient light that a surface reflects back along a ray.
     ///
-    /// On a mesh the shading frame may face away from a viewer of the triangle: such a point has no highlight.
+    /// On a mesh the shading frame may face away from a viewer who sees the triangle; such a point has no highlight.
     #[inline]
     pub fn lit(scene: &Scene, ray: &Ray, hit: &Hit<'_>, surface: &Surface, options: &ShadingOptions) -> Self {
         let tangent = |v| hit.frame.tangent_from_world(v).as_vec3().to_array();

@@ -1,4 +1,4 @@
-//! Ground truth: many rays per pixel, each shaded by the model's reference at level 0.
+//! Ground truth: many rays per pixel, each shaded with the model's reference at level 0.
 //!
 //! Source: LEAN mapping, Figure 14: supersampling with a Gaussian pixel filter.
 
@@ -13,23 +13,23 @@ use crate::{Detail, DetailPoint, Picture, Ray, Scene};
 
 /// Standard deviation of the pixel filter, in pixels.
 pub const PIXEL_FILTER_DEVIATION: f64 = PIXEL_DEVIATION as f64;
-/// Where the pixel filter ends, in pixels.
+/// Radius at which the pixel filter is truncated, in pixels.
 pub const PIXEL_FILTER_RADIUS: f64 = 2.0;
-/// The fraction of a normal distribution below minus four standard deviations, where the pixel filter ends.
+/// The fraction of a normal distribution below minus four standard deviations, where the pixel filter is truncated.
 const BEYOND: f64 = 3.167_124_183_311_998e-5;
 
 /// The supersampled ground truth of a model's reference, in one form and with one energy.
 ///
-/// Samples are drawn from the pixel filter itself by its inverse distribution, so that all have the same weight: a square
-/// number of them, one in each cell of a square grid of probabilities, jittered by a hash of pixel and sample. The same
-/// scene gives the same bits.
+/// Samples are drawn from the pixel filter itself by its quantile function, so that all have the same weight. Their
+/// number is a square: one sample in each cell of a square grid of probabilities, jittered by a hash of pixel and
+/// sample. The same scene gives bitwise the same result.
 #[derive(Clone, Copy)]
 pub struct Truth<'a> {
-    /// The model under test; its [reference](Shading::reference) shades.
+    /// The model under test; its [reference](Shading::reference) is used for shading.
     pub shading: Shading,
     /// The source of the bumps; only its exact slopes are used.
     pub detail: &'a dyn Detail,
-    /// The lobe. Roughness in the maps does not matter here.
+    /// The lobe. Roughness in the maps is ignored.
     pub options: ShadingOptions,
     /// Samples per pixel: a square number, 1 ..= [`MAX_SAMPLES`].
     pub samples: u32,
@@ -49,8 +49,8 @@ impl Truth<'_> {
         Ok(self.render_each(&[self.shading], scene, size, progress)?.remove(0))
     }
 
-    /// The ground truths of several models, in their order, each bitwise equal to that of [`Truth::render`]: rays are traced and
-    /// slopes are looked up once for all. [`Truth::shading`] is ignored.
+    /// The ground truths of several models, in their order, each bitwise equal to the result of [`Truth::render`]. Rays
+    /// are traced and slopes are looked up once for all models. [`Truth::shading`] is ignored.
     ///
     /// # Errors
     /// As [`Truth::render`].
@@ -75,7 +75,7 @@ impl Truth<'_> {
         })
     }
 
-    /// Adds a ray, shaded by each model, to its sum.
+    /// Adds a ray to the sums, shaded with each model.
     #[inline]
     fn add_sample(&self, sums: &mut [Sum], shadings: &[Shading], scene: &Scene, ray: &Ray) {
         let Some(hit) = scene.shape.hit(ray) else {
@@ -90,7 +90,7 @@ impl Truth<'_> {
     }
 }
 
-/// Samples of a pixel, added up in f64.
+/// The sum of a pixel's samples, in f64.
 #[derive(Clone, Copy, Default)]
 struct Sum {
     radiance: [f64; 3],
@@ -117,7 +117,7 @@ impl Sum {
     }
 }
 
-/// The positions of a pixel's samples, `side` times `side` of them, in pixels of the picture.
+/// The positions of a pixel's `side` times `side` samples, in pixels of the picture.
 fn sample_places((x, y): (u32, u32), side: u32) -> impl Iterator<Item = DVec2> {
     let centre = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
     let cells = (0..side).flat_map(move |row| (0..side).map(move |column| (column, row)));
@@ -128,15 +128,17 @@ fn sample_places((x, y): (u32, u32), side: u32) -> impl Iterator<Item = DVec2> {
     })
 }
 
-/// The position, in pixels from the centre, that the pixel filter stays below with this probability.
+/// The quantile function of the pixel filter: the position, in pixels from the centre, below which it has this
+/// probability.
 pub(crate) fn pixel_filter_quantile(probability: f64) -> f64 {
     PIXEL_FILTER_DEVIATION * normal_quantile(BEYOND + probability * (1.0 - 2.0 * BEYOND))
 }
 
-/// Two numbers in 0 .. 1 of a pixel and a sample (SplitMix64, by S. Vigna).
+/// Two numbers in 0 .. 1 from a pixel and a sample (SplitMix64, by S. Vigna).
 fn jitter(x: u32, y: u32, sample: u32) -> DVec2 {
     const UNIT: f64 = 1.0 / (1_u64 << 32) as f64;
-    // Pixels are fewer than 2^26 and samples at most 2^12 = 4096; 26 bits for x and for y leave none of them alike.
+    // Pixels are fewer than 2^26 and samples at most 2^12 = 4096; with 26 bits each for x and y, all indices are
+    // distinct.
     let index = (u64::from(y) << 38) ^ (u64::from(x) << 12) ^ u64::from(sample);
     let z = scrambled(index.wrapping_add(1).wrapping_mul(GOLDEN_RATIO));
     DVec2::new((z >> 32) as f64 + 0.5, (z & 0xffff_ffff) as f64 + 0.5) * UNIT
@@ -155,7 +157,7 @@ mod tests {
         let variance =
             (0..count).map(|i| pixel_filter_quantile((f64::from(i) + 0.5) / f64::from(count)).powi(2));
         let variance = variance.sum::<f64>() / f64::from(count);
-        // The part beyond four standard deviations is missing: a thousandth of the variance.
+        // The part beyond four standard deviations is missing, which is a thousandth of the variance.
         assert!((variance / PIXEL_FILTER_DEVIATION.powi(2) - 1.0).abs() < 2e-3, "{variance}");
     }
 

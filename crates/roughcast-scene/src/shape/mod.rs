@@ -16,7 +16,7 @@ pub use torus::Torus;
 
 use crate::{Frame, Hit, Mesh, Ray, Side, UvSets};
 
-/// A shape, in world space, with its texture coordinates in 0 .. 1 (meshes: as their file has them).
+/// A shape in world space, with texture coordinates in 0 .. 1 (meshes: as in their file).
 #[derive(Clone, Debug)]
 pub enum Shape {
     /// A square on the ground.
@@ -25,11 +25,11 @@ pub enum Shape {
     Sphere(Sphere),
     /// A ring.
     Torus(Torus),
-    /// Triangles. Shared, since scenes are copied.
+    /// A triangle mesh. It is shared, because scenes are copied.
     Mesh(Arc<Mesh>),
 }
 
-/// A sphere that contains a shape.
+/// A sphere that encloses a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// The sphere's centre.
@@ -41,10 +41,10 @@ pub struct Bounds {
 /// Why a shape is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ShapeError {
-    /// A plane without extent.
+    /// The plane has no extent.
     #[error("a plane's half size must be positive and finite, not {0}")]
     HalfSize(f64),
-    /// A torus that is a circle, or that intersects itself.
+    /// The torus degenerates to a circle or intersects itself.
     #[error("a torus' minor radius must lie between 0 and 1, the major radius, not at {0}")]
     MinorRadius(f64),
 }
@@ -59,22 +59,23 @@ pub struct TriangleMesh {
     /// Unit tangents (growing u) and the handedness w, as in glTF: the bitangent (falling v) is w cross(normal,
     /// tangent).
     pub tangents: Vec<[f32; 4]>,
-    /// Sets of texture coordinates, each with one entry per vertex; tangents go by the first. No set if the surface is not
-    /// textured.
+    /// Sets of texture coordinates, each with one entry per vertex. Tangents refer to the first set. Empty if the
+    /// surface is not textured.
     pub uv_sets: Vec<Vec<[f32; 2]>>,
     /// Three vertices per triangle.
     pub indices: Vec<u32>,
 }
 
-/// The largest `detail` of [`Shape::triangles`]; larger ones are clamped to it. A sphere then has half a million triangles.
+/// The largest `detail` of [`Shape::triangles`]; larger ones are clamped to it. A sphere then has half a million
+/// triangles.
 pub const MAX_DETAIL: u32 = 512;
 
 impl Shape {
-    /// The nearest point that a ray meets in front of its origin.
+    /// The nearest point where a ray hits the shape in front of the ray's origin.
     ///
     /// All shapes have two sides. A back side shows glTF's double-sided material: all three axes of the frame and the
-    /// geometric normal are reversed, so that they face the viewer and what is a bump from the front is a dent from behind.
-    /// Texture coordinates and their derivatives stay.
+    /// geometric normal are reversed, so that they face the viewer, and a bump seen from the front is a dent seen from
+    /// behind. Texture coordinates and their derivatives do not change.
     pub fn hit(&self, ray: &Ray) -> Option<Hit<'_>> {
         match self {
             Self::Plane(plane) => plane.hit(ray),
@@ -84,7 +85,7 @@ impl Shape {
         }
     }
 
-    /// A sphere that contains the shape, to frame it with a camera.
+    /// A sphere that encloses the shape, used to frame it with a camera.
     pub fn bounds(&self) -> Bounds {
         match self {
             Self::Plane(plane) => plane.bounds(),
@@ -97,7 +98,7 @@ impl Shape {
     /// Triangles that approximate the shape; normals and tangents at their vertices are exact.
     ///
     /// `detail`, in 1 ..= [`MAX_DETAIL`], is the number of squares along v; round shapes have twice as many along u. A
-    /// mesh is given as it is.
+    /// mesh is returned unchanged.
     pub fn triangles(&self, detail: u32) -> TriangleMesh {
         let detail = detail.clamp(1, MAX_DETAIL);
         match self {
@@ -109,12 +110,12 @@ impl Shape {
     }
 }
 
-/// A point of a parametrised surface, seen from its front.
+/// A point of a parametrised surface, as seen from the front.
 struct SurfacePoint {
     position: DVec3,
-    /// Unit, outwards.
+    /// Unit vector pointing outwards.
     normal: DVec3,
-    /// Unit, towards growing u.
+    /// Unit vector towards growing u.
     tangent: DVec3,
     uv: DVec2,
     dpdu: DVec3,
@@ -139,17 +140,18 @@ impl SurfacePoint {
     }
 }
 
-/// Sine and cosine of an angle in turns. A whole turn more gives the same bits, and half a turn a sine of zero: seams close.
+/// Sine and cosine of an angle in turns. Adding a whole turn gives the same bits, and half a turn has a sine of exactly
+/// zero, so seams close.
 fn sin_cos_turns(turns: f64) -> (f64, f64) {
     let turns = turns - turns.round();
     let from_axis = if turns.abs() > 0.25 { turns.signum() * 0.5 - turns } else { turns };
     ((from_axis * TAU).sin(), (turns * TAU).cos())
 }
 
-/// Reverses the frame of a hit that is seen from behind. Derivatives stay.
+/// Reverses the frame of a hit that is seen from behind. Derivatives do not change.
 #[inline]
 pub(crate) fn facing<'a>(mut hit: Hit<'a>, ray: &Ray) -> Hit<'a> {
-    // In place: a hit is large, and copying it costs as much as finding a plane.
+    // Changed in place: a hit is large, and copying it costs as much as intersecting a plane.
     if hit.geometric_normal.dot(ray.direction) > 0.0 {
         hit.geometric_normal = -hit.geometric_normal;
         hit.frame = hit.frame.reversed();
@@ -158,8 +160,8 @@ pub(crate) fn facing<'a>(mut hit: Hit<'a>, ray: &Ray) -> Hit<'a> {
     hit
 }
 
-/// A grid of `across` x `down` squares over the unit square of texture coordinates, each cut into two triangles that turn
-/// counter-clockwise where the surface is seen from its front. Triangles without area (at poles) are left out.
+/// A grid of `across` x `down` squares over the unit square of texture coordinates. Each is split into two triangles
+/// that are counter-clockwise as seen from the surface's front. Triangles without area (at poles) are left out.
 fn tessellate(across: u32, down: u32, point: impl Fn(f64, f64) -> SurfacePoint) -> TriangleMesh {
     let mut mesh = TriangleMesh::default();
     let mut uvs = Vec::new();

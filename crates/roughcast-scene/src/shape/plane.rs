@@ -7,14 +7,14 @@ use crate::{Hit, Ray};
 
 /// A square in the xz-plane about the origin, whose front is up (+y).
 ///
-/// u grows to +x and v to +z, so the map is upright for a viewer at +z who looks to -z.
+/// u grows towards +x and v towards +z, so the map is upright for a viewer at +z who looks towards -z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
     half_size: f64,
 }
 
 impl Default for Plane {
-    /// From -1 to 1.
+    /// A square from -1 to 1.
     fn default() -> Self {
         Self { half_size: 1.0 }
     }
@@ -35,7 +35,7 @@ impl Plane {
     /// See [`super::Shape::hit`].
     pub(super) fn hit(&self, ray: &Ray) -> Option<Hit<'static>> {
         let distance = -ray.origin.y / ray.direction.y;
-        // Also false for NaN: a ray within the plane meets no side of it.
+        // Also false for NaN: a ray within the plane hits neither side.
         if !(distance > 0.0 && distance.is_finite()) {
             return None;
         }

@@ -1,19 +1,20 @@
-//! Real roots of a quartic within an interval, by the roots of its derivatives.
+//! Real roots of a quartic within an interval, found from the roots of its derivatives.
 //!
-//! Between two neighbouring roots of its derivative a polynomial is monotone, so each such stretch holds one root if the
-//! signs at its ends differ, and none if they are the same. No root is lost to cancellation, as with the closed formulas.
+//! A polynomial is monotone between adjacent roots of its derivative, so each such subinterval holds one root if the
+//! signs at its ends differ and none if they are the same. Unlike with the closed formulas, no root is lost to
+//! cancellation.
 
-/// Steps of bisection and Newton's method: bisection alone reduces an interval to neighbouring numbers in about 60, and
-/// far fewer are needed if Newton's steps converge.
+/// Maximum number of steps of bisection and Newton's method. Bisection alone reduces an interval to adjacent floats in
+/// about 60 steps, and far fewer are needed if Newton's steps converge.
 const MAX_STEPS: usize = 128;
 
-/// The real roots of `t^4 + c[2] t^2 + c[1] t + c[0]` in `from ..= to` (`from < to`), in growing order, each computed when it is asked
-/// for. Rounding decides whether a root of even order is missing or doubled.
+/// The real roots of `t^4 + c[2] t^2 + c[1] t + c[0]` in `from ..= to` (`from < to`), in ascending order, computed
+/// lazily. Rounding decides whether a root of even order is missing or doubled.
 pub(super) fn roots(c: [f64; 3], from: f64, to: f64) -> impl Iterator<Item = f64> {
     let quartic = [c[0], c[1], c[2], 0.0, 1.0];
     let derivative = [c[1], 2.0 * c[2], 0.0, 4.0];
-    // The roots of the second derivative, 12 t^2 + 2 c[2]. Where there are none, the middle parts the interval instead:
-    // one more part does not harm.
+    // The roots of the second derivative, 12 t^2 + 2 c[2]. If there are none, the interval is split in the middle
+    // instead; an additional subinterval does no harm.
     let bend = (-c[2] / 6.0).max(0.0).sqrt();
     let bends = [(-bend).clamp(from, to), bend.clamp(from, to)];
     let turns = [(from, bends[0]), (bends[0], bends[1]), (bends[1], to)]
@@ -23,7 +24,7 @@ pub(super) fn roots(c: [f64; 3], from: f64, to: f64) -> impl Iterator<Item = f64
         .filter_map(move |(low, high)| root_of_monotone(&quartic, low, high))
 }
 
-/// The root of a polynomial that is monotone on an interval: Newton's method, held in a bracket by bisection.
+/// The root of a polynomial that is monotone on an interval: Newton's method, safeguarded by bisection.
 fn root_of_monotone(c: &[f64], low: f64, high: f64) -> Option<f64> {
     let (at_low, at_high) = (value(c, low).0, value(c, high).0);
     if at_low == 0.0 {
@@ -66,10 +67,10 @@ fn value(c: &[f64], t: f64) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    /// Roots of these polynomials, whose coefficients are rounded, are known to about this, the close pair included.
+    /// Accuracy to which the roots of these polynomials with rounded coefficients are known, including the close pair.
     const TOLERANCE: f64 = 1e-12;
 
-    /// The coefficients of a quartic whose roots sum to zero, as its missing cubic term wants.
+    /// The coefficients of a quartic whose roots sum to zero, so that it has no cubic term.
     fn expand([a, b, c, d]: [f64; 4]) -> [f64; 3] {
         assert!((a + b + c + d).abs() < TOLERANCE);
         [

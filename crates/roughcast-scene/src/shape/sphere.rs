@@ -9,21 +9,21 @@ use crate::{Hit, Ray};
 
 /// The sphere of radius 1 about the origin.
 ///
-/// u goes around the y axis, from the seam at -z by way of -x to the middle of the map at +z and on by way of +x; v goes down
-/// from the north pole (+y). Seen from outside the map is upright and not mirrored.
+/// u goes around the y axis, from the seam at -z via -x to the middle of the map at +z and on via +x; v goes down from
+/// the north pole (+y). From outside, the map is upright and not mirrored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sphere;
 
 impl Sphere {
     /// See [`super::Shape::hit`].
     pub(super) fn hit(&self, ray: &Ray) -> Option<Hit<'static>> {
-        // From the point of the ray that is nearest to the centre: the usual quadratic loses its digits where the
-        // origin is far away. The direction is divided by its length, which rounding makes differ from one.
+        // Computed from the point of the ray nearest to the centre: the usual quadratic loses precision if the origin
+        // is far away. The direction is divided by its length, because rounding makes it differ from one.
         let length_squared = ray.direction.length_squared();
         let nearest = -ray.origin.dot(ray.direction) / length_squared;
         let from_centre = ray.origin + ray.direction * nearest;
         let half_squared = (1.0 - from_centre.length_squared()) / length_squared;
-        // NaN where the ray passes by; no comparison with it holds.
+        // NaN if the ray misses the sphere; all comparisons with it are false.
         let half = half_squared.sqrt();
         let distance = [nearest - half, nearest + half].into_iter().find(|&t| t > 0.0)?;
         let position = (ray.origin + ray.direction * distance).normalize();
@@ -55,7 +55,7 @@ impl Sphere {
         }
     }
 
-    /// The surface at a point of it; at a pole, where every longitude is right, at longitude 0.
+    /// The surface at a point on it. At a pole, where every longitude is valid, longitude 0 is used.
     fn point_at(position: DVec3) -> SurfacePoint {
         let longitude = position.x.atan2(position.z);
         let polar = position.x.hypot(position.z).atan2(position.y);

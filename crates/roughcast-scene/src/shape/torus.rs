@@ -8,20 +8,21 @@ use super::quartic::roots;
 use super::{Bounds, ShapeError, SurfacePoint, TriangleMesh, sin_cos_turns, tessellate};
 use crate::{Hit, Ray};
 
-/// The torus about the y axis whose tube has its middle on the circle of radius 1 about the origin.
+/// The torus about the y axis whose tube is centred on the circle of radius 1 about the origin.
 ///
-/// u goes around the y axis as on the [`super::Sphere`]: the map's middle is at +z, the seam at -z. v goes around the tube,
-/// downwards on the outside, with the map's middle on the outer equator.
+/// u goes around the y axis as on the [`super::Sphere`]: the middle of the map is at +z, the seam at -z. v goes around
+/// the tube, downwards on the outside, with the map's middle on the outer equator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Torus {
     minor: f64,
 }
 
-/// Roots are searched within a sphere this much larger than the torus, so that none lies at the end of the interval.
+/// Factor by which the search sphere for roots is larger than the torus, so that no root lies at the end of the
+/// interval.
 const BOUND: f64 = 1.01;
 
 impl Default for Torus {
-    /// A minor radius of 0.4.
+    /// A torus with a minor radius of 0.4.
     fn default() -> Self {
         Self { minor: 0.4 }
     }
@@ -42,14 +43,15 @@ impl Torus {
     pub(super) fn hit(&self, ray: &Ray) -> Option<Hit<'static>> {
         let length = ray.direction.length();
         let direction = ray.direction / length;
-        // Measured from the point nearest to the centre, the coefficients do not grow with the distance of the eye.
+        // Measured from the point nearest to the centre, so that the coefficients do not grow with the distance of the
+        // eye.
         let nearest = -ray.origin.dot(direction);
         let middle = ray.origin + direction * nearest;
         let half_squared = (BOUND * (1.0 + self.minor)).powi(2) - middle.length_squared();
         if half_squared.is_nan() || half_squared < 0.0 {
             return None;
         }
-        // With middle and direction orthogonal, |middle + t direction|^2 = |middle|^2 + t^2.
+        // Because middle and direction are orthogonal, |middle + t direction|^2 = |middle|^2 + t^2.
         let a = middle.length_squared() + 1.0 - self.minor * self.minor;
         let ring = |p: DVec3, q: DVec3| p.x * q.x + p.z * q.z;
         let quartic = [
@@ -91,7 +93,7 @@ impl Torus {
         }
     }
 
-    /// The surface nearest to a point that lies on it up to rounding.
+    /// The surface at a point that lies on it up to rounding.
     fn point_at(&self, position: DVec3) -> SurfacePoint {
         let longitude = position.x.atan2(position.z);
         let tube = position.y.atan2(position.x.hypot(position.z) - 1.0);

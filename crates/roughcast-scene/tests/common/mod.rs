@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use roughcast_io::Decoded;
 use roughcast_scene::{Hit, Ray, Shape};
 
-/// A small generator of evenly distributed numbers (splitmix64): the tests see the same ones on every run.
+/// A small generator of uniformly distributed numbers (splitmix64), identical on every run.
 pub struct Numbers(pub u64);
 
 impl Numbers {
@@ -16,7 +16,7 @@ impl Numbers {
         z ^ (z >> 31)
     }
 
-    /// In 0 .. 1.
+    /// A number in 0 .. 1.
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
@@ -49,12 +49,12 @@ pub fn hits(shape: &Shape, rays: usize) -> Vec<(Ray, Hit<'_>)> {
         .collect()
 }
 
-/// The difference of texture coordinates that count modulo one, each in -0.5 .. 0.5.
+/// The difference of texture coordinates modulo one, each in -0.5 .. 0.5.
 pub fn wrapped(difference: DVec2) -> DVec2 {
     difference - difference.round()
 }
 
-/// Largest distance from orthonormality, as the largest entry of `F F^T - 1`.
+/// Largest deviation from orthonormality, as the largest entry of `F F^T - 1`.
 pub fn unorthonormality(hit: &Hit<'_>) -> f64 {
     let f = hit.frame;
     let axes = [f.tangent(), f.bitangent(), f.normal()];

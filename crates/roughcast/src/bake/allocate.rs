@@ -6,7 +6,7 @@ use crate::options::BakeOptions;
 use crate::pyramid::{LevelOut, PartOut};
 use crate::texture::{self, Blocks, LayerSpec, Part, Texture, TextureArray, TextureInfo};
 
-/// Textures of all of a layout's files, taken from `earlier` where these have the right shape.
+/// Allocates the textures of all files of a layout, reusing those of `earlier` that have the right shape.
 pub(super) fn allocate(
     earlier: Vec<TextureArray>,
     info: &TextureInfo,

@@ -1,4 +1,4 @@
-//! Which options go together, and what they mean for the slopes.
+//! Which options can be combined, and what they mean for the slopes.
 
 use super::BakeError;
 use crate::SampleType;
@@ -8,7 +8,7 @@ use crate::source::BaseRoughness;
 use crate::texture::rules::Stores;
 use crate::texture::{BaseRole, BlockCompression, Blocks};
 
-/// Half floats end here; second moments are squares of slopes.
+/// Largest slope whose square a half float can hold; second moments are squares of slopes.
 const LARGEST_SLOPE_IN_HALF: f32 = 255.0;
 
 pub(super) fn check_options(options: &BakeOptions, has_roughness: bool) -> Result<(), BakeError> {
@@ -48,8 +48,8 @@ pub(super) fn check_options(options: &BakeOptions, has_roughness: bool) -> Resul
     }
 }
 
-/// A fixed scale, or the range of half floats, limits the slopes before they are averaged: cutting stored moments
-/// one by one instead would leave a covariance that fits none of them.
+/// Limits the slopes before averaging if a fixed scale or the range of half floats requires it. Clamping the stored
+/// moments one by one instead would leave an inconsistent covariance.
 pub(super) fn limit_slopes(
     source: &mut SourceOptions,
     roughness: Option<BaseRoughness<'_>>,
@@ -77,7 +77,7 @@ pub(super) fn limit_slopes(
     Ok(())
 }
 
-/// Whether texels hold slopes or variances over a range that follows from the map.
+/// Whether texels hold slopes or variances over a range that depends on the map.
 fn has_range_of_the_map(options: &BakeOptions) -> bool {
     options.scale == ScaleChoice::Auto && options.layout.uses_scale(options.sample_type)
 }

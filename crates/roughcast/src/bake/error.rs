@@ -1,4 +1,4 @@
-//! Why a bake is refused.
+//! Reasons for refusing a bake.
 
 use crate::SampleType;
 use crate::progress::Stopped;
@@ -12,15 +12,15 @@ pub enum BakeError {
     /// The map or the base roughness cannot be read.
     #[error(transparent)]
     Source(#[from] SourceError),
-    /// The layout holds floats, and texels of another type were asked for.
+    /// The layout holds floats, but another sample type was requested.
     #[error("the layout '{layout}' holds floats, not {sample_type} bits: choose half or single floats")]
     FloatsOnly {
         /// The layout.
         layout: Layout,
-        /// The type asked for.
+        /// The requested type.
         sample_type: SampleType,
     },
-    /// The base roughness was to be folded in, and there is none.
+    /// Folding in the base roughness was requested, but no base roughness was given.
     #[error("folding in the base roughness needs a roughness: give one")]
     NoBaseToFoldIn,
     /// The layout cannot be made without a base roughness.
@@ -32,7 +32,7 @@ pub enum BakeError {
     /// Roughness was to be stored as specular powers in unsigned texels.
     #[error("specular powers do not fit into 0 to 1: choose floats, or another way to store roughness")]
     SpecularPowersNeedFloats {
-        /// The type asked for.
+        /// The requested type.
         sample_type: SampleType,
     },
     /// A scale was chosen for a layout without slopes.
@@ -53,7 +53,7 @@ pub enum BakeError {
         /// The scale.
         scale: f32,
     },
-    /// Textures shaped for block compression were asked for in another type than 8 bits.
+    /// Textures shaped for block compression were requested in a type other than 8 bits.
     #[error("blocks are compressed from 8 bits, not from {sample_type}")]
     BlocksNeedEightBits {
         /// The type asked for.
@@ -67,7 +67,7 @@ pub enum BakeError {
         /// Why.
         reason: BlockCompression,
     },
-    /// Slopes were allowed whose squares half floats cannot hold.
+    /// The largest allowed slope has a square that half floats cannot hold.
     #[error(
         "the square of a slope of {max_slope} does not fit into a half float: allow slopes up to {largest}, or choose single floats"
     )]
@@ -77,10 +77,10 @@ pub enum BakeError {
         /// The largest slope whose square fits.
         largest: f32,
     },
-    /// What watched the bake has stopped it: see [`Bake::watched`](crate::Bake::watched).
+    /// The bake was stopped by its watcher: see [`Bake::watched`](crate::Bake::watched).
     #[error("the bake was stopped")]
     Stopped,
-    /// The base roughness, which is folded in, leaves no room for slopes.
+    /// The base roughness that is folded in leaves no room for slopes.
     #[error(
         "the base roughness alone has a variance of {base_variance}, which a scale of {scale} cannot hold: choose a larger scale"
     )]

@@ -1,6 +1,7 @@
 //! The automatic limit of slopes: if a few steep texels ruin the range for all others, they are clamped.
 //!
-//! The usable specular power of unsigned texels falls with the square of their range of slopes, or with their range of variances.
+//! The usable specular power of unsigned texels is inversely proportional to the square of their slope range, or to
+//! their variance range.
 
 use super::SlopeLimit;
 use super::scales::{NeededRange, STEEP_COST, STEEP_ONE_IN, largest_variance};
@@ -12,9 +13,9 @@ use crate::survey::{Survey, survey};
 use crate::texture::Peaks;
 use crate::texture::rules::Stores;
 
-/// What is known of a map before it is stored.
+/// What is known about a map before it is stored.
 pub(super) struct Ranges {
-    /// A look at every slope, where a scale was to be found.
+    /// A survey of all slopes, if the scale had to be determined.
     pub looked_at: Option<Survey>,
     /// What the ranges of unsigned texels have to represent.
     pub needed: NeededRange,
@@ -22,8 +23,8 @@ pub(super) struct Ranges {
     pub limit: Option<SlopeLimit>,
 }
 
-/// Finds the ranges of a map and, for [`MaxSlope::Auto`], limits its slopes. A scale that is to be found needs a look at every slope;
-/// otherwise one pass does it all.
+/// Finds the ranges of a map and, for [`MaxSlope::Auto`], limits its slopes. An automatic scale requires a survey of
+/// all slopes; otherwise a single pass is enough.
 pub(super) fn find_ranges(
     source: &mut MapSource<'_>,
     max_slope: MaxSlope,
@@ -54,7 +55,7 @@ fn scale_is_open(options: &BakeOptions) -> bool {
     !options.sample_type.is_float() && options.scale == ScaleChoice::Auto
 }
 
-/// The texels that [`find_ranges`] counts as progress, at most.
+/// The maximum number of texels that [`find_ranges`] counts as progress.
 pub(super) fn work(
     size: (usize, usize),
     max_slope: MaxSlope,
@@ -68,7 +69,8 @@ pub(super) fn work(
     surveys * size.0 as u64 * size.1 as u64 + pyramids * pyramid::work(size.0, size.1, pyramid_options)
 }
 
-/// Lowers the largest slope of a source and what the ranges have to hold, where that wins more than [`STEEP_COST`]; says so.
+/// Lowers the largest slope of a source and the required ranges if that gains more than [`STEEP_COST`]. Returns the
+/// limit if it did.
 fn limit_of_most(
     source: &mut MapSource<'_>,
     needed: &mut NeededRange,

@@ -1,14 +1,14 @@
 // The automatic limit of slopes. Twin of limit.rs and of the histogram of survey.rs.
 
-// Squared lengths are counted by their float's exponent and leading five bits, from the square of the smallest scale to that of
-// the largest slope of any map.
+// Squared lengths are binned by the exponent and the leading five mantissa bits of their float, from the square of
+// the smallest scale to that of the largest slope of any map.
 const SLOPE_BIN_SHIFT: u32 = 18u;
 const FIRST_SLOPE_BIN: u32 = 3424u;
 const SLOPE_BINS: u32 = 1089u;
 
-// One in this many texels is among the steepest.
+// One in this many texels counts as steep.
 const STEEP_ONE_IN: u32 = 1000u;
-// The factor in usable specular power from which on their loss is worth it.
+// The loss of usable specular power, as a factor, above which slopes are limited.
 const STEEP_COST: f32 = 4.0;
 // MaxSlope::LEAST_AUTOMATIC.
 const LEAST_AUTOMATIC_LIMIT: f32 = 1.0;
@@ -23,7 +23,8 @@ fn upper_edge_of_slope_bin(bin: u32) -> f32 {
     return square_root(bitcast<f32>(((FIRST_SLOPE_BIN + bin + 1u) << SLOPE_BIN_SHIFT) - 1u));
 }
 
-// The largest slope, where all but the steepest texels stay below `exceeded` and the largest component of any is `peak`.
+// The automatic limit of the slope. Only the steep texels exceed `exceeded`; `peak` is the largest component of any
+// slope.
 fn automatic_limit(exceeded: f32, peak: f32, base_variance: f32, otherwise: f32) -> f32 {
     let limit = max(exceeded, LEAST_AUTOMATIC_LIMIT);
     let before = smallest_scale(peak, base_variance);

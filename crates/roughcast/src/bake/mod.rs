@@ -1,4 +1,4 @@
-//! Bakes a map into a layout's textures with all their levels.
+//! Bakes a map into the textures of a layout, with all mip levels.
 
 mod allocate;
 mod check;
@@ -32,79 +32,82 @@ use scales::{advice, peaks_of_most, set_scales};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct ScaleAdvice {
-    /// The largest slope that all but the steepest 0.1 % of the texels stay below.
+    /// The largest slope after excluding the steepest 0.1 % of the texels.
     pub max_slope: f32,
-    /// By how much the usable specular power would grow.
+    /// The factor by which the usable specular power would grow.
     pub factor: f32,
 }
 
-/// A largest slope that was lowered because a few steep texels cost much: see [`MaxSlope::Auto`](crate::MaxSlope::Auto).
+/// A maximum slope that was lowered because a few steep texels cost much precision: see
+/// [`MaxSlope::Auto`](crate::MaxSlope::Auto).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct SlopeLimit {
     /// The largest slope.
     pub max_slope: f32,
-    /// Texels that were steeper and are scaled back to it.
+    /// Number of steeper texels, which were scaled back to it.
     pub texels: u64,
-    /// By how much the usable specular power has grown.
+    /// The factor by which the usable specular power has grown.
     pub factor: f32,
 }
 
-/// What was done, in numbers.
+/// Statistics of a bake.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct BakeReport {
-    /// Texels that had to be repaired.
+    /// Numbers of texels that had to be repaired.
     pub counts: SourceCounts,
-    /// Texels of level 0.
+    /// Number of texels of level 0.
     pub texels: u64,
     /// Range of the stored slopes; 1 for float types.
     pub scale: f32,
-    /// Range of the stored variances or standard deviations; 1 where there are none.
+    /// Range of the stored variances or standard deviations; 1 if none are stored.
     pub spread_scale: f32,
-    /// The largest slope allowed: that of the options, what a fixed scale can hold, or what
-    /// [`MaxSlope::Auto`](crate::MaxSlope::Auto) has found.
+    /// The largest slope allowed: from the options, from what a fixed scale can hold, or as determined by
+    /// [`MaxSlope::Auto`](crate::MaxSlope::Auto).
     pub max_slope: f32,
-    /// Set where [`MaxSlope::Auto`](crate::MaxSlope::Auto) has lowered it.
+    /// Set if [`MaxSlope::Auto`](crate::MaxSlope::Auto) has lowered it.
     pub limit: Option<SlopeLimit>,
     /// Length of the largest slope.
     pub maximum_slope: f32,
     /// Root mean square length of the slopes, without any base roughness.
     pub rms_slope: f64,
-    /// The same with the base roughness, where it is folded in.
+    /// The same with the base roughness, if it is folded in.
     pub rms_slope_with_base: f64,
-    /// The moments of the whole map: the last level's.
+    /// The moments of the whole map: those of the last level.
     pub whole: Moments,
-    /// Largest errors of what the textures give back.
+    /// Maximum errors of the decoded textures.
     pub bounds: Bounds,
-    /// The same without the steepest 0.1 % of the texels, estimated from a sample: of about a million texels where the scale is
-    /// automatic, else of at most 64 rows.
+    /// The same without the steepest 0.1 % of the texels, estimated from a sample: about a million texels if the
+    /// scale is automatic, otherwise at most 64 rows.
     pub bounds_of_most: Bounds,
-    /// Set where the steepest 0.1 % of the texels cost more than a factor of four.
+    /// Set if the steepest 0.1 % of the texels cost more than a factor of four.
     pub advice: Option<ScaleAdvice>,
-    /// Each level's size and what it holds.
+    /// Size and statistics of each level.
     pub levels: Vec<((usize, usize), LevelStats)>,
-    /// Width and height of the roughness map, where they were not those of the map: it was resampled, as slope variance, by
-    /// an area average along an axis that shrinks and linearly along one that grows.
+    /// Width and height of the roughness map, if they differed from those of the map. It was then resampled as slope
+    /// variance, by an area average along an axis that shrinks and linearly along one that grows.
     pub roughness_resampled_from: Option<(usize, usize)>,
 }
 
-/// Textures and report.
+/// The textures and the report of a bake.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Baked {
-    /// One for each file; the first is the layout's main one.
+    /// One array per file; the first is the layout's main one.
     pub arrays: Vec<TextureArray>,
-    /// What was done.
+    /// Statistics of the bake.
     pub report: BakeReport,
 }
 
-/// A bake, by its named parts: the map, how it is read, the material's base roughness, what is made of it.
+/// A bake, configured by named parts: the map, how it is read, the base roughness of the material, and the output
+/// options.
 ///
-/// Only the map has to be named; the rest has defaults: an OpenGL normal map that repeats, no base roughness, LEAN in 16 bits.
+/// Only the map is required. The defaults are an OpenGL normal map that repeats, no base roughness, and LEAN in 16
+/// bits.
 ///
-/// The same parts give the same textures for any number of threads.
+/// The result does not depend on the number of threads.
 ///
 /// ```
 /// use roughcast::texture::Layout;
@@ -137,7 +140,7 @@ pub struct Bake<'a> {
 }
 
 impl<'a> Bake<'a> {
-    /// A bake of this map, with all else at its default.
+    /// A bake of this map with default settings.
     pub fn of(image: impl Into<ImageView<'a>>) -> Self {
         Self {
             image: image.into(),
@@ -149,30 +152,32 @@ impl<'a> Bake<'a> {
         }
     }
 
-    /// How the map is read.
+    /// Sets how the map is read.
     pub fn source(self, source: SourceOptions) -> Self {
         Self { source, ..self }
     }
 
-    /// The base roughness of the material, where there is one; a map of another size is resampled. It is folded into the
-    /// moments if [`BakeOptions::base`] says so, and always part of `pbr`'s roughness and of Toksvig's gloss factor.
+    /// Sets the base roughness of the material, if any; a map of another size is resampled. It is folded into the
+    /// moments if [`BakeOptions::base`] says so, and is always part of the roughness of `pbr` and of Toksvig's gloss
+    /// factor.
     pub fn roughness(self, roughness: impl Into<Option<BaseRoughness<'a>>>) -> Self {
         Self { roughness: roughness.into(), ..self }
     }
 
-    /// What is made of the map.
+    /// Sets the output options.
     pub fn options(self, options: BakeOptions) -> Self {
         Self { options, ..self }
     }
 
-    /// Writes into the textures of an earlier bake where they have the same shape: a map that changes every frame needs no
-    /// new memory. Textures of another shape are dropped.
+    /// Reuses the textures of an earlier bake if they have the same shape, so that a map that changes every frame
+    /// needs no new memory. Textures of another shape are dropped.
     pub fn reusing(self, textures: Vec<TextureArray>) -> Self {
         Self { textures, ..self }
     }
 
-    /// Tells `watch` after each band of rows which fraction is done, 0 ..= 1, and stops with [`BakeError::Stopped`] soon after it
-    /// breaks. It is called from the threads that work, also from several at once, so that fractions may come out of order.
+    /// Calls `watch` after each band of rows with the completed fraction, 0 ..= 1, and stops with
+    /// [`BakeError::Stopped`] soon after it breaks. It is called from the worker threads, possibly from several at
+    /// once, so fractions may arrive out of order.
     ///
     /// ```
     /// use std::ops::ControlFlow;
@@ -187,10 +192,10 @@ impl<'a> Bake<'a> {
         Self { watch: Some(watch), ..self }
     }
 
-    /// Bakes.
+    /// Runs the bake.
     ///
     /// # Errors
-    /// [`BakeError`] where the map has too few channels, or options do not go together.
+    /// [`BakeError`] if the map has too few channels or the options cannot be combined.
     pub fn run(self) -> Result<Baked, BakeError> {
         bake(self)
     }
@@ -250,7 +255,7 @@ fn bake(parts: Bake<'_>) -> Result<Baked, BakeError> {
         slope: finest.maximum_slope,
         variance: needed.variance.unwrap_or(finest.max_variance),
     };
-    // Where no scale was to be found, a few rows tell how the slopes are distributed.
+    // If no scale had to be determined, estimate the distribution of slopes from a few rows.
     let looked_at = looked_at.unwrap_or_else(|| survey_of_some_rows(&source.slopes_only()));
     let [rms_slope, rms_slope_with_base] = rms_slopes(&built.whole, finest);
     let report = BakeReport {
@@ -277,10 +282,10 @@ fn bake(parts: Bake<'_>) -> Result<Baked, BakeError> {
     Ok(Baked { arrays, report })
 }
 
-/// The root mean square of the slopes of a whole map, without the base roughness and with it.
+/// The root mean square slope of a whole map, without and with the base roughness.
 fn rms_slopes(whole: &Moments, finest: &LevelStats) -> [f64; 2] {
     let with_base = f64::from(whole.xx) + f64::from(whole.yy);
-    // A texel of level 0 is one slope, so that all variance there is the base's.
+    // A texel of level 0 is a single slope, so all variance there comes from the base.
     let base = finest.mean_variance_x + finest.mean_variance_y;
     [with_base - base, with_base].map(|squared| squared.max(0.0).sqrt())
 }
@@ -292,7 +297,7 @@ fn use_of_base(options: &BakeOptions) -> UseOfBase {
     }
 }
 
-/// Layouts that store roughness hold the base whatever was asked for: that is what they are.
+/// Layouts that store roughness always include the base, regardless of the options.
 fn base_of(options: &BakeOptions, has_roughness: bool) -> Base {
     match options.layout.base_role() {
         BaseRole::Contained | BaseRole::Apart if has_roughness => Base::Baked,

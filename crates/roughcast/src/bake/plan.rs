@@ -8,24 +8,24 @@ use crate::roughness::RoughnessTexture;
 use crate::source::{BaseRoughness, check_numbers};
 use crate::texture::TextureInfo;
 
-/// Checked options and what follows from them, for those who bake by other means than [`Bake`](crate::Bake), such as a GPU, whose map
-/// is no image in memory.
+/// Checked options and the settings derived from them, for callers who bake by means other than
+/// [`Bake`](crate::Bake), such as a GPU whose map is not an image in memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct BakePlan {
-    /// How the map is read. The largest slope is lowered to what the texels can hold; it is only [`MaxSlope::Auto`](crate::MaxSlope::Auto) where it
-    /// depends on the map.
+    /// How the map is read. The largest slope is lowered to what the texels can hold; it is only
+    /// [`MaxSlope::Auto`](crate::MaxSlope::Auto) if it depends on the map.
     pub source: SourceOptions,
-    /// What the texels mean. Scales that depend on the map are still 1.
+    /// The meaning of the texels. Scales that depend on the map are still 1.
     pub info: TextureInfo,
 }
 
 impl BakePlan {
-    /// Checks options against each other.
+    /// Checks that the options can be combined.
     ///
     /// # Errors
-    /// [`BakeError`] where they do not go together.
+    /// [`BakeError`] if they cannot be combined.
     pub fn new(
         source_options: &SourceOptions,
         roughness: Option<BaseRoughness<'_>>,
@@ -53,7 +53,7 @@ impl BakePlan {
     }
 }
 
-/// How unit vectors are stored. Only `pbr` has a choice, and only in floats.
+/// How unit vectors are stored. Only `pbr` has a choice, and only in float types.
 fn normal_range(options: &BakeOptions) -> NormalRange {
     match options.sample_type.is_float() {
         false => NormalRange::Unorm,

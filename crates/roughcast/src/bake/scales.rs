@@ -1,4 +1,4 @@
-//! The range that unsigned texels cover, and when a few steep texels have made it too large.
+//! The ranges that unsigned texels cover, and the check for a few steep texels that make them too large.
 
 use super::ScaleAdvice;
 use crate::SampleType;
@@ -12,12 +12,12 @@ use crate::survey::Survey;
 use crate::texture::rules::Storage;
 use crate::texture::{Peaks, TextureInfo};
 
-/// One in so many texels is among the steepest that [`ScaleAdvice`] and the automatic limit are about; and the loss of usable
-/// specular power from which on they are.
+/// One in this many texels counts as steep for [`ScaleAdvice`] and the automatic limit, which apply once the steep
+/// texels cost this factor of usable specular power.
 pub(super) const STEEP_ONE_IN: u64 = 1000;
 pub(super) const STEEP_COST: f32 = 4.0;
 
-/// The largest variance of any level, which is only known when all have been made.
+/// The largest variance of any level, which is only known after all levels have been computed.
 pub(super) fn largest_variance(
     source: &MapSource<'_>,
     options: PyramidOptions,
@@ -32,9 +32,9 @@ pub(super) fn largest_variance(
 /// What the ranges of unsigned texels have to represent.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NeededRange {
-    /// Of level 0, where the scale of slopes is to be found.
+    /// The peaks of level 0, if the scale of slopes has to be determined.
     pub peaks: Option<Peaks>,
-    /// The largest variance of any level, where a layout stores variances or standard deviations.
+    /// The largest variance of any level, if a layout stores variances or standard deviations.
     pub variance: Option<f32>,
 }
 
@@ -51,14 +51,14 @@ pub(super) fn set_scales(info: &mut TextureInfo, needed: &NeededRange, options: 
     info.spread_scale = options.layout.rules().spread_scale(needed.variance.unwrap_or(0.0));
 }
 
-/// The peaks without the steepest texels of which [`ScaleAdvice`] speaks.
+/// The peaks after excluding the steepest texels that [`ScaleAdvice`] refers to.
 pub(super) fn peaks_of_most(looked_at: &Survey, peaks: &Peaks) -> Peaks {
     let slope = looked_at.slope_exceeded_by_one_in(STEEP_ONE_IN).min(peaks.slope);
     Peaks { component: slope.min(peaks.component), slope, ..*peaks }
 }
 
-/// Advice on a scale that a few steep texels have made too large. None is given on a scale that the caller chose, and single
-/// floats are fine enough on any slope.
+/// Advice if a few steep texels have made the scale too large. There is none for a scale that the caller chose, nor
+/// for single floats, which are precise enough for any slope.
 pub(super) fn advice(
     storage: &Storage<'_>,
     options: &BakeOptions,
@@ -78,7 +78,7 @@ pub(super) fn advice(
         rules.bounds(&Storage { info, ..*storage }, peaks).usable_specular_power()
     };
     let factor = power(&limited_info, &limited) / power(info, peaks);
-    // Where nothing can be relied upon now, no factor says how much better it would be.
+    // If nothing is usable now, the improvement cannot be expressed as a factor.
     (max_slope > 0.0 && factor > STEEP_COST && factor.is_finite())
         .then_some(ScaleAdvice { max_slope, factor })
 }

@@ -6,14 +6,14 @@ use super::*;
 use crate::texture::Layout;
 use crate::{Image, PyramidFilter, Samples};
 
-/// Normals of whole numbers, so that they are the same on every machine.
+/// Normals computed from integers, so that they are the same on every machine.
 fn map(width: usize, height: usize) -> Image {
     let texel = |i: usize| [(i * i / 7 % 120 + 70) as u8, (i * 31 % 110 + 75) as u8, 255 - (i % 40) as u8];
     let samples = Samples::U8((0..width * height).flat_map(texel).collect());
     Image::new(width, height, 3, samples).expect("whole pixels")
 }
 
-/// Sizes that are halved evenly down to a column, once, and never.
+/// Sizes that halve evenly down to a single column, once, and never.
 const SIZES: [(usize, usize); 3] = [(128, 64), (130, 66), (67, 131)];
 
 fn bake_of(map: &Image, layout: Layout, filter: PyramidFilter) -> Bake<'_> {
@@ -22,7 +22,7 @@ fn bake_of(map: &Image, layout: Layout, filter: PyramidFilter) -> Bake<'_> {
     Bake::of(map).roughness(BaseRoughness::Variance(0.01)).options(options)
 }
 
-/// FNV-1a of all samples of all levels.
+/// FNV-1a hash of all samples of all levels.
 fn hash(baked: &Baked) -> u64 {
     let layers = baked.arrays.iter().flat_map(|array| &array.layers);
     let images = layers.flat_map(|layer| &layer.levels);
@@ -32,8 +32,8 @@ fn hash(baked: &Baked) -> u64 {
         .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
 }
 
-/// Run with all features and with none of them: what is pinned here is what every build makes. A layout that is not in the list
-/// is not pinned yet.
+/// Runs with all features and with none: the pinned hashes apply to every build. A layout that is not in the list is
+/// not pinned yet.
 #[test]
 fn the_bytes_do_not_depend_on_the_features_of_the_build() {
     let expected = BTreeMap::from([
@@ -83,7 +83,7 @@ fn a_watch_hears_fractions_up_to_one() {
 
 #[test]
 fn a_bake_stops_where_its_watch_breaks() {
-    // Many bands of each kind of work, on which not all threads can be at once.
+    // Many bands of each kind of work, so that the threads cannot process all of them at once.
     let (width, height) = (64, 4096);
     for (height, filter) in [(height, PyramidFilter::Box), (height + 1, PyramidFilter::Triangle)] {
         for layout in [Layout::Lean, Layout::Variance, Layout::Moments] {

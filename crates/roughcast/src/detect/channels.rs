@@ -1,4 +1,4 @@
-//! Guesses how normals are stored: in which channels, and in which range.
+//! Guesses how normals are stored: in which channels and over which range.
 
 use super::green::test_green_of_map;
 use super::order::{GreyAndAlpha, guess_grey_and_alpha};
@@ -6,51 +6,52 @@ use super::sample::{SAME, quantile, share, spread, texels};
 use super::vectors::{MAX_MEAN_TILT, MAX_XY_LENGTH, UNIT, decoded, length, mean_xy};
 use crate::{ImageView, Kind, NormalChannels, NormalRange, SamplesView, SourceOptions};
 
-/// A blue whose z varies by less than this, but for 1 % at each end, is constant: 8 of 255 steps, since a
-/// JPEG mixes red and green into a constant blue.
+/// Blue counts as constant if z varies by less than this, ignoring 1 % of the texels at each end. This is 8 of 255
+/// steps, because JPEG mixes red and green into a constant blue.
 const CONSTANT_BLUE: f32 = 16.0 / 255.0;
 
-/// Constant blues that stand for no z: nothing, the middle, or everything stored.
+/// Constant blues that do not encode z: zero, the middle or the maximum of the stored range.
 const VOID_BLUES: [f32; 3] = [-1.0, 0.0, 1.0];
 
-/// A z further than this from that of x and y is another vector's.
+/// A z that differs by more than this from the z computed from x and y does not belong to the same vector.
 const WRONG_Z: f32 = 0.1;
 
-/// A constant blue is no z if this share of the texels has the wrong z. One real map has, its blue being 255.
+/// A constant blue does not encode z if more than this share of the texels has the wrong z. One real map meets this
+/// condition; its blue is 255.
 const WRONG_Z_SHARE: f64 = 0.01;
 
-/// Texels with z below this, but not quite at the horizon, tell how blue stands for z: where z is near 1, all
-/// ways agree.
+/// Range of z of the texels that show how blue encodes z. Near z = 1 all encodings agree; texels almost at the horizon
+/// are excluded.
 const TILTED: std::ops::Range<f32> = 0.15..0.9;
 
-/// Fewest texels of a map that must be tilted, as a share.
+/// Minimum share of the texels of a map that must be tilted.
 const TILTED_SHARE: f64 = 0.01;
 
-/// Blue is z itself if the median difference of the two is below this. The real map where it is has 0.004,
-/// the smallest of the others 0.03.
+/// Blue is z itself if the median difference between the two is below this. The one real map with such a blue has
+/// 0.004; the smallest value among the others is 0.03.
 const PLAIN_Z_ERROR: f32 = 0.012;
 
-/// Share of the texels whose x and y must be those of a normal.
+/// Minimum share of the texels whose x and y must be valid for a normal.
 const NEARLY_ALL: f64 = 0.99;
 
-/// A negative value below this is more than the rounding of a zero.
+/// A value below this is negative by more than the rounding error of a zero.
 const NEGATIVE: f32 = -1.0 / 255.0;
 
-/// A larger share of texels with a negative value means a signed map; a smaller one the overshoot of a
-/// resampling filter.
+/// If more than this share of the texels has a negative value, the map is signed. A smaller share comes from the
+/// overshoot of a resampling filter.
 const NEGATIVE_SHARE: f64 = 0.01;
 
-/// Index of the alpha of four channels.
+/// Index of alpha in a four-channel image.
 const ALPHA: usize = 3;
 
-/// Which channels hold the components of a normal map, and by which it should thus be read.
+/// Guesses which channels hold the components of a normal map.
 ///
-/// One or two channels hold x and y. So do the first two of three whose blue is not z with scale and bias, as
-/// that of x and y is: maps exist with a blue that is constant (0, 128 or 255), and with z itself over 0 to 1.
-/// Alpha and green hold them where red and blue are constant, and grey and alpha, in either order, where those two are the
-/// slopes of a surface.
+/// One or two channels hold x and y. With three channels, the first two hold x and y unless blue is z stored with the
+/// same scale and bias as x and y: some maps have a constant blue (0, 128 or 255), others store z itself over 0 to 1.
+/// Alpha and green hold x and y if red and blue are constant. Grey and alpha hold them, in either order, if the two are
+/// the slopes of a surface.
 ///
-/// `channels` and `range` as for [`crate::detect::guess_kind`].
+/// `channels` and `range` are as for [`crate::detect::guess_kind`].
 pub fn guess_channels<'a>(
     image: impl Into<ImageView<'a>>,
     channels: &[impl AsRef<str>],
@@ -70,10 +71,10 @@ pub fn guess_channels<'a>(
     }
 }
 
-/// Whether the components of the normals of a map are stored as they are or with scale and bias.
+/// Guesses whether the components of a map's normals are stored as they are or with scale and bias.
 ///
-/// For images whose file does not say. Integers always have scale and bias; of floats, negative values tell
-/// and, of maps without any, the reading under which more vectors have unit length.
+/// For images whose file does not say. Integers always have scale and bias. Floats with negative values are signed; for
+/// float maps without negative values, the range that gives more vectors of unit length is chosen.
 pub fn guess_range<'a>(image: impl Into<ImageView<'a>>) -> NormalRange {
     let image = image.into();
     if matches!(image.samples(), SamplesView::U8(_) | SamplesView::U16(_)) {
@@ -98,12 +99,12 @@ pub fn guess_range<'a>(image: impl Into<ImageView<'a>>) -> NormalRange {
     }
 }
 
-/// Indices of the channels that are no alpha.
+/// Indices of the channels other than alpha.
 pub(super) fn colour_channels(image: ImageView<'_>, channels: &[impl AsRef<str>]) -> Vec<usize> {
     (0..image.channels()).filter(|&i| !is_alpha(channels, i)).collect()
 }
 
-/// Index of the alpha.
+/// Index of the alpha channel.
 pub(super) fn alpha_of(image: ImageView<'_>, channels: &[impl AsRef<str>]) -> Option<usize> {
     (0..image.channels()).find(|&i| is_alpha(channels, i))
 }
@@ -113,8 +114,8 @@ fn is_alpha(channels: &[impl AsRef<str>], index: usize) -> bool {
     name == "A" || name.ends_with(".A")
 }
 
-/// Whether, of four channels, red and blue are constant while green and alpha vary: x is in alpha and y in
-/// green, which block compression (BC3) stores best.
+/// Whether, in a four-channel image, red and blue are constant while green and alpha vary. Such maps store x in alpha
+/// and y in green, the channels that block compression (BC3) stores best.
 pub(super) fn x_is_in_alpha(image: ImageView<'_>) -> bool {
     if image.channels() != ALPHA + 1 {
         return false;
@@ -124,18 +125,18 @@ pub(super) fn x_is_in_alpha(image: ImageView<'_>) -> bool {
     varies == [false, true, false, true]
 }
 
-/// What the blue of three channels is, beside the usual: z with scale and bias, or a colour of a picture.
+/// Special contents of blue in a three-channel image; usually it is z with scale and bias, or a picture's colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Blue {
-    /// A constant that is no z, while red and green can be x and y.
+    /// A constant that does not encode z, while red and green can be x and y.
     Void,
-    /// z as it is, over 0 ..= 1, where red and green have scale and bias.
+    /// z itself, over 0 ..= 1, while red and green have scale and bias.
     PlainZ,
     /// Anything else.
     Other,
 }
 
-/// What blue is, judged by the components that follow from the `range`.
+/// Guesses the contents of blue from the components decoded with `range`.
 pub(super) fn guess_blue(vectors: &[[f32; 3]], range: NormalRange) -> Blue {
     let in_disc = share(vectors, |[x, y, _]| length([x, y]) <= MAX_XY_LENGTH);
     if in_disc < NEARLY_ALL || length(mean_xy(vectors)) > MAX_MEAN_TILT {
@@ -160,7 +161,7 @@ fn z_from_xy(x: f32, y: f32) -> f32 {
     (1.0 - x * x - y * y).max(0.0).sqrt()
 }
 
-/// Whether two channels, as x and y of normals, are the slopes of a surface, green up or down: what two channels
+/// Whether two channels, read as x and y of normals, are the slopes of a surface, with green up or down. Two channels
 /// of an arbitrary picture are not.
 pub(super) fn looks_like_slopes(
     image: ImageView<'_>,

@@ -1,7 +1,8 @@
-//! Correlations of two quantities over an image, with a measure of how sure they are.
+//! Correlations of two quantities over an image, with their standard errors.
 
-/// Blocks along each side of the image, each left out once to find how much the correlation depends on it. Real maps
-/// vary from place to place far more than their number of texels suggests, and the blocks show it.
+/// Number of blocks along each side of the image. Each block is left out once to estimate how much the correlation
+/// depends on it. Real maps vary from place to place far more than their number of texels suggests, and the blocks
+/// capture this variation.
 const SIDE: usize = 6;
 
 /// Sums over one block of the image.
@@ -19,18 +20,18 @@ impl Sums {
         self.second += sign * other.second;
     }
 
-    /// `2 E[ab] / (E[a^2] + E[b^2])`, which is 1 only where a and b are equal, not merely proportional.
+    /// `2 E[ab] / (E[a^2] + E[b^2])`, which is 1 only if a and b are equal, not merely proportional.
     fn agreement(&self) -> f64 {
         2.0 * self.products / (self.first + self.second)
     }
 
-    /// `E[ab] / sqrt(E[a^2] E[b^2])`, whatever the scales of a and b.
+    /// `E[ab] / sqrt(E[a^2] E[b^2])`, which does not depend on the scales of a and b.
     fn cosine(&self) -> f64 {
         self.products / (self.first * self.second).sqrt()
     }
 }
 
-/// Collects pairs of values by where they are.
+/// Accumulates pairs of values by position.
 pub(super) struct Blocks {
     sums: [Sums; SIDE * SIDE],
     pairs: usize,
@@ -41,7 +42,7 @@ impl Blocks {
         Self { sums: [Sums::default(); SIDE * SIDE], pairs: 0 }
     }
 
-    /// Adds a pair at a place, 0 .. 1 of the width and of the height.
+    /// Adds a pair at a position, given as fractions 0 .. 1 of the width and of the height.
     pub(super) fn add(&mut self, [across, down]: [f32; 2], [a, b]: [f32; 2]) {
         let index = |place: f32| ((place * SIDE as f32) as usize).min(SIDE - 1);
         let (a, b) = (f64::from(a), f64::from(b));
@@ -50,18 +51,18 @@ impl Blocks {
         self.pairs += 1;
     }
 
-    /// How far a and b are equal; `None` if nothing varies.
+    /// Measures how close a and b are to being equal; `None` if nothing varies.
     pub(super) fn agreement(&self) -> Option<Correlation> {
         self.correlation(Sums::agreement)
     }
 
-    /// How far a and b are proportional; `None` if one of them does not vary.
+    /// Measures how close a and b are to being proportional; `None` if one of them does not vary.
     pub(super) fn cosine(&self) -> Option<Correlation> {
         self.correlation(Sums::cosine)
     }
 
-    /// The statistic and its standard error by the jackknife (Efron and Stein, "The jackknife estimate of variance",
-    /// 1981): how far it moves when one block after the other is left out.
+    /// The statistic and its standard error, estimated with the jackknife (Efron and Stein, "The jackknife estimate of
+    /// variance", 1981) from the changes when each block in turn is left out.
     fn correlation(&self, statistic: impl Fn(&Sums) -> f64) -> Option<Correlation> {
         let mut all = Sums::default();
         self.sums.iter().for_each(|sums| all.add(*sums, 1.0));
@@ -83,7 +84,7 @@ impl Blocks {
     }
 }
 
-/// Keeps a perfect correlation from being divided by zero.
+/// Prevents division by zero for a perfect correlation.
 const SMALLEST_ERROR: f64 = 1e-9;
 
 /// A correlation over an image.
@@ -91,9 +92,9 @@ const SMALLEST_ERROR: f64 = 1e-9;
 pub(super) struct Correlation {
     /// -1 ..= 1.
     pub(super) value: f64,
-    /// The value in units of its standard error: how sure its sign is.
+    /// The value in units of its standard error: the confidence in its sign.
     pub(super) standard_errors: f64,
-    /// Number of pairs that it was made of.
+    /// Number of pairs it was computed from.
     pub(super) pairs: usize,
 }
 
@@ -101,10 +102,10 @@ pub(super) struct Correlation {
 mod tests {
     use super::*;
 
-    /// Where the green test begins to believe.
+    /// Threshold above which the green test trusts a correlation.
     const UNSURE: f64 = 5.0;
 
-    /// Pairs over a square of this many to a side.
+    /// Side of the square of pairs.
     const PLACES: usize = 60;
 
     fn blocks(pair: impl Fn(usize, usize) -> [f32; 2]) -> Blocks {
@@ -131,13 +132,13 @@ mod tests {
 
     #[test]
     fn a_correlation_from_a_single_block_is_not_significant() {
-        // In one of the 36 blocks a and b are equal and strong, elsewhere they are unrelated and weak.
+        // In one of the 36 blocks a and b are equal and large; elsewhere they are unrelated and small.
         let one = blocks(|x, y| {
             let noise = |seed: usize| (((x * 31 + y * 57 + seed) * 2_654_435) % 1000) as f32 / 1000.0 - 0.5;
             if x < 10 && y < 10 { [10.0 * noise(1); 2] } else { [noise(1), noise(500)] }
         });
         let found = one.agreement().expect("it varies");
-        // Without that block nothing is left, so the standard error is nearly the value times the root of 35/36.
+        // Without that block nothing is left, so the standard error is nearly the value times the square root of 35/36.
         assert!(found.value > 0.5 && found.standard_errors.abs() < UNSURE, "{found:?}");
     }
 

@@ -1,6 +1,6 @@
-//! Slopes or heights of an image at coarser and coarser scales.
+//! Slopes or heights of an image at successively coarser scales.
 
-/// Planes of values that are averaged over ever larger boxes.
+/// Planes of values that are averaged over successively larger boxes.
 #[derive(Clone, Debug)]
 pub(super) struct Field<const N: usize> {
     width: usize,
@@ -28,7 +28,7 @@ impl<const N: usize> Field<N> {
         self.values[y * self.width + x]
     }
 
-    /// The field with each two by two values averaged; a last odd row or column is dropped. Not finite stays not finite.
+    /// Averages each two by two values; a last odd row or column is dropped. Non-finite values stay non-finite.
     pub(super) fn halved(&self) -> Self {
         let (width, height) = (self.width / 2, self.height / 2);
         let mean = |x: usize, y: usize| {

@@ -1,18 +1,20 @@
 //! Does the green channel of a normal map point up (OpenGL) or down (DirectX)?
 //!
-//! *The curl test.* The slopes of a height field, with y up, have no curl: d(bx)/dy = d(by)/dx, since both are the mixed
-//! second derivative of the height. Where green was read the wrong way round, the two are equal with opposite
-//! signs. Their correlation is measured at six scales, an octave apart. It decides where it is large at one of the fine
-//! scales, or where it is small but sure, and has the same sign, at several scales in a row: lossy compression, noise and the
-//! rounding to 8 bits lower the correlation, but do not give it a direction at every scale.
+//! *The curl test.* The slopes of a height field, with y up, have no curl: d(bx)/dy = d(by)/dx, since both are the
+//! mixed second derivative of the height. If green was read with the wrong sign, the two are equal with opposite signs.
+//! The test measures their correlation at six scales, an octave apart. The correlation is decisive if it is large at
+//! one of the fine scales, or if it is small but significant, with the same sign, at several scales in a row. Lossy
+//! compression, noise and rounding to 8 bits lower the correlation, but do not give it a consistent sign at every
+//! scale.
 //!
-//! *The height map beside it*, where there is one, says it directly: its gradient is compared with the slopes.
+//! *The height map test.* If the material has a height map, its gradient is compared with the slopes directly.
 //!
 //! Error rates over the 38 real maps with a known direction: none wrong, one undecided (a map whose red channel was
-//! lost to JPEG; the height map beside it decides it). Of the same maps as JPEG of quality 20, with 4:2:0: none wrong, 4
-//! undecided; with noise of 30 of 255: none wrong, 4 undecided; flattened to a tenth and stored as JPEG of quality 75: none
-//! wrong, 5 undecided. (One large correlation alone, as the test was before, leaves 7, 15 and 13 undecided.) Of 519 pairs of the
-//! slopes along x of one map with those along y of another, which have no direction, none is decided.
+//! lost to JPEG; its height map decides it). The same maps as JPEG of quality 20 with 4:2:0: none wrong, 4 undecided.
+//! With noise of 30 of 255: none wrong, 4 undecided. Flattened to a tenth and stored as JPEG of quality 75: none wrong,
+//! 5 undecided. (The earlier version of the test, which used only a single large correlation, leaves 7, 15 and 13
+//! undecided.) Out of 519 pairs of the slopes along x of one map with the slopes along y of another, which have no
+//! direction, none is decided.
 
 use crate::ImageView;
 use crate::options::SourceOptions;
@@ -23,57 +25,57 @@ use super::correlation::{Blocks, Correlation};
 use super::field::Field;
 use super::sample::{odd_stride, quantile};
 
-/// Octaves at which the slopes are looked at: from single texels to means over 32 x 32.
+/// Number of octaves at which the slopes are examined: from single texels to means over 32 x 32.
 const SCALES: usize = 6;
 
-/// A large correlation decides alone at these scales, single texels to means over 4 x 4. Of the real maps in WebP, all 14
-/// that have a direction gain by averaging (one goes from 0.37 to 0.65); beyond 4 most lose it again.
+/// Number of scales at which a large correlation alone is decisive: single texels to means over 4 x 4. All 14 real WebP
+/// maps that have a direction gain from averaging (one goes from 0.37 to 0.65); beyond 4 x 4 most lose it again.
 const FINE_SCALES: usize = 3;
 
-/// Most points looked at for each scale: the correlation of unrelated slopes stays below 0.01 then.
+/// Maximum number of points per scale. With this many, the correlation of unrelated slopes stays below 0.01.
 const MAX_POINTS: usize = 1 << 18;
 
-/// Fewest usable points of a scale that counts.
+/// Minimum number of usable points for a scale to count.
 const MIN_POINTS: usize = 144;
 
-/// Slopes are clamped to this length (76 degrees) first: near the horizon slopes are all error.
+/// Slopes are first clamped to this length (76 degrees), because slopes near the horizon are dominated by error.
 const MAX_SLOPE: f32 = 4.0;
 
-/// Derivatives longer than this share of all are clamped to that length, so that a few wild texels cannot outvote
-/// the rest: with 1 texel in 1000 replaced by noise, every real map with a direction keeps at least 0.34;
-/// without the clamp, one sinks to 0.04.
+/// Derivatives above this quantile of the lengths are clamped to it, so that a few outlier texels cannot outvote the
+/// rest. With 1 texel in 1000 replaced by noise, every real map with a direction keeps at least 0.34; without the
+/// clamp, one drops to 0.04.
 const CLAMP_QUANTILE: f64 = 0.99;
 
-/// A change of the slopes counts if it is longer than this: between the rounding of an f32 slope (1e-7) and
-/// the steps of a 16-bit map (3e-5).
+/// Minimum length of a change of the slopes that counts: between the rounding error of an f32 slope (1e-7) and the
+/// steps of a 16-bit map (3e-5).
 const MIN_DERIVATIVE: f32 = 1e-5;
 
-/// From here on a correlation decides alone. Of the real maps in the tests, 37 of the 38 with a known direction have at
-/// least 0.46; the two without have 0.01 and 0.15.
+/// Minimum correlation that is decisive alone. Of the 38 real maps in the tests with a known direction, 37 have at
+/// least 0.46; the two maps without a direction have 0.01 and 0.15.
 const LARGE_CORRELATION: f64 = 0.3;
 
-/// With few points the correlation must be larger than this over the root of their number: that of unrelated
-/// slopes deviates by about 1 over the root, and by up to 3 where they are smooth over 3 texels; this is
-/// twice as much. In 50 000 small maps of unrelated slopes (14 to 64 texels wide, smooth over 1 to 6) it
-/// decided, wrongly, in 2.
+/// With few points, the correlation must exceed this divided by the square root of their number. The correlation of
+/// unrelated slopes deviates by about 1 over the square root, and by up to 3 if the slopes are smooth over 3 texels;
+/// this is twice as much. In 50 000 small maps of unrelated slopes (14 to 64 texels wide, smooth over 1 to 6) the test
+/// made 2 wrong decisions.
 const LARGE_DEVIATIONS: f64 = 6.0;
 
-/// A small correlation counts if its sign is sure by so many standard errors. At 4 one more degraded map is decided
-/// (aluminium), at 6 three fewer.
+/// A small correlation counts if it differs from zero by this many standard errors. At 4 one more degraded map
+/// (aluminium) is decided, at 6 three fewer.
 const SURE_STANDARD_ERRORS: f64 = 5.0;
 
-/// The smallest correlation that counts. Two unrelated maps, both periodic, reached 0.009 at four scales in a row.
+/// Minimum correlation that counts. Two unrelated maps, both periodic, reached 0.009 at four scales in a row.
 const MIN_SMALL_CORRELATION: f64 = 0.02;
 
-/// Scales in a row at which a small correlation must be sure. The slopes of metal flakes, which have no direction, reach
-/// 0.15, but at two scales only.
+/// Number of scales in a row at which a small correlation must be significant. The slopes of metal flakes, which have
+/// no direction, reach 0.15, but at two scales only.
 const SCALES_IN_A_ROW: usize = 3;
 
-/// Between the gradient of a height map and the slopes along one axis. The weakest of the real pairs has 0.17 along the axis
-/// that JPEG has destroyed; unrelated pictures have less than 0.02.
+/// Minimum correlation between the gradient of a height map and the slopes along one axis. The weakest of the real
+/// pairs has 0.17, along the axis that JPEG has destroyed; unrelated pictures have less than 0.02.
 const MIN_HEIGHT_CORRELATION: f64 = 0.1;
 
-/// Largest relative difference between the aspect ratios of a normal map and the height map of the same surface.
+/// Maximum relative difference between the aspect ratios of a normal map and the height map of the same surface.
 const ASPECT_TOLERANCE: f64 = 0.01;
 
 /// Outcome of [`test_green`] or [`test_green_against_height`].
@@ -81,24 +83,24 @@ const ASPECT_TOLERANCE: f64 = 0.01;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct GreenTest {
-    /// -1 ..= 1: positive where green points up as it was read, negative where it points down, 0 where nothing tells. Of
-    /// the curl test, how d(bx)/dy agrees with d(by)/dx; of a height map, how its gradient along y agrees with the slopes. Of
-    /// several scales, that of the clearest answer.
+    /// -1 ..= 1: positive if green points up as read, negative if it points down, 0 if there is no evidence. For the
+    /// curl test, this is the agreement of d(bx)/dy with d(by)/dx; for a height map, the agreement of its gradient
+    /// along y with the slopes. If several scales were tested, it is the value of the clearest one.
     pub correlation: f64,
-    /// Number of points of that scale.
+    /// Number of points at that scale.
     pub samples: usize,
     verdict: GreenVerdict,
 }
 
-/// What a [`GreenTest`] says.
+/// The result of a [`GreenTest`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum GreenVerdict {
-    /// Green points up, as it was read.
+    /// Green points up, as read.
     Up,
-    /// Green points down: the map was read the wrong way round.
+    /// Green points down: the map was read with the wrong convention.
     Down,
-    /// The slopes do not tell: noise, a map that is not the slope of any surface, or one spoilt by
+    /// The slopes give no answer: the map is noise, is not the slope of any surface, or has been damaged by
     /// compression.
     Undecided,
 }
@@ -110,43 +112,43 @@ impl GreenVerdict {
 }
 
 impl GreenTest {
-    /// What the correlations say together.
+    /// The overall result of the correlations.
     pub fn verdict(&self) -> GreenVerdict {
         self.verdict
     }
 
-    /// Whether the correlation alone is that of a surface's slopes. Two channels of an arbitrary picture can have a small but
-    /// sure correlation, for instance where it has diagonal lines, which is no reason to take them for slopes.
+    /// Whether the correlation is large enough on its own to show that the channels are a surface's slopes. Two
+    /// channels of an arbitrary picture can have a small but significant correlation, for instance if it has diagonal
+    /// lines; they are not slopes.
     pub(super) fn is_large(&self) -> bool {
         clarity(self.correlation, self.samples).abs() >= 1.0
     }
 }
 
-/// A correlation in units of the one that decides alone.
+/// A correlation relative to the threshold at which it is decisive alone.
 fn clarity(correlation: f64, samples: usize) -> f64 {
     correlation / LARGE_CORRELATION.max(LARGE_DEVIATIONS / (samples as f64).sqrt())
 }
 
-/// Tests whether slopes, read as if green pointed up, are those of a surface, by their curl.
+/// Tests by their curl whether slopes, read as if green pointed up, are those of a surface.
 ///
-/// `bx` and `by` contain `width * height` slopes each, rows from the top; x to the right, y up. Slopes that are
-/// not finite are passed over. `None` where there is too little to judge by: a flat map, or one of a few
-/// texels.
+/// `bx` and `by` contain `width * height` slopes each, rows from the top; x to the right, y up. Non-finite slopes are
+/// ignored. Returns `None` if there is not enough data: a flat map, or one of only a few texels.
 ///
 /// # Panics
-/// Where a slice is not of length `width * height`.
+/// If a slice is not of length `width * height`.
 pub fn test_green(bx: &[f32], by: &[f32], width: usize, height: usize) -> Option<GreenTest> {
     assert_eq!((bx.len(), by.len()), (width * height, width * height), "slopes for each of the texels");
     let slopes = bx.iter().zip(by).map(|(x, y)| clamped([*x, *y], MAX_SLOPE)).collect();
     curl_of_scales(Field::new(width, height, slopes))
 }
 
-/// Side of the window that [`test_green_of_map`] looks at, in texels.
+/// Side in texels of the window that [`test_green_of_map`] examines.
 const WINDOW: usize = 1024;
 
-/// Tests a normal map, read with these options, by the curl of its slopes: the whole of it, or the middle where it is large.
+/// Tests a normal map, read with these options, by the curl of its slopes. Only the middle of a large map is examined.
 ///
-/// `None` as for [`test_green`], and where the options do not fit the map.
+/// Returns `None` as for [`test_green`], and if the options do not fit the map.
 pub fn test_green_of_map<'a>(image: impl Into<ImageView<'a>>, options: &SourceOptions) -> Option<GreenTest> {
     let image = image.into();
     let (width, height) = (image.width().min(WINDOW), image.height().min(WINDOW));
@@ -156,8 +158,9 @@ pub fn test_green_of_map<'a>(image: impl Into<ImageView<'a>>, options: &SourceOp
 
 /// Tests a normal map, read with these options, against the height map of the same surface.
 ///
-/// Heights are channel 0; white may be high or deep, since the slopes along x tell. The height map may have another size, if
-/// its aspect ratio is the same. `None` where the two do not belong together, or there is too little to judge by.
+/// Heights are read from channel 0. White may be high or deep, since the slopes along x determine which. The height map
+/// may have a different size if its aspect ratio is the same. Returns `None` if the two maps do not belong together, or
+/// if there is not enough data.
 pub fn test_green_against_height<'a, 'b>(
     image: impl Into<ImageView<'a>>,
     options: &SourceOptions,
@@ -206,13 +209,13 @@ fn slopes_of_map(
     Some(Field::new(width, height, slopes))
 }
 
-/// The vector, shortened to `max_length` where it is longer. Not finite stays not finite.
+/// The vector, clamped to `max_length`. Non-finite vectors stay non-finite.
 fn clamped(vector: [f32; 2], max_length: f32) -> [f32; 2] {
     let length = vector[0].hypot(vector[1]);
     if length > max_length { vector.map(|value| value * (max_length / length)) } else { vector }
 }
 
-/// The curl test at all scales, and what they say together.
+/// The curl test at all scales, and the combined result.
 fn curl_of_scales(finest: Field<2>) -> Option<GreenTest> {
     let mut field = finest;
     let mut scales = [None; SCALES];
@@ -234,7 +237,7 @@ fn curl_of_scales(finest: Field<2>) -> Option<GreenTest> {
     })
 }
 
-/// The largest of the correlations where several in a row are sure, and none is sure of the opposite.
+/// The largest correlation, if several in a row are significant and no significant one has the opposite sign.
 fn consistent(scales: &[Option<Correlation>]) -> Option<Correlation> {
     let sure = |scale: &Option<Correlation>| {
         scale.filter(|scale| {
@@ -248,7 +251,7 @@ fn consistent(scales: &[Option<Correlation>]) -> Option<Correlation> {
     (agree && in_a_row).then_some(largest)
 }
 
-/// The curl test on a field: how its two mixed derivatives agree.
+/// The curl test on a field: the agreement of its two mixed derivatives.
 fn curl_of(field: &Field<2>) -> Option<Correlation> {
     let mut derivatives = mixed_derivatives(field);
     if derivatives.len() < MIN_POINTS {
@@ -263,11 +266,11 @@ fn curl_of(field: &Field<2>) -> Option<Correlation> {
     blocks.agreement()
 }
 
-/// `[d(bx)/dy, d(by)/dx]` in central differences at a regular sample of the field, each with its place; those without any
-/// change left out.
+/// `[d(bx)/dy, d(by)/dx]` as central differences on a regular sample of the field, each with its position. Points
+/// without any change are left out.
 fn mixed_derivatives(field: &Field<2>) -> Vec<([f32; 2], [f32; 2])> {
     let derivatives = inner_points(field).map(|(x, y, place)| {
-        // Row 0 is the top, so y grows towards the row before.
+        // Row 0 is the top, so y increases towards the previous row.
         let dbx_dy = field.at(x, y - 1)[0] - field.at(x, y + 1)[0];
         let dby_dx = field.at(x + 1, y)[1] - field.at(x - 1, y)[1];
         (place, [dbx_dy / 2.0, dby_dx / 2.0])
@@ -276,7 +279,8 @@ fn mixed_derivatives(field: &Field<2>) -> Vec<([f32; 2], [f32; 2])> {
     derivatives.filter(|(_, derivative)| changes(*derivative)).collect()
 }
 
-/// A regular sample of the points that have neighbours on all sides, each with its place, 0 .. 1 of width and height.
+/// A regular sample of the points that have neighbours on all sides, each with its position as fractions 0 .. 1 of the
+/// width and the height.
 fn inner_points<const N: usize>(field: &Field<N>) -> impl Iterator<Item = (usize, usize, [f32; 2])> + use<N> {
     let (width, height) = (field.width().saturating_sub(2), field.height().saturating_sub(2));
     let stride = odd_stride(width, height, MAX_POINTS);
@@ -286,7 +290,7 @@ fn inner_points<const N: usize>(field: &Field<N>) -> impl Iterator<Item = (usize
         .flat_map(move |y| (1..=width).step_by(stride).map(move |x| (x, y, place(x, y))))
 }
 
-/// The comparison with a height map at all scales. `N` is slope x, slope y, height.
+/// The comparison with a height map at all scales. The three values are slope x, slope y and height.
 fn height_of_scales(finest: Field<3>) -> Option<GreenTest> {
     let mut field = finest;
     let mut best: Option<(Correlation, Correlation)> = None;
@@ -303,14 +307,14 @@ fn height_of_scales(finest: Field<3>) -> Option<GreenTest> {
     let sure = |along: &Correlation| {
         along.standard_errors.abs() >= SURE_STANDARD_ERRORS && along.value.abs() >= MIN_HEIGHT_CORRELATION
     };
-    // Along x the sign says whether white is high or deep; along y the same sign means that green points up.
+    // Along x the sign shows whether white is high or deep. The same sign along y means that green points up.
     let correlation = x.value.signum() * y.value;
     let verdict =
         if sure(&x) && sure(&y) { GreenVerdict::of_sign(correlation) } else { GreenVerdict::Undecided };
     Some(GreenTest { correlation, samples: y.pairs, verdict })
 }
 
-/// How the slopes along x and along y go with minus the gradient of the heights.
+/// Correlations of the slopes along x and along y with minus the gradient of the heights.
 fn gradients_of(field: &Field<3>) -> Option<(Correlation, Correlation)> {
     let (mut along_x, mut along_y) = (Blocks::new(), Blocks::new());
     let mut points = 0;

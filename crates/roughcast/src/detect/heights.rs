@@ -1,14 +1,14 @@
-//! Whether the heights of a map are parts of a full scale or in some unit of length.
+//! Whether the heights of a map are fractions of full scale or in some unit of length.
 
 use crate::ImageView;
 
-/// How far a resampling filter may overshoot a range of 0 ..= 1: Lanczos by 0.07 to 0.09 at a step.
+/// Maximum overshoot of a resampling filter beyond a range of 0 ..= 1: Lanczos overshoots by 0.07 to 0.09 at a step.
 const OVERSHOOT: f32 = 0.1;
 
-/// Share of the texels that may lie still further outside: broken ones.
+/// Share of the texels that may lie even further outside: broken texels.
 const FEW: f64 = 0.001;
 
-/// The values of a height map.
+/// The range of values of a height map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HeightRange {
@@ -16,19 +16,19 @@ pub struct HeightRange {
     pub min: f32,
     /// Largest finite value.
     pub max: f32,
-    /// Share of the finite values that lie outside of 0 ..= 1 by more than a filter overshoots.
+    /// Share of the finite values that lie outside 0 ..= 1 by more than a filter's overshoot.
     pub outside: f64,
 }
 
 impl HeightRange {
-    /// Whether the values fill a range of 0 ..= 1, but for overshoots and a few broken texels. Other values are most
-    /// often lengths, in metres or another unit, and the height scale has to be made for them.
+    /// Whether the values lie within 0 ..= 1, apart from overshoots and a few broken texels. Other values are usually
+    /// lengths, in metres or another unit, and need a matching height scale.
     pub fn is_normalised(&self) -> bool {
         self.outside <= FEW
     }
 }
 
-/// The range of the first channel of an image, which is a height map's height. `None` where no value is finite.
+/// The range of the first channel of an image, which holds a height map's heights. `None` if no value is finite.
 pub fn height_range<'a>(image: impl Into<ImageView<'a>>) -> Option<HeightRange> {
     let image = image.into();
     let samples = image.samples();
@@ -45,8 +45,8 @@ pub fn height_range<'a>(image: impl Into<ImageView<'a>>) -> Option<HeightRange> 
     (count > 0).then(|| HeightRange { min, max, outside: outside as f64 / count as f64 })
 }
 
-/// The height scale for heights in the unit in which a pixel is `pixel_width` wide, of a map of `width` pixels: a height v is
-/// then `v / pixel_width` texels.
+/// The height scale for heights given in the unit in which a pixel is `pixel_width` wide, for a map of `width` pixels.
+/// A height v is then `v / pixel_width` texels.
 pub fn height_scale_for_units(pixel_width: f64, width: usize) -> f64 {
     1.0 / (pixel_width * width as f64)
 }
@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn a_slope_of_one_metre_per_metre_is_one() {
-        // Pixels of 30 m and a rise of 30 m a pixel, on a map of 64 pixels: v * scale * width is a texel.
+        // With pixels of 30 m and a rise of 30 m per pixel on a map of 64 pixels, v * scale * width is one texel.
         let scale = height_scale_for_units(30.0, 64);
         assert!((30.0 * scale * 64.0 - 1.0).abs() < 1e-12);
     }

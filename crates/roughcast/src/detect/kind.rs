@@ -1,4 +1,4 @@
-//! Guesses from channels and texels whether a map holds normals or heights.
+//! Guesses from the channels and texels whether a map holds normals or heights.
 
 use super::channels::{Blue, colour_channels, guess_blue, looks_like_slopes, x_is_in_alpha};
 use super::order::{GreyAndAlpha, guess_grey_and_alpha};
@@ -6,41 +6,40 @@ use super::sample::{SAME, quantile, share, spread, texels};
 use super::vectors::{MAX_MEAN_TILT, MAX_XY_LENGTH, UNIT, decoded, length, mean_xy};
 use crate::{ImageView, Kind, NormalChannels, NormalRange};
 
-/// In a grey picture fewer than 1 texel in 1000 has channels further apart than this, of a full scale of 1.
-/// Of the real grey maps 1 in 1000 reaches 5/255 at most; of the greyest coloured albedo 19 in 1000 exceed
-/// 10/255.
+/// In a grey picture, fewer than 1 texel in 1000 has channels that differ by more than this, at a full scale of 1. In
+/// the real grey maps, 1 texel in 1000 reaches 5/255 at most; in the greyest coloured albedo, 19 in 1000 exceed 10/255.
 const GREY_SPREAD: f32 = 10.0 / 255.0;
 const GREY_QUANTILE: f64 = 0.999;
 
-/// Largest mean spread of a grey picture over its mean brightness, 0.07 for the real grey maps. The spread
-/// itself is small in dark pictures, too.
+/// Maximum ratio of mean spread to mean brightness in a grey picture; 0.07 for the real grey maps. The spread alone
+/// does not suffice, because it is also small in dark pictures.
 const GREY_SATURATION: f64 = 0.15;
 
-/// Of float images the full scale is the value that this share of the texels does not exceed.
+/// The full scale of a float image is this quantile of its texels.
 const FULL_SCALE_QUANTILE: f64 = 0.99;
 
-/// Lengths that are called near 1. Some real maps were filtered without renormalising (3 % of the vectors of
-/// one are shorter than 0.5), some went through lossy compression (1 % of another are longer than 1.23).
+/// Lengths that count as close to 1. Some real maps were filtered without renormalising (in one, 3 % of the vectors are
+/// shorter than 0.5), others went through lossy compression (in one, 1 % are longer than 1.23).
 const NEAR_UNIT: std::ops::RangeInclusive<f32> = 0.5..=1.3;
 
-/// The share of texels that must be as they should. The real normal maps have at least 0.95 near unit length
-/// and outward, albedo at most 0.56, other pictures at most 0.85 (a mask, whose colour is far from upright).
+/// Minimum share of valid texels. In the real normal maps, at least 0.95 are near unit length and point outward; in
+/// albedo at most 0.56, in other pictures at most 0.85 (a mask, whose colour is far from upright).
 const MOST: f64 = 0.9;
 
-/// Share of the texels of a two-channel map that must be normals. Backgrounds are often stored as (0, 0),
-/// which is (-1, -1): 40 % of the texels of a real map.
+/// Minimum share of the texels of a two-channel map that must be normals. Backgrounds are often stored as (0, 0), which
+/// decodes to (-1, -1): 40 % of the texels of one real map.
 const SHARE_OF_TWO: f64 = 0.5;
 
 const NOTHING_FINITE: &str = "none of its values is finite";
 
-/// What [`guess_kind`] makes of a map.
+/// The result of [`guess_kind`].
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum KindGuess {
-    /// It is this.
+    /// The map is of this kind.
     Certain(Kind),
-    /// It may be neither: the user has to specify it.
+    /// The map may be neither: the user has to specify the kind.
     Doubtful {
-        /// What was seen, in one short clause: `it has 6 channels beside alpha`.
+        /// The reason, as one short clause: `it has 6 channels beside alpha`.
         reason: String,
     },
 }
@@ -51,16 +50,16 @@ impl KindGuess {
     }
 }
 
-/// Whether a map holds normals or heights.
+/// Guesses whether a map holds normals or heights.
 ///
-/// `channels` names each channel of the image, in order; an alpha (`A`, or a name that ends in `.A`) does not
-/// count. `range` is how the components of normals are stored: ask [`crate::detect::guess_range`] where the
-/// file does not say.
+/// `channels` names each channel of the image, in order; an alpha channel (`A`, or a name that ends in `.A`) does not
+/// count. `range` is how the components of normals are stored: use [`crate::detect::guess_range`] if the file does not
+/// say.
 ///
-/// One channel is a height, two are a normal's x and y. Three are judged by what is in them: grey is a
-/// height, vectors of about unit length that point out of the surface are normals, and so are x and y that
-/// come with constants instead of z. Maps of roughness or
-/// occlusion are grey, too, and are taken for heights: no pixel tells the difference.
+/// One channel is a height, two are a normal's x and y. Three channels are judged by their contents: grey is a height;
+/// vectors of about unit length that point out of the surface are normals, and so are x and y combined with a constant
+/// instead of z. Maps of roughness or occlusion are grey, too, and are classified as heights: the pixels alone cannot
+/// tell them apart.
 pub fn guess_kind<'a>(
     image: impl Into<ImageView<'a>>,
     channels: &[impl AsRef<str>],
@@ -117,7 +116,8 @@ fn guess_three(image: ImageView<'_>, channels: [usize; 3], range: NormalRange) -
     }
 }
 
-/// Channels that could be x and y, beside others that say nothing, are a normal's if they are slopes.
+/// Accepts two channels that could be x and y as a normal's if they are slopes; the other channels carry no
+/// information.
 fn if_slopes(image: ImageView<'_>, channels: NormalChannels, range: NormalRange, seen: &str) -> KindGuess {
     if looks_like_slopes(image, channels, range) {
         KindGuess::Certain(Kind::Normal)
@@ -126,7 +126,7 @@ fn if_slopes(image: ImageView<'_>, channels: NormalChannels, range: NormalRange,
     }
 }
 
-/// The stored value that stands for white: 1 for integers, some large value found for floats.
+/// The stored value that represents white: 1 for integers; for floats, estimated from the largest values.
 fn full_scale(image: ImageView<'_>, stored: &[[f32; 3]]) -> f32 {
     if !image.samples().sample_type().is_float() {
         return 1.0;
@@ -139,7 +139,7 @@ fn full_scale(image: ImageView<'_>, stored: &[[f32; 3]]) -> f32 {
 
 fn guess_constant(stored: [f32; 3], scale: f32, range: NormalRange) -> KindGuess {
     let [x, y, z] = stored.map(|value| range.component_from_stored(value));
-    // A step of the stored value is two of the component.
+    // One step of the stored value is two steps of the component.
     if x.abs() <= 2.0 * SAME && y.abs() <= 2.0 * SAME && UNIT.contains(&z) {
         return KindGuess::Certain(Kind::Normal);
     }
@@ -152,14 +152,14 @@ fn guess_constant(stored: [f32; 3], scale: f32, range: NormalRange) -> KindGuess
 
 fn is_grey(stored: &[[f32; 3]], scale: f32) -> bool {
     let mut spreads: Vec<f32> = stored.iter().map(|texel| spread(*texel)).collect();
-    // Sums, both over the same texels.
+    // Both sums are over the same texels.
     let total_spread: f64 = spreads.iter().copied().map(f64::from).sum();
     let brightness: f64 = stored.iter().flatten().map(|value| f64::from(value.abs()) / 3.0).sum();
     total_spread <= GREY_SATURATION * brightness
         && quantile(&mut spreads, GREY_QUANTILE) <= GREY_SPREAD * scale
 }
 
-/// Judges pictures that have colours by whether the colours are normals.
+/// Judges coloured pictures by whether their colours are normals.
 fn guess_vectors(vectors: &[[f32; 3]]) -> KindGuess {
     let unit = share(vectors, |v| UNIT.contains(&length(v)));
     let outward = share(vectors, |[_, _, z]| z > 0.0);
@@ -182,7 +182,7 @@ fn guess_vectors(vectors: &[[f32; 3]]) -> KindGuess {
     ))
 }
 
-/// A share in words: `37 %`.
+/// Formats a share as a percentage: `37 %`.
 fn percent(share: f64) -> String {
     format!("{:.0} %", share * 100.0)
 }

@@ -1,10 +1,11 @@
-//! Which of two channels is x and which is y, where nothing but the pixels can tell.
+//! Guesses from the pixels which of two channels is x and which is y.
 //!
-//! The slopes of a surface have no curl (see [`super::green`]). With x and y exchanged their mixed derivatives become the second
-//! derivatives of the height along the axes, whose correlation is smaller: 1/3 where the bumps have no direction. So of the two
-//! orders that with the larger correlation is right, whichever way green points.
+//! The slopes of a surface have no curl (see [`super::green`]). If x and y are exchanged, their mixed derivatives
+//! become the second derivatives of the height along the axes, whose correlation is smaller: 1/3 if the bumps have no
+//! preferred direction. The order with the larger correlation is therefore the right one, whichever way green points.
 //!
-//! Of the 40 real normal maps the right order always has the larger correlation; in 36 the two differ by enough to be sure.
+//! In all 40 real normal maps the right order has the larger correlation; in 36 the difference is large enough to be
+//! sure.
 
 use super::channels::{alpha_of, colour_channels};
 use super::green::{GreenTest, test_green_of_map};
@@ -12,20 +13,20 @@ use super::sample::{SAME, quantile, share, spread, texels};
 use super::vectors::{MAX_MEAN_TILT, MAX_XY_LENGTH, decoded, length, mean_xy};
 use crate::{ImageView, Kind, NormalChannels, NormalRange, SourceOptions};
 
-/// The correlations of the two orders must differ by this much. Of the real maps four have less: two that have no
-/// direction, one whose red is lost, and one of long straight seams, whose orders have 0.98 and 0.93.
+/// The correlations of the two orders must differ by at least this much. Four of the real maps differ by less: two that
+/// have no direction, one whose red is lost, and one of long straight seams, whose orders have 0.98 and 0.93.
 const CLEAR_DIFFERENCE: f64 = 0.1;
 
-/// Red, green and blue of a grey picture differ by at most this much in nearly all texels: block compression (BC3) stores
-/// them with 5, 6 and 5 bits.
+/// Maximum difference between red, green and blue of a grey picture in nearly all texels. Block compression (BC3)
+/// stores them with 5, 6 and 5 bits.
 const GREY: f32 = 10.0 / 255.0;
 
-/// Share of the texels that must be as they should.
+/// Minimum share of the texels that must be valid.
 const NEARLY_ALL: f64 = 0.99;
 
-/// Of two ways to read a map, the one whose order of x and y is right; `None` if the two are equally good or bad.
+/// Picks the one of two ways to read a map whose order of x and y is right; `None` if both are equally good or bad.
 ///
-/// `options` say how it is read otherwise.
+/// `options` specify all other aspects of reading the map.
 pub fn guess_order<'a>(
     image: impl Into<ImageView<'a>>,
     options: &SourceOptions,
@@ -40,7 +41,7 @@ pub fn guess_order<'a>(
     }
 }
 
-/// What the curl test says of one way to read a map.
+/// The result of the curl test for one way to read a map.
 struct Correlation(Option<GreenTest>);
 
 impl Correlation {
@@ -62,18 +63,19 @@ fn correlation(
     Correlation(test_green_of_map(image, &options))
 }
 
-/// What a grey picture with a fourth, or second, channel beside it contains.
+/// Contents of a grey picture with alpha.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum GreyAndAlpha {
     /// Normals, stored in these channels.
     Normals(NormalChannels),
-    /// Normals by all signs, but either of the two may be x.
+    /// Normals by all criteria, but either of the two may be x.
     EitherOrder,
-    /// Grey with its coverage, or no grey picture with alpha at all.
+    /// Grey with its coverage, or not a grey picture with alpha at all.
     Other,
 }
 
-/// Whether grey and alpha are x and y of normals: KTX's normal mode has x in grey, Unity's textures have it in alpha.
+/// Whether grey and alpha are x and y of normals. KTX's normal mode stores x in grey; Unity's textures store it in
+/// alpha.
 pub(super) fn guess_grey_and_alpha(
     image: ImageView<'_>,
     channels: &[impl AsRef<str>],

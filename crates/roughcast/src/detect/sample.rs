@@ -2,15 +2,15 @@
 
 use crate::ImageView;
 
-/// Most texels that are looked at: enough for any statistic here.
+/// Maximum number of texels that are examined: enough for any statistic here.
 const MAX_TEXELS: usize = 1 << 20;
 
-/// Stored values closer than this, of a full scale of 1, are equal but for rounding and lossy compression:
-/// two 8-bit steps, and a little room for the rounding of the comparison.
+/// Stored values that differ by less than this, at a full scale of 1, are considered equal apart from rounding and
+/// lossy compression: two 8-bit steps, plus a margin for the rounding of the comparison.
 pub(super) const SAME: f32 = 2.1 / 255.0;
 
-/// The smallest odd step for which at most `max_points` grid points lie in `width` x `height`. Odd, because
-/// patterns of power-of-two period are common in textures: an even step would see one phase of them only.
+/// The smallest odd step for which at most `max_points` grid points lie in `width` x `height`. It is odd because
+/// patterns of power-of-two period are common in textures: an even step would sample only one phase of them.
 pub(super) fn odd_stride(width: usize, height: usize, max_points: usize) -> usize {
     let mut stride = 1;
     while width.div_ceil(stride).saturating_mul(height.div_ceil(stride)) > max_points {
@@ -19,7 +19,7 @@ pub(super) fn odd_stride(width: usize, height: usize, max_points: usize) -> usiz
     stride
 }
 
-/// `N` channels of the sampled texels, as stored. Texels with a value that is not finite are left out.
+/// `N` channels of the sampled texels, as stored. Texels with a non-finite value are left out.
 pub(super) fn texels<const N: usize>(image: ImageView<'_>, channels: [usize; N]) -> Vec<[f32; N]> {
     let stride = odd_stride(image.width(), image.height(), MAX_TEXELS);
     let rows = (0..image.height()).step_by(stride);
@@ -29,13 +29,12 @@ pub(super) fn texels<const N: usize>(image: ImageView<'_>, channels: [usize; N])
         .collect()
 }
 
-/// The share of `items` for which `test` holds; 0 where there are none.
+/// The share of `items` for which `test` holds; 0 if there are no items.
 pub(super) fn share<T: Copy>(items: &[T], test: impl Fn(T) -> bool) -> f64 {
     items.iter().filter(|item| test(**item)).count() as f64 / items.len().max(1) as f64
 }
 
-/// The value below which the share `quantile`, 0 ..= 1, of `values` lies; 0 where there are none. Reorders
-/// them.
+/// The value below which the share `quantile`, 0 ..= 1, of `values` lies; 0 if there are no values. Reorders `values`.
 pub(super) fn quantile(values: &mut [f32], quantile: f64) -> f32 {
     if values.is_empty() {
         return 0.0;
@@ -44,7 +43,7 @@ pub(super) fn quantile(values: &mut [f32], quantile: f64) -> f32 {
     *values.select_nth_unstable_by(rank, f32::total_cmp).1
 }
 
-/// Largest less smallest value; 0 where there are none.
+/// Largest minus smallest value; 0 if there are no values.
 pub(super) fn spread(values: impl IntoIterator<Item = f32>) -> f32 {
     let (low, high) = values
         .into_iter()

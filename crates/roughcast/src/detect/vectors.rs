@@ -2,17 +2,18 @@
 
 use crate::NormalRange;
 
-/// Lengths that a map with lossless, normalised vectors keeps, and that no picture keeps throughout.
+/// Range of lengths in a map of losslessly stored, normalised vectors. No other picture stays within it throughout.
 pub(super) const UNIT: std::ops::RangeInclusive<f32> = 0.95..=1.05;
 
-/// The mean normal of a map stands upright, since the surface as a whole is flat: the largest |mean (x, y)|
-/// of the real maps is 0.15. A bluish picture that happens to be of about unit length has no reason to do so.
+/// Maximum |mean (x, y)| of a normal map. The mean normal is upright, since the surface as a whole is flat; the largest
+/// value among the real maps is 0.15. A bluish picture whose vectors happen to be of about unit length need not meet
+/// this.
 pub(super) const MAX_MEAN_TILT: f32 = 0.3;
 
-/// Largest |(x, y)| of a normal, with some room for block compression.
+/// Maximum |(x, y)| of a normal, with a margin for block compression.
 pub(super) const MAX_XY_LENGTH: f32 = 1.05;
 
-/// The components that stored values stand for.
+/// Decodes stored values into components.
 pub(super) fn decoded<const N: usize>(mut texels: Vec<[f32; N]>, range: NormalRange) -> Vec<[f32; N]> {
     for value in texels.as_flattened_mut() {
         *value = range.component_from_stored(*value);

@@ -1,5 +1,5 @@
-//! The fused pass: while sizes are even, slopes are computed, averaged and stored in one go over tiles that stay in
-//! the cache. Level 0 is never held as floats.
+//! The fused pass: while sizes are even, slopes are computed, averaged and stored in a single pass over tiles that
+//! stay in the cache. Level 0 is never held as floats.
 
 use super::combine::{average_two_columns, average_two_rows, average_two_rows_of_slopes};
 use super::level_out::{LevelOut, OutScratch};
@@ -9,21 +9,21 @@ use crate::progress::{Progress, Stopped};
 use crate::row::{Row, RowSource, SourceScratch};
 use crate::slope::SourceCounts;
 
-/// Deepest level that one tile makes: 64 rows of level 0 for each of its own.
+/// Deepest level that one tile produces: one of its rows covers 64 rows of level 0.
 const MAX_DEPTH: usize = 6;
 
-/// Columns of level 0 in a tile; a multiple of 2^MAX_DEPTH. All rows of a tile together stay within L2.
+/// Columns of level 0 in a tile; a multiple of 2^MAX_DEPTH. All rows of a tile together fit into L2.
 const TILE: usize = 512;
 
-/// Rows of level 0 that one task takes, at least: enough work to be worth handing out.
+/// Minimum number of rows of level 0 per task: enough work to justify a task.
 const BAND_ROWS: usize = 64;
 
-/// How many halvings are exact: both sides even each time.
+/// The number of halvings for which both sides are even.
 pub(super) fn depth(width: usize, height: usize) -> usize {
     (width.trailing_zeros().min(height.trailing_zeros()) as usize).min(MAX_DEPTH)
 }
 
-/// Makes levels 0 ..= depth, and hands back the last one.
+/// Computes levels 0 ..= depth and returns the last one.
 pub(super) fn run(
     source: &dyn RowSource,
     depth: usize,
@@ -66,7 +66,7 @@ pub(super) fn run(
     Ok(FirstLevels { counts, stats, last: Some(last) })
 }
 
-/// The rows that one task makes: of the last level, and with it of all levels above.
+/// The rows that one task produces: rows of the last level, and the rows of all finer levels under them.
 struct Band<'a> {
     first_row: usize,
     last: super::resample::PlanesMut<'a>,
@@ -77,9 +77,9 @@ struct Band<'a> {
 struct Cascade<'a> {
     source: &'a dyn RowSource,
     depth: usize,
-    /// For each level the two rows that make one row of the next.
+    /// For each level, the two rows that are averaged into one row of the next.
     pairs: Vec<[Row; 2]>,
-    /// For each level the average of its two rows, before columns are averaged.
+    /// For each level, the average of its two rows, before columns are averaged.
     merged: Vec<Row>,
     source_scratch: SourceScratch,
     out_scratch: OutScratch,
@@ -125,7 +125,7 @@ impl<'a> Cascade<'a> {
         }
     }
 
-    /// Makes row `y` of a level into `pairs[level][slot]`, and before it all rows of finer levels under it.
+    /// Computes row `y` of a level into `pairs[level][slot]`, after all rows of finer levels under it.
     fn row(&mut self, level: usize, x: usize, y: usize, slot: usize, band: &mut Band<'_>) {
         if level == 0 {
             let row = &mut self.pairs[0][slot];

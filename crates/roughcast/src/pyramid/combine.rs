@@ -19,7 +19,8 @@ pub(super) fn average_two_rows(a: &Row, b: &Row, out: &mut Row) {
     }
 }
 
-/// The equal average of two rows of level 0 that have no covariance of their own: theirs is all that is made.
+/// The equal average of two rows of level 0, which have no covariance of their own: only the covariance of their
+/// means remains.
 pub(super) fn average_two_rows_of_slopes(a: &Row, b: &Row, out: &mut Row) {
     let [abx, aby, _, _, _, a_extras @ ..] = &a.planes[..] else { unreachable!("core planes") };
     let [bbx, bby, _, _, _, b_extras @ ..] = &b.planes[..] else { unreachable!("core planes") };
@@ -32,8 +33,9 @@ pub(super) fn average_two_rows_of_slopes(a: &Row, b: &Row, out: &mut Row) {
     }
 }
 
-// Slices come in as arguments, which the compiler knows not to overlap, and are cut to one length, which it then need
-// not check: these loops vectorise. The mean lies half a difference from either value, so both add the same square.
+// Slices are passed as arguments, so that the compiler knows that they do not overlap, and are cut to the same
+// length, which removes the bounds checks, so these loops vectorise. The mean is half the difference away from either
+// value, so both add the same square.
 
 vectorised! {
     fn means_of_two(a: &[f32], b: &[f32], out: &mut [f32]) {
@@ -129,8 +131,8 @@ vectorised! {
     }
 }
 
-/// The weighted average of rows. Weights sum to one; means are taken relative to the first row, so that equal rows
-/// average to themselves to the last bit.
+/// The weighted average of rows. Weights sum to one; means are computed relative to the first row, so that equal rows
+/// average to exactly themselves.
 pub(super) fn average_rows(rows: &[(&Row, f32)], out: &mut Row) {
     let (first, rest) = rows.split_first().expect("an average is over one row or more");
     for (plane, out_plane) in out.planes.iter_mut().enumerate() {
@@ -154,7 +156,7 @@ pub(super) fn average_rows(rows: &[(&Row, f32)], out: &mut Row) {
     }
 }
 
-/// The weighted average of columns: texel j of `out` takes the texels of `row` that `taps[j]` names.
+/// The weighted average of columns: texel j of `out` averages the texels of `row` listed in `taps[j]`.
 pub(super) fn average_columns(row: &Row, taps: &[super::weights::Taps], out: &mut Row) {
     for (j, line) in taps.iter().enumerate() {
         let first = line.taps[0].0;

@@ -1,7 +1,7 @@
 // Averages by the law of total covariance: the covariance of a union is the mean of the covariances plus the covariance
 // of the means. Twin of combine.rs, in the same order of additions.
 
-// The averages of a texel that the pyramid carries.
+// The averages per texel that the pyramid stores.
 struct Averages {
     // Mean slope.
     mean: vec2f,
@@ -11,7 +11,7 @@ struct Averages {
     normal: vec3f,
 }
 
-// The equal average of two.
+// The equal average of two texels.
 fn average_of_two(a: Averages, b: Averages) -> Averages {
     let halved = 0.5 * (a.mean - b.mean);
     let between = rounded3(vec3f(halved * halved, halved.x * halved.y));
@@ -22,7 +22,7 @@ fn average_of_two(a: Averages, b: Averages) -> Averages {
     );
 }
 
-// The equal average of four, rows first.
+// The equal average of four texels, rows first.
 fn average_of_four(
     top_left: Averages,
     top_right: Averages,
@@ -32,7 +32,7 @@ fn average_of_four(
     return average_of_two(average_of_two(top_left, bottom_left), average_of_two(top_right, bottom_right));
 }
 
-// What a member of a weighted average adds to its covariance.
+// The contribution of one texel to the covariance of a weighted average.
 fn weighted_deviation(member: vec2f, mean: vec2f, weight: f32) -> vec3f {
     let d = member - mean;
     return rounded3(weight * vec3f(d * d, d.x * d.y));
@@ -46,7 +46,8 @@ fn sum_of_deviations(a: Averages, b: Averages, c: Averages, weights: vec3f, aver
     return out;
 }
 
-// The weighted average of up to three columns. Weights sum to one; where one is zero, its texel may be anything finite.
+// The weighted average of up to three columns. Weights sum to one; a texel with weight zero may hold any finite
+// values.
 fn average_columns(a: Averages, b: Averages, c: Averages, weights: vec3f) -> Averages {
     let average = Averages(
         a.mean + (rounded2(weights.y * (b.mean - a.mean)) + rounded2(weights.z * (c.mean - a.mean))),
@@ -57,7 +58,7 @@ fn average_columns(a: Averages, b: Averages, c: Averages, weights: vec3f) -> Ave
     return sum_of_deviations(a, b, c, weights, average);
 }
 
-// The weighted average of up to three rows, as `average_columns`.
+// The weighted average of up to three rows; otherwise like `average_columns`.
 fn average_rows(a: Averages, b: Averages, c: Averages, weights: vec3f) -> Averages {
     let average = Averages(
         (a.mean + rounded2(weights.y * (b.mean - a.mean))) + rounded2(weights.z * (c.mean - a.mean)),
@@ -68,7 +69,7 @@ fn average_rows(a: Averages, b: Averages, c: Averages, weights: vec3f) -> Averag
     return sum_of_deviations(a, b, c, weights, average);
 }
 
-// The equal average of four by `average_columns` and `average_rows`.
+// The equal average of four texels, computed by `average_columns` and `average_rows`.
 fn weighted_average_of_four(
     top_left: Averages,
     top_right: Averages,

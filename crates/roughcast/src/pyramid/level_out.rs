@@ -1,4 +1,4 @@
-//! Where rows of a level go: encoded by a layout into the samples of its textures, and measured.
+//! Output of the rows of a level: a layout encodes them into the samples of its textures, and they are measured.
 
 use super::LevelStats;
 use crate::SamplesMut;
@@ -8,7 +8,7 @@ use crate::texture::pack;
 use crate::vectorised::vectorised;
 
 impl SamplesMut<'_> {
-    /// Pieces of `len` samples each.
+    /// Chunks of `len` samples each.
     fn chunks(self, len: usize) -> Vec<Self> {
         match self {
             Self::U8(v) => v.chunks_mut(len).map(Self::U8).collect(),
@@ -18,7 +18,7 @@ impl SamplesMut<'_> {
         }
     }
 
-    /// Packs planes of stored values, texel by texel, from sample `start` on.
+    /// Interleaves planes of stored values texel by texel, starting at sample `start`.
     fn pack(&mut self, start: usize, planes: &[Vec<f32>], width: usize) {
         let len = planes.len() * width;
         match self {
@@ -36,15 +36,15 @@ pub(crate) struct PartOut<'a> {
     pub samples: SamplesMut<'a>,
 }
 
-/// What is measured of a level.
+/// What is measured for a level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Measured {
-    /// Level 0 of a map without base roughness: its variances are zeros.
+    /// Level 0 of a map without base roughness: its variances are zero.
     Slopes,
     SlopesAndVariances,
 }
 
-/// One level of all textures of a layout, or some rows of it. Without an encoder it is only measured.
+/// One level of all textures of a layout, or some of its rows. Without an encoder it is only measured.
 pub(crate) struct LevelOut<'a> {
     width: usize,
     rows: usize,
@@ -54,7 +54,7 @@ pub(crate) struct LevelOut<'a> {
     sum: StatsSum,
 }
 
-/// Reused buffer: the planes that a layout stores, before they are interleaved.
+/// A reusable buffer for the planes that a layout stores, before they are interleaved.
 #[derive(Default)]
 pub(crate) struct OutScratch {
     planes: Vec<Vec<f32>>,
@@ -83,12 +83,12 @@ impl<'a> LevelOut<'a> {
         Self { measured: Measured::Slopes, ..self }
     }
 
-    /// Rows in it.
+    /// Number of rows.
     pub fn rows(&self) -> usize {
         self.rows
     }
 
-    /// Bands of `rows` rows each, to be written at the same time.
+    /// Splits it into bands of `rows` rows each, which can be written concurrently.
     pub fn split(self, rows: usize) -> Vec<Self> {
         let (width, encoder, measured) = (self.width, self.encoder, self.measured);
         let mut bands: Vec<Self> = (0..self.rows.div_ceil(rows))
@@ -104,7 +104,7 @@ impl<'a> LevelOut<'a> {
         bands
     }
 
-    /// Measures and stores a stretch of row `y` (of this band) from column `x` on.
+    /// Measures and stores a segment of row `y` (of this band), starting at column `x`.
     pub fn write(&mut self, x: usize, y: usize, row: RowView<'_>, scratch: &mut OutScratch) {
         self.sum.measure(row, self.measured);
         let Some(encoder) = self.encoder else { return };
@@ -120,18 +120,18 @@ impl<'a> LevelOut<'a> {
         }
     }
 
-    /// What was measured, for a band.
+    /// The measurements of a band.
     pub fn into_sum(self) -> StatsSum {
         self.sum
     }
 
-    /// What was measured, for the whole level.
+    /// The measurements of the whole level.
     pub fn finish(self) -> LevelStats {
         self.sum.finish()
     }
 }
 
-/// Sums over texels. Bands are added in their order, so that the result does not depend on the threads.
+/// Sums over texels. Bands are added in order, so that the result does not depend on the threads.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct StatsSum {
     texels: u64,
@@ -179,7 +179,7 @@ impl StatsSum {
 const LANES: usize = 16;
 
 vectorised! {
-    /// Sum in independent lanes, which vectorises; the lanes are f64, so the order does not matter in practice.
+    /// Sum in independent lanes, which vectorises. The lanes are f64, so the order does not matter in practice.
     fn sum(values: &[f32]) -> f64 {
         let (chunks, rest) = values.as_chunks::<LANES>();
         let mut lanes = [0.0_f64; LANES];
@@ -193,7 +193,7 @@ vectorised! {
 }
 
 vectorised! {
-    /// The largest of values that are not negative.
+    /// The maximum of non-negative values.
     pub(crate) fn largest(values: &[f32]) -> f32 {
         let (chunks, rest) = values.as_chunks::<LANES>();
         let mut lanes = [0.0_f32; LANES];
@@ -207,7 +207,7 @@ vectorised! {
 }
 
 vectorised! {
-    /// The largest magnitude of a component and the largest squared length, in lanes, which vectorise.
+    /// The largest magnitude of a component and the largest squared length, computed in lanes, which vectorises.
     pub(crate) fn largest_component_and_square(bx: &[f32], by: &[f32]) -> (f32, f32) {
         let larger = |a: f32, b: f32| if a > b { a } else { b };
         let mut components = [0.0_f32; LANES];

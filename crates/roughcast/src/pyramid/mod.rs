@@ -1,8 +1,8 @@
 //! The pyramid: every level is a weighted average of the previous one, and the moments are conserved.
 //!
 //! Level k+1 has `max(1, floor(n / 2))` texels each way. With the box filter each texel is the exact area average of
-//! the texels that it covers, for every size; whatever the filter, weights are such that a constant stays
-//! constant and the mean of every level is the mean of level 0 ([`weights`]).
+//! the texels that it covers, for every size. For every filter, the weights are such that a constant stays constant
+//! and the mean of every level is the mean of level 0 ([`weights`]).
 //!
 //! Sources: LEAN mapping, 3.3; Schilling, "The roughness pyramid".
 
@@ -24,38 +24,38 @@ use crate::slope::SourceCounts;
 use level_out::OutScratch;
 use resample::FirstLevels;
 
-/// How many levels of the box filter are made by equal averages of four, rows first: as long as both sides are even, but at
-/// most six. The levels after them are made with the weights of any size. Both are exact; they differ in the order of
-/// additions, which whoever wants the same bits by other means, such as a GPU, has to keep.
+/// The number of box-filtered levels that are computed by equal averages of four texels, rows first: as long as both
+/// sides are even, but at most six. Later levels use the weights for arbitrary sizes. Both are exact; they differ in
+/// the order of additions, which other implementations, such as one on a GPU, must follow to get the same bits.
 pub fn levels_of_four(width: usize, height: usize) -> usize {
     cascade::depth(width, height)
 }
 
-/// Statistics of a level, measured while it was made.
+/// Statistics of a level, measured while it is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct LevelStats {
-    /// Mean over the level of the variance along x.
+    /// Variance along x, averaged over the level.
     pub mean_variance_x: f64,
-    /// Mean over the level of the variance along y.
+    /// Variance along y, averaged over the level.
     pub mean_variance_y: f64,
-    /// Largest variance along either axis of any texel.
+    /// Largest variance of any texel along either axis.
     pub max_variance: f32,
-    /// Largest magnitude of a component of a mean slope.
+    /// Largest magnitude of any component of a mean slope.
     pub largest_component: f32,
     /// Largest length of a mean slope.
     pub maximum_slope: f32,
 }
 
-/// How levels are made.
+/// How levels are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct PyramidOptions {
     pub filter: PyramidFilter,
     pub wrap: Wrap,
 }
 
-/// What was seen while levels were made.
+/// Statistics gathered while levels are computed.
 pub(crate) struct Built {
     pub counts: SourceCounts,
     pub levels: Vec<LevelStats>,
@@ -63,7 +63,7 @@ pub(crate) struct Built {
     pub whole: Moments,
 }
 
-/// Makes every level of `source` and hands it, row by row, to `outs`, one for each of [`level_sizes`].
+/// Computes every level of `source` and passes it, row by row, to `outs`, one for each of [`level_sizes`].
 pub(crate) fn build(
     source: &dyn RowSource,
     options: PyramidOptions,
@@ -86,7 +86,8 @@ pub(crate) fn build(
         resample::first_level(source, options, fused, progress)?
     };
     stats.extend(fused_stats);
-    // Without a cascade the first reduction has not been stored yet; `level` is level `depth` or, then, level 1.
+    // Without a cascade the first reduction has not been stored yet; `level` is level `depth`, or level 1 without a
+    // cascade.
     let mut scratch = OutScratch::default();
     if depth == 0
         && let Some(mut out) = outs.next()
@@ -109,7 +110,7 @@ pub(crate) fn build(
     Ok(Built { counts, levels: stats, whole })
 }
 
-/// How many levels the cascade makes.
+/// The number of levels that the cascade computes.
 fn depth(width: usize, height: usize, options: PyramidOptions) -> usize {
     match options.filter {
         PyramidFilter::Box => cascade::depth(width, height),
@@ -117,7 +118,7 @@ fn depth(width: usize, height: usize, options: PyramidOptions) -> usize {
     }
 }
 
-/// The texels that [`build`] counts as progress: those of level 0, and of the levels that are made one by one.
+/// The texels that [`build`] counts as progress: those of level 0 and of the levels that are computed one by one.
 pub(crate) fn work(width: usize, height: usize, options: PyramidOptions) -> u64 {
     let texels = level_sizes(width, height).into_iter().map(|(width, height)| width as u64 * height as u64);
     let finest = width as u64 * height as u64;

@@ -1,4 +1,4 @@
-//! Levels of any size by any filter, from the weights of [`super::weights`].
+//! Levels of any size with any filter, using the weights of [`super::weights`].
 
 use super::combine::{average_columns, average_rows};
 use super::level_out::{LevelOut, OutScratch, StatsSum};
@@ -10,10 +10,10 @@ use crate::progress::{Progress, Stopped};
 use crate::row::{CORE_PLANES, Row, RowSource, RowView, SourceScratch};
 use crate::slope::{Slope, SourceCounts};
 
-/// Rows of the coarser level that one task makes. The finer rows at a task's edges are averaged by both neighbours.
+/// Rows of the coarser level per task. The finer rows at the edges of a task are averaged by both neighbouring tasks.
 const BAND_ROWS: usize = 16;
 
-/// A level as floats. Only levels from 1 on are ever held like this.
+/// A level as floats. Only levels from 1 on are stored like this.
 pub(super) struct LevelImage {
     width: usize,
     height: usize,
@@ -26,7 +26,7 @@ impl LevelImage {
         Self { width, height, planes: vec![vec![0.0; width * height]; CORE_PLANES + extras] }
     }
 
-    /// Bands of `rows` rows each, to be filled at the same time.
+    /// Splits it into bands of `rows` rows each, which can be filled concurrently.
     pub fn split(&mut self, rows: usize) -> Vec<PlanesMut<'_>> {
         let width = self.width;
         let mut bands: Vec<PlanesMut<'_>> = Vec::new();
@@ -47,7 +47,7 @@ impl LevelImage {
         }
     }
 
-    /// The moments of the first texel: of all there is, where this is the last level.
+    /// The moments of the first texel: those of the whole map, if this is the last level.
     pub fn first_texel(&self) -> Moments {
         moments_at(&self.planes, 0)
     }
@@ -60,7 +60,7 @@ impl LevelImage {
     }
 }
 
-/// Some rows of a [`LevelImage`], to write to.
+/// Writable rows of a [`LevelImage`].
 pub(super) struct PlanesMut<'a> {
     width: usize,
     planes: Vec<&'a mut [f32]>,
@@ -78,17 +78,17 @@ impl PlanesMut<'_> {
     }
 }
 
-/// The levels that are made together with level 0.
+/// The levels that are computed together with level 0.
 pub(super) struct FirstLevels {
     pub counts: SourceCounts,
-    /// Of the levels that have been stored.
+    /// Statistics of the levels that have been stored.
     pub stats: Vec<LevelStats>,
-    /// The coarsest level that was made, where it is not level 0.
+    /// The coarsest level that was computed, if it is not level 0.
     pub last: Option<LevelImage>,
 }
 
-/// Stores level 0 and makes level 1 of it, where there is one. Slopes are computed twice, once for each: cheaper than
-/// holding level 0 as floats.
+/// Stores level 0 and computes level 1 from it, if there is one. Slopes are computed twice, once for each level: that
+/// is cheaper than storing level 0 as floats.
 pub(super) fn first_level(
     source: &dyn RowSource,
     options: PyramidOptions,
@@ -138,7 +138,7 @@ pub(super) fn next_level(
     reduce((level.width, level.height), extras, options, &|y, row, _| level.row(y, row), progress)
 }
 
-/// The moments of the first texel of level 0, for a map of a single one.
+/// The moments of the first texel of level 0, for a map of a single texel.
 pub(super) fn first_texel_of(source: &dyn RowSource) -> Moments {
     let mut row = Row::new(1, source.extras().len());
     source.fill(0, 0, &mut row, &mut SourceScratch::default());
@@ -181,7 +181,7 @@ fn reduce_band(
     read_row: ReadRow<'_>,
 ) {
     let extras = full.planes.len() - CORE_PLANES;
-    // The finer rows that this band needs, each averaged over its columns once.
+    // The finer rows that this band needs; the columns of each are averaged once.
     let mut needed: Vec<usize> = lines.iter().flat_map(|line| &line.taps).map(|(y, _)| *y).collect();
     needed.sort_unstable();
     needed.dedup();

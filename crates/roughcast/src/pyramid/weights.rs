@@ -1,20 +1,21 @@
-//! Weights by which a line of n texels becomes a line of `max(1, floor(n / 2))`.
+//! Weights for reducing a line of n texels to a line of `max(1, floor(n / 2))`.
 
 use crate::convention::Wrap;
 use crate::options::PyramidFilter;
 
-/// The texels that go into one texel of the next level, with weights that sum to one.
+/// The texels that contribute to one texel of the next level, with weights that sum to one.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Taps {
-    /// Index and weight.
+    /// Index and weight of each texel.
     pub taps: Vec<(usize, f32)>,
 }
 
-/// Kernel integrated up to `t`, with `t` in widths of the coarser texel from its centre; runs from 0 to 1.
+/// The kernel integrated up to `t`, where `t` is measured from the centre of the coarser texel in units of its width;
+/// runs from 0 to 1.
 ///
-/// The three are the B-splines of order one to three. B-splines centred on each coarse texel sum to one
-/// everywhere, so every finer texel counts equally; the third is the usual stand-in for a Gaussian and has exactly the
-/// standard deviation of half a texel.
+/// The three kernels are the B-splines of order one to three. B-splines centred on each coarse texel sum to one
+/// everywhere, so every finer texel counts equally. The third is the usual substitute for a Gaussian; its standard
+/// deviation is exactly half a texel.
 fn integrated_kernel(filter: PyramidFilter, t: f64) -> f64 {
     match filter {
         PyramidFilter::Box => (t + 0.5).clamp(0.0, 1.0),
@@ -42,13 +43,14 @@ fn reach(filter: PyramidFilter) -> f64 {
     }
 }
 
-/// Where a texel index outside the line comes from.
+/// Maps a texel index outside the line to one inside it.
 fn wrapped(index: isize, size: usize, wrap: Wrap) -> usize {
     let size_i = size as isize;
     match wrap {
         Wrap::Repeat => index.rem_euclid(size_i) as usize,
-        // An edge texel that goes on for ever would count more than the others, and means would drift from level to
-        // level; mirrored, every texel counts the same, and the first one beyond the edge is the edge texel as well.
+        // If an edge texel were repeated forever it would count more than the others, and means would drift from
+        // level to level. If mirrored, every texel counts the same, and the first one beyond the edge is still the
+        // edge texel.
         Wrap::Clamp | Wrap::Mirror => {
             let folded = index.rem_euclid(2 * size_i);
             (if folded < size_i { folded } else { 2 * size_i - 1 - folded }) as usize
@@ -58,9 +60,9 @@ fn wrapped(index: isize, size: usize, wrap: Wrap) -> usize {
 
 /// Weights from a line of `from` texels to one of `max(1, from / 2)`.
 ///
-/// Each texel's weights are the kernel integrated over the texels of the finer line; for the box that is coverage.
-/// Every texel's weights sum to 1, so a constant stays constant, and every finer texel counts `to / from` in all, so
-/// means are kept, whatever the size, the filter and the wrap mode.
+/// Each texel's weights are the kernel integrated over the texels of the finer line; for the box filter that is the
+/// coverage. The weights of every texel sum to 1, so a constant stays constant, and every finer texel counts `to /
+/// from` in total, so means are preserved, whatever the size, the filter and the wrap mode.
 pub(crate) fn halving(from: usize, filter: PyramidFilter, wrap: Wrap) -> Vec<Taps> {
     let to = (from / 2).max(1);
     let ratio = from as f64 / to as f64;
@@ -71,7 +73,7 @@ pub(crate) fn halving(from: usize, filter: PyramidFilter, wrap: Wrap) -> Vec<Tap
 }
 
 fn kernel_weights(j: usize, ratio: f64, from: usize, filter: PyramidFilter, wrap: Wrap) -> Vec<(usize, f64)> {
-    /// Overlaps below this are rounding of the positions, not coverage.
+    /// Overlaps below this are rounding errors of the positions, not coverage.
     const NO_OVERLAP: f64 = 1e-9;
     let centre = (j as f64 + 0.5) * ratio;
     let first = (centre - reach(filter) * ratio).floor() as isize;
@@ -96,7 +98,7 @@ fn kernel_weights(j: usize, ratio: f64, from: usize, filter: PyramidFilter, wrap
 mod tests {
     use super::*;
 
-    /// Weights are stored as f32.
+    /// Rounding error of weights, which are stored as f32.
     const ROUNDING: f64 = 1e-6;
 
     #[test]

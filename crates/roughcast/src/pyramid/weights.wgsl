@@ -1,7 +1,8 @@
-// Coverage weights by which a line of `from_size` texels becomes one of max(1, from_size / 2). Twin of the box in weights.rs.
+// Coverage weights for reducing a line of `from_size` texels to one of max(1, from_size / 2). Twin of the box in
+// weights.rs.
 
-// The weights of the finer texels 2j, 2j + 1 and 2j + 2 in texel j of the coarser line. They sum to one; a texel that
-// is not there has weight zero.
+// The weights of the finer texels 2j, 2j + 1 and 2j + 2 in texel j of the coarser line. They sum to one; a texel
+// outside the line has weight zero.
 fn halving_weights(j: u32, from_size: u32) -> vec3f {
     if from_size == 1u {
         return vec3f(1.0, 0.0, 0.0);

@@ -1,7 +1,7 @@
 //! Beckmann's distribution in the frame of the filtered bump normal.
 //!
-//! Source: Beckmann & Spizzichino, 1963, as Ward's and Cook & Torrance's models use it: a Gaussian of the slopes about the
-//! facet, of variance `1 / s` (LEAN mapping, 3.1 and 3.2).
+//! Source: Beckmann & Spizzichino, 1963, as used in the models of Ward and of Cook & Torrance: a Gaussian of the
+//! slopes about the facet, of variance `1 / s` (LEAN mapping, 3.1 and 3.2).
 
 use std::f32::consts::TAU;
 

@@ -1,7 +1,8 @@
-//! Blinn-Phong: a cosine lobe about the filtered bump normal, in the half vector. The conventional method, which loses the bumps.
+//! Blinn-Phong: a cosine lobe of the half vector about the filtered bump normal. This is the conventional method,
+//! which loses the bumps.
 //!
-//! Source: Blinn, "Models of light reflection for computer synthesized pictures", 1977; its similarity to Beckmann's lobe is
-//! LEAN mapping's, 3.1.
+//! Source: Blinn, "Models of light reflection for computer synthesized pictures", 1977; its similarity to Beckmann's
+//! lobe is described in LEAN mapping, 3.1.
 
 use super::facet::{BumpFacet, bump_facet, cosine_lobe, facet_visible_part};
 use super::vector::{Vector, half_vector};

@@ -1,4 +1,4 @@
-// Blinn-Phong: a cosine lobe about the filtered bump normal, in the half vector.
+// Blinn-Phong: a cosine lobe of the half vector about the filtered bump normal.
 
 fn blinn_phong_surface(distribution: Distribution, options: ShadingOptions) -> BumpFacet {
     return bump_facet(distribution.normal, options.specular_power);

@@ -1,34 +1,36 @@
-//! How the models are called in WGSL: the one place that says so, for our renderer, for exports and for their headers.
+//! How the models are called in WGSL. This is the single definition for our renderer, for exports and for their
+//! headers.
 
 use super::Shading;
 
-/// The functions of a model in WGSL.
+/// The WGSL functions of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Calls {
-    /// `NAME(distribution, options)`, once a pixel: the surface.
+    /// `NAME(distribution, options)`, called once per pixel, returns the surface.
     pub surface: &'static str,
-    /// `NAME(surface, view, light, options)`, once a light: the lobe.
+    /// `NAME(surface, view, light, options)`, called once per light, returns the lobe.
     pub lobe: &'static str,
 }
 
 impl Calls {
-    /// The names that a host uses for the functions of any model, with those of this one: for [`crate::wgsl::renamed`].
+    /// Pairs of the names that a host uses for the functions of any model and the names of this model's functions:
+    /// for [`crate::wgsl::renamed`].
     pub fn names(self) -> [(&'static str, &'static str); 2] {
         [("model_surface", self.surface), ("model_lobe", self.lobe)]
     }
 }
 
-/// How many Gaussians the distributions of a source of bumps have.
+/// The number of Gaussians in the distributions of a source of bumps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Gaussians {
-    /// One. A shader for one has no code for more.
+    /// One. The shader then contains no code for several.
     One,
     /// One to [`crate::MAX_GAUSSIANS`].
     Several,
 }
 
 impl Gaussians {
-    /// The WGSL modules that shading them needs beside the model's.
+    /// The WGSL modules that are needed to shade them, in addition to the model's.
     pub const fn modules(self) -> &'static [&'static str] {
         match self {
             Self::One => &[],
@@ -38,7 +40,7 @@ impl Gaussians {
 }
 
 impl Shading {
-    /// How the model is called in WGSL. Of several Gaussians some models shade only the whole.
+    /// How the model is called in WGSL. Some models shade only the total distribution of several Gaussians.
     pub const fn calls(self, gaussians: Gaussians) -> Calls {
         let (surface, lobe) = match (self, gaussians) {
             (Self::Phong, _) => ("phong_surface", "phong_lobe"),

@@ -1,14 +1,14 @@
-//! A facet of the filtered bump map: what the models in the frame of the bump have in common.
+//! A facet of the filtered bump map, shared by the models in the frame of the bump.
 
 use super::masking::{gaussian_lambda, visible_part};
 use super::vector::{Vector, cross, dot, normalize};
 use super::{Form, Masking, ShadingOptions};
 use crate::slope::LEAST_NORMAL_Z;
 
-/// Cosines below this count as none. Its square is the smallest by which an f32 can still be divided.
+/// Smaller cosines count as zero. Its square is the smallest number that an f32 can still be divided by.
 pub const LEAST_COSINE: f32 = 1e-18;
 
-/// Exponents below this mask as it does: all but at the normal itself is masked then.
+/// Smaller exponents cause the same masking as this one, which already masks everything except the normal direction.
 const LEAST_MASKING_POWER: f32 = 1e-6;
 
 /// A facet and the exponent of the cosine lobe about it.
@@ -20,7 +20,8 @@ pub struct BumpFacet {
     pub specular_power: f32,
 }
 
-/// The facet with a filtered normal of any length. A zero vector counts as flat, a normal into the surface as steep.
+/// The facet for a filtered normal of any length. A zero vector counts as flat, a normal pointing into the surface as
+/// steep.
 pub fn bump_facet(normal: Vector, specular_power: f32) -> BumpFacet {
     BumpFacet { normal: unit_normal(normal), specular_power }
 }
@@ -32,7 +33,8 @@ pub fn unit_normal(normal: Vector) -> Vector {
 
 /// `cos^exponent` of the angle between two directions of any length, zero from a right angle on.
 ///
-/// From the tangent, `(1 + tan²)^(-exponent / 2)`: for exponents in the thousands a rounded cosine near one is useless.
+/// Computed from the tangent, `(1 + tan²)^(-exponent / 2)`, because a rounded cosine near one is useless for
+/// exponents in the thousands.
 pub fn cosine_power(axis: Vector, direction: Vector, exponent: f32) -> f32 {
     let cosine = dot(axis, direction);
     if cosine < LEAST_COSINE {
@@ -43,12 +45,13 @@ pub fn cosine_power(axis: Vector, direction: Vector, exponent: f32) -> f32 {
     (-0.5 * exponent * tangent_squared.ln_1p()).exp()
 }
 
-/// The least cosine between the viewer and a bump's normal. On a flat surface some bumps face away from the viewer; real geometry
-/// would hide them. They are shaded as if seen edge-on, as in most renderers, so that they leave no black holes.
+/// The minimum cosine between the direction to the viewer and a bump's normal. On a flat surface some bumps face away
+/// from the viewer; real geometry would hide them. They are shaded as if seen edge-on, as in most renderers, to avoid
+/// black holes.
 pub const LEAST_VIEW_COSINE: f32 = 1e-4;
 
-/// `G2 / n·v` about the normal of a facet, whose own roughness masks as the equivalent Gaussian of slopes. Zero where the light is
-/// not above the facet.
+/// `G2 / n·v` about the normal of a facet, whose own roughness causes masking like the equivalent Gaussian of slopes.
+/// Zero if the light is not above the facet.
 pub fn facet_visible_part(surface: &BumpFacet, view: Vector, light: Vector, options: &ShadingOptions) -> f32 {
     let cosines = [dot(surface.normal, view).max(LEAST_VIEW_COSINE), dot(surface.normal, light)];
     if cosines[1] < LEAST_COSINE {
@@ -64,7 +67,8 @@ pub fn facet_visible_part(surface: &BumpFacet, view: Vector, light: Vector, opti
     visible_part(cosines[0], of_view, of_light)
 }
 
-/// The cosine lobe about an axis, without masking in any form. Normalised it integrates to 1 over the projected solid angle of that axis.
+/// The cosine lobe about an axis, without masking in any form. If normalised, it integrates to 1 over the projected
+/// solid angle of that axis.
 pub fn cosine_lobe(axis: Vector, direction: Vector, exponent: f32, form: Form) -> f32 {
     let constant = match form {
         Form::Paper => exponent,

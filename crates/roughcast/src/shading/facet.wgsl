@@ -1,12 +1,12 @@
-// A facet of the filtered bump map: what the models in the frame of the bump have in common.
+// A facet of the filtered bump map, shared by the models in the frame of the bump.
 
-// Filtered normals are not flatter than this.
+// Minimum z of a filtered normal.
 const LEAST_NORMAL_Z: f32 = 0.001953125;
 
-// Cosines below this count as none: its square can still be divided by.
+// Smaller cosines count as zero: the square of this can still be divided by.
 const LEAST_COSINE: f32 = 1e-18;
 
-// Exponents below this mask as it does.
+// Smaller exponents cause the same masking as this one.
 const LEAST_MASKING_POWER: f32 = 1e-6;
 
 struct BumpFacet {
@@ -14,17 +14,18 @@ struct BumpFacet {
     specular_power: f32,    // Blinn-Phong exponent
 }
 
-// The direction of a filtered normal of any length. A zero vector counts as flat, a normal into the surface as steep.
+// The direction of a filtered normal of any length. A zero vector counts as flat, a normal pointing into the surface
+// as steep.
 fn unit_normal(normal: vec3f) -> vec3f {
     return normalize(vec3f(normal.xy, max(normal.z, LEAST_NORMAL_Z)));
 }
 
-// The facet with a filtered normal of any length.
+// The facet for a filtered normal of any length.
 fn bump_facet(normal: vec3f, specular_power: f32) -> BumpFacet {
     return BumpFacet(unit_normal(normal), specular_power);
 }
 
-// log(1 + x) for x >= 0, also where 1 + x would round x away: 2 artanh(x / (2 + x)), as a series for small x.
+// log(1 + x) for x >= 0, accurate even if 1 + x would round x away: 2 artanh(x / (2 + x)), as a series for small x.
 fn log_one_plus(x: f32) -> f32 {
     let z = x / (2.0 + x);
     let square = z * z;
@@ -32,8 +33,8 @@ fn log_one_plus(x: f32) -> f32 {
     return select(log(1.0 + x), 2.0 * z * series, x < 0.5);
 }
 
-// cos^exponent of the angle between two directions of any length, zero from a right angle on. From the tangent, since a
-// rounded cosine near one is useless for exponents in the thousands.
+// cos^exponent of the angle between two directions of any length, zero from a right angle on. It is computed from the
+// tangent because a rounded cosine near one is useless for exponents in the thousands.
 fn cosine_power(axis: vec3f, direction: vec3f, exponent: f32) -> f32 {
     let cosine = dot(axis, direction);
     if cosine < LEAST_COSINE {
@@ -44,11 +45,12 @@ fn cosine_power(axis: vec3f, direction: vec3f, exponent: f32) -> f32 {
     return exp(-0.5 * exponent * log_one_plus(tangent_squared));
 }
 
-// The least cosine between the viewer and a bump's normal: bumps that face away count as seen edge-on.
+// The minimum cosine between the direction to the viewer and a bump's normal: bumps that face away count as seen
+// edge-on.
 const LEAST_VIEW_COSINE: f32 = 1e-4;
 
-// G2 / n.v about the normal of a facet, whose own roughness masks as the equivalent Gaussian of slopes. Zero where the light is
-// not above the facet.
+// G2 / n.v about the normal of a facet, whose own roughness causes masking like the equivalent Gaussian of slopes.
+// Zero if the light is not above the facet.
 fn facet_visible_part(surface: BumpFacet, view: vec3f, light: vec3f, options: ShadingOptions) -> f32 {
     let of_view = max(dot(surface.normal, view), LEAST_VIEW_COSINE);
     let of_light = dot(surface.normal, light);
@@ -62,7 +64,8 @@ fn facet_visible_part(surface: BumpFacet, view: vec3f, light: vec3f, options: Sh
     return visible_part(of_view, lambda_of_view, lambda_of_light);
 }
 
-// The cosine lobe about an axis, without masking in any form. Normalised it integrates to 1 over the projected solid angle of that axis.
+// The cosine lobe about an axis, without masking in any form. If normalised, it integrates to 1 over the projected
+// solid angle of that axis.
 fn cosine_lobe(axis: vec3f, direction: vec3f, exponent: f32, form: u32) -> f32 {
     let peak = select((exponent + 2.0) / TWO_PI, exponent, form == FORM_PAPER);
     return peak * cosine_power(axis, direction, exponent);

@@ -1,68 +1,70 @@
-//! Footprint correction: which part of the variance under a texture filter is variance under the pixel.
+//! Footprint correction: the part of the variance under a texture filter that is under the pixel.
 //!
-//! A texture filter covers more than the pixel where the texture is magnified, and across the longer axis of a footprint
-//! that a trilinear filter takes for a circle. The difference between neighbouring texels then counts as roughness, and
-//! highlights are too wide. What the filter covers is known, and so is how fast the mean slope changes; together they
-//! tell the excess.
+//! A texture filter covers more than the pixel where the texture is magnified, and across the longer axis of a
+//! footprint that a trilinear filter treats as a circle. The difference between neighbouring texels then counts as
+//! roughness, and highlights become too wide. The area that the filter covers and the rate of change of the mean
+//! slope are both known, so the excess can be computed.
 //!
-//! Along an axis of the footprint with ρ texels of level 0 a pixel, the pixel (a Gaussian with a standard deviation of half
-//! a pixel) has the variance `P = (ρ / 2)²` in texels. The filter has `K`: at level l, `4^l / 6` for the interpolation between
-//! texels and `(4^l - 1) / 12` for the box of texels of level 0 under each. A mean slope that changes linearly by `∂B` a texel
-//! has the variance `|∂B|² K` under the filter and `|∂B|² P` under the pixel. Over both axes:
+//! Along an axis of the footprint with ρ texels of level 0 per pixel, the pixel (a Gaussian with a standard deviation
+//! of half a pixel) has the variance `P = (ρ / 2)²` in squared texels. The filter has the variance `K`: at level l,
+//! `4^l / 6` for the interpolation between texels and `(4^l - 1) / 12` for the box of texels of level 0 under each. A
+//! mean slope that changes linearly by `∂B` per texel has the variance `|∂B|² K` under the filter and `|∂B|² P` under
+//! the pixel. Over both axes:
 //!
-//! - `linear_trace = 1.5 Σ |∂B|² K` is what a linear change of slope can make of the trace of the filtered covariance. Between
-//!   two texels that differ by Δ, linear interpolation leaves `t (1 - t) Δ²`, whose mean is `Δ² / 6` and whose maximum is
-//!   1.5 times that;
-//! - `ratio = Σ |∂B|² min(K, P) / Σ |∂B|² K` is the part of it that the pixel sees;
-//! - the covariance is multiplied by `k = 1 - (1 - ratio) min(1, linear_trace / tr Σ)`. Variance that no linear change can
-//!   make is detail below the texel, and stays;
-//! - where level 0 itself is magnified there is no such detail: between its texels the slope changes linearly and nothing else, and
-//!   the covariance under the pixel is `Σ P ∂B ∂Bᵀ` over the axes, whatever the filter has found. `magnified` fades from the one
-//!   to the other;
+//! - `linear_trace = 1.5 Σ |∂B|² K` is the maximum contribution of a linear change of slope to the trace of the
+//!   filtered covariance. Between two texels that differ by Δ, linear interpolation leaves `t (1 - t) Δ²`, whose mean
+//!   is `Δ² / 6` and whose maximum is 1.5 times that;
+//! - `ratio = Σ |∂B|² min(K, P) / Σ |∂B|² K` is the part of it that is under the pixel;
+//! - the covariance is multiplied by `k = 1 - (1 - ratio) min(1, linear_trace / tr Σ)`. Variance that a linear change
+//!   cannot cause is detail smaller than the texel, and is kept;
+//! - where level 0 itself is magnified there is no such detail: between its texels the slope only changes linearly,
+//!   and the covariance under the pixel is `Σ P ∂B ∂Bᵀ` over the axes, whatever the filtered covariance is.
+//!   `magnified` blends between the two;
 //! - between levels 1 and 2 the correction fades out.
 //!
-//! Where variance itself is stored ([`super::Shading::Variance`]), interpolation between texels makes none, and K is the box
-//! under each alone.
+//! If the variance itself is stored ([`super::Shading::Variance`]), interpolation between texels adds none, and K is
+//! only the box under each texel.
 
 use super::{FootprintModel, ShadingOptions};
 use crate::moments::Covariance;
 
 /// Standard deviation of the pixel filter, a Gaussian, in pixels.
 pub const PIXEL_DEVIATION: f32 = 0.5;
-/// The largest over the mean variance of linear interpolation between two texels: `1/4` over `1/6`.
+/// The ratio of the maximum to the mean variance of linear interpolation between two texels: `1/4` over `1/6`.
 const LARGEST_OVER_MEAN: f32 = 1.5;
-/// The level at which the correction ends; from the one before it fades out. On coarser levels a texel's mean changes with all that
-/// the level has averaged, its differences are mostly noise, and nothing is gained: on real maps mid, far and grazing views are the same
-/// with and without.
+/// The level at which the correction ends; it fades out from the previous level. On coarser levels a texel's mean
+/// varies with everything that the level has averaged, the differences are mostly noise, and nothing is gained: on
+/// real maps, mid, far and grazing views are the same with and without the correction.
 const LAST_LEVEL: f32 = 2.0;
-/// Squared lengths of an axis, in texels, below which it counts as this long: a level 0 that is magnified 10⁶ times.
+/// Smaller squared lengths of an axis, in texels, are clamped to this: level 0 is then magnified 10⁶ times.
 const LEAST_SQUARED_LENGTH: f32 = 1e-12;
 
 /// The axes of the ellipse that a pixel covers in the texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FootprintAxes {
-    /// Squared lengths of the longer axis and of the shorter one, in texels of level 0.
+    /// Squared lengths of the longer and the shorter axis, in texels of level 0.
     pub squared_lengths: [f32; 2],
-    /// Weights of the derivatives to the right and down in the derivative along the longer axis, a texel.
+    /// Weights of the derivatives to the right and down that give the derivative along the longer axis, per texel.
     pub along: [f32; 2],
     /// The same for the shorter axis.
     pub across: [f32; 2],
 }
 
-/// The axes of a footprint, given how the position in the texture changes to the next pixel to the right and to the one
-/// below, in texels of level 0: the derivatives of the texture coordinates times the texture's size.
+/// The axes of a footprint, given the change of the texture position from one pixel to the next on the right and to
+/// the one below, in texels of level 0: the derivatives of the texture coordinates times the texture's size.
 pub fn footprint_axes(texels_dx: [f32; 2], texels_dy: [f32; 2]) -> FootprintAxes {
     let ([ax, ay], [bx, by]) = (texels_dx, texels_dy);
     let (xx, yy, xy) = (ax * ax + bx * bx, ay * ay + by * by, ax * ay + bx * by);
     let (half_difference, half_trace) = (0.5 * (xx - yy), 0.5 * (xx + yy));
     let radius = (half_difference * half_difference + xy * xy).sqrt();
-    // The eigenvector of the larger eigenvalue, in the form whose first component does not cancel.
+    // The eigenvector of the larger eigenvalue, in the form whose first component is computed without cancellation.
     let raw =
         if half_difference >= 0.0 { [half_difference + radius, xy] } else { [xy, radius - half_difference] };
     let length = (raw[0] * raw[0] + raw[1] * raw[1]).sqrt();
     let [ux, uy] = if length > 0.0 { [raw[0] / length, raw[1] / length] } else { [1.0, 0.0] };
     let major = (half_trace + radius).max(LEAST_SQUARED_LENGTH);
-    // The determinant is the product of both lengths: so the shorter keeps its digits beside a much longer one.
+    // The determinant is the product of both lengths, so the shorter axis keeps its precision even if the other is
+    // much longer.
     let area = ax * by - ay * bx;
     let minor = (area * area / major).clamp(LEAST_SQUARED_LENGTH, major);
     FootprintAxes {
@@ -72,39 +74,44 @@ pub fn footprint_axes(texels_dx: [f32; 2], texels_dy: [f32; 2]) -> FootprintAxes
     }
 }
 
-/// Variances of a texture filter along the axes of a footprint, in texels of level 0, squared.
+/// Variances of a texture filter along the axes of a footprint, in squared texels of level 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilterVariances {
-    /// For moments: interpolation between texels, and the area under each.
+    /// For moments: interpolation between texels, plus the area under each texel.
     pub moments: [f32; 2],
-    /// For stored variances: the area under each texel alone, since a mean of variances has none of the variance between.
+    /// For stored variances: only the area under each texel, since a mean of variances does not include the variance
+    /// between them.
     pub variances: [f32; 2],
 }
 
 impl FilterVariances {
-    /// The level of detail of the texels under the filter, from the area under each, whose variance is `(4^l - 1) / 12`.
+    /// The level of detail of the texels under the filter, derived from the area under each texel, whose variance is
+    /// `(4^l - 1) / 12`.
     pub fn level(&self) -> f32 {
         0.5 * (1.0 + 12.0 * self.variances[0]).log2()
     }
 
-    /// Whether the filter's texels are so coarse that nothing is corrected: derivatives of the mean are not needed then.
+    /// Whether the filter's texels are so coarse that nothing is corrected; derivatives of the mean are then not
+    /// needed.
     pub fn is_beyond_correction(&self) -> bool {
         self.level() >= LAST_LEVEL
     }
 }
 
-/// Variances of trilinear interpolation at a level of detail, 0 or more: those of its two levels, mixed as it mixes them.
+/// Variances of trilinear interpolation at a level of detail, 0 or more: the variances of its two levels, blended
+/// with the same weights.
 pub fn level_variances(level: f32) -> FilterVariances {
     let level = level.max(0.0);
     let finer = level.floor();
-    // 4^l / 6 + (4^l - 1) / 12 is 4^l / 4 - 1 / 12; the coarser level has four times the power of four.
+    // 4^l / 6 + (4^l - 1) / 12 is 4^l / 4 - 1 / 12; on the coarser level, 4^l is four times as large.
     let power = (2.0 * finer).exp2() * (1.0 + 3.0 * (level - finer));
     let (moments, variances) = (power / 4.0 - 1.0 / 12.0, (power - 1.0) / 12.0);
     FilterVariances { moments: [moments; 2], variances: [variances; 2] }
 }
 
-/// Variances of the filter of graphics hardware: `max_anisotropy` taps at most along the longer axis, 1 for a trilinear
-/// filter, of the level at which the shorter axis (of a trilinear filter: the longer) is a texel long, plus a bias.
+/// Variances of a hardware texture filter: at most `max_anisotropy` taps along the longer axis, 1 for a trilinear
+/// filter, on the level at which the shorter axis (for a trilinear filter, the longer axis) is one texel long, plus a
+/// bias.
 pub fn hardware_variances(axes: &FootprintAxes, max_anisotropy: f32, mip_bias: f32) -> FilterVariances {
     let [long, short] = axes.squared_lengths.map(f32::sqrt);
     let most_taps = max_anisotropy.max(1.0);
@@ -116,17 +123,17 @@ pub fn hardware_variances(axes: &FootprintAxes, max_anisotropy: f32, mip_bias: f
     FilterVariances { moments: [along + between_taps, across], variances: level.variances }
 }
 
-/// The part of a filtered covariance that is the pixel's.
+/// The part of a filtered covariance that belongs to the pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PixelPart {
-    /// The pixel's part of what a linear change of the mean slope makes, 0 to 1.
+    /// The pixel's part of the variance caused by a linear change of the mean slope, 0 to 1.
     pub ratio: f32,
-    /// The most that a linear change of the mean slope makes of the covariance's trace.
+    /// The maximum contribution of a linear change of the mean slope to the trace of the covariance.
     pub linear_trace: f32,
 }
 
 impl PixelPart {
-    /// All of it.
+    /// The whole covariance.
     pub const WHOLE: Self = Self { ratio: 1.0, linear_trace: 0.0 };
 
     /// The factor for a covariance of this trace: 0 to 1.
@@ -135,8 +142,8 @@ impl PixelPart {
     }
 }
 
-/// The pixel's part, given the squared changes of the mean slope per texel along the two axes, the variances of the filter and
-/// those of the pixel along them.
+/// The pixel's part, given the squared changes of the mean slope per texel along the two axes and the variances of
+/// the filter and of the pixel along them.
 pub fn pixel_part(changes: [f32; 2], variances: [f32; 2], pixel: [f32; 2]) -> PixelPart {
     let [along, across] = changes;
     let covered = along * variances[0] + across * variances[1];
@@ -150,18 +157,19 @@ pub fn pixel_part(changes: [f32; 2], variances: [f32; 2], pixel: [f32; 2]) -> Pi
 /// The part of the variance under a texture filter that is under the pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FootprintRatio {
-    /// Of filtered moments: LEAN and CLEAN.
+    /// For filtered moments: LEAN and CLEAN.
     pub moments: PixelPart,
-    /// Of a filtered variance.
+    /// For a filtered variance.
     pub variances: PixelPart,
-    /// The covariance that the linear change of the mean slope has under the pixel.
+    /// The covariance under the pixel due to the linear change of the mean slope.
     pub linear_covariance: Covariance,
-    /// How much of the variance is that change alone, 0 to 1: a magnified level 0 has no detail between its texels.
+    /// The fraction of the covariance that is replaced by this linear covariance, 0 to 1: a magnified level 0 has no
+    /// detail between its texels.
     pub magnified: f32,
 }
 
 impl FootprintRatio {
-    /// All of it, as in the papers.
+    /// The whole variance, as in the papers.
     pub const WHOLE: Self = Self {
         moments: PixelPart::WHOLE,
         variances: PixelPart::WHOLE,
@@ -169,11 +177,11 @@ impl FootprintRatio {
         magnified: 0.0,
     };
 
-    /// The pixel's part of a covariance as a map holds it. `part` is this ratio's for what the map holds. The variance `base` along
-    /// each axis is not the bumps', and stays whole.
+    /// The pixel's part of a covariance stored in a map. `part` is this ratio's part for the quantity that the map
+    /// stores. The variance `base` along each axis does not belong to the bumps and is not reduced.
     pub fn pixel_covariance(&self, part: PixelPart, stored: Covariance, base: f32) -> Covariance {
         let kept = (1.0 - self.magnified) * part.factor(stored.xx + stored.yy - 2.0 * base);
-        // Nothing is subtracted and added again, so that what stays whole keeps its digits.
+        // The base is not subtracted and added again, so that the unreduced part keeps its precision.
         let rest = (1.0 - kept) * base;
         let Covariance { xx, yy, xy } = self.linear_covariance;
         Covariance {
@@ -184,9 +192,9 @@ impl FootprintRatio {
     }
 }
 
-/// What a pixel sees of the variance under a filter of these variances, where the filtered mean slope changes by `mean_dx` to
-/// the next pixel to the right and by `mean_dy` to the one below. [`FootprintRatio::WHOLE`] for
-/// [`FootprintModel::Published`].
+/// The part of the variance under a filter with these variances that is under the pixel, if the filtered mean slope
+/// changes by `mean_dx` to the next pixel on the right and by `mean_dy` to the one below. [`FootprintRatio::WHOLE`]
+/// for [`FootprintModel::Published`].
 pub fn footprint_ratio(
     axes: &FootprintAxes,
     filter: &FilterVariances,

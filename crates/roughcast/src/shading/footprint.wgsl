@@ -1,4 +1,4 @@
-// Footprint correction: which part of the variance under a texture filter is variance under the pixel.
+// Footprint correction: the part of the variance under a texture filter that is under the pixel.
 //
 // In a fragment shader, with the texture's size in texels and the mean slope as sampled:
 //   let axes = footprint_axes(dpdx(uv) * size, dpdy(uv) * size);
@@ -8,47 +8,47 @@
 // Standard deviation of the pixel filter, in pixels.
 const PIXEL_DEVIATION: f32 = 0.5;
 
-// The largest over the mean variance of linear interpolation between two texels: 1/4 over 1/6.
+// The ratio of the maximum to the mean variance of linear interpolation between two texels: 1/4 over 1/6.
 const LARGEST_OVER_MEAN: f32 = 1.5;
 
-// The level at which the correction ends; from the one before it fades out.
+// The level at which the correction ends; it fades out from the previous level.
 const LAST_LEVEL: f32 = 2.0;
 
-// Squared lengths of an axis, in texels, below which it counts as this long.
+// Smaller squared lengths of an axis, in texels, are clamped to this.
 const LEAST_SQUARED_LENGTH: f32 = 1e-12;
 
 struct FootprintAxes {
-    squared_lengths: vec2f,     // of the longer axis and of the shorter one, in texels of level 0
+    squared_lengths: vec2f,     // of the longer and the shorter axis, in texels of level 0
     along: vec2f,               // weights of the derivatives to the right and down in that along the longer axis
     across: vec2f,              // and along the shorter one
 }
 
 struct FilterVariances {
-    moments: vec2f,     // along the two axes, in texels of level 0, squared: for filtered moments
+    moments: vec2f,     // along the two axes, in squared texels of level 0: for filtered moments
     variances: vec2f,   // for filtered variances
 }
 
 struct PixelPart {
-    ratio: f32,         // the pixel's part of what a linear change of the mean slope makes
-    linear_trace: f32,  // the most that it makes of the covariance's trace
+    ratio: f32,         // the pixel's part of the variance caused by a linear change of the mean slope
+    linear_trace: f32,  // the maximum contribution of such a change to the trace of the covariance
 }
 
 struct FootprintRatio {
-    moments: PixelPart,     // of filtered moments
-    variances: PixelPart,   // of a filtered variance
-    linear_covariance: vec3f,   // the covariance (xx, yy, xy) of the linear change of the mean slope under the pixel
-    magnified: f32,         // how much of the variance is that change alone, 0 to 1
+    moments: PixelPart,     // for filtered moments
+    variances: PixelPart,   // for a filtered variance
+    linear_covariance: vec3f,   // covariance (xx, yy, xy) under the pixel of the linear change of the mean slope
+    magnified: f32,         // the fraction of the covariance replaced by this linear covariance, 0 to 1
 }
 
-// The axes of a footprint, given how the position in the texture, in texels of level 0, changes to the next pixel to the
-// right and to the one below.
+// The axes of a footprint, given the change of the texture position, in texels of level 0, from one pixel to the next
+// on the right and to the one below.
 fn footprint_axes(texels_dx: vec2f, texels_dy: vec2f) -> FootprintAxes {
     let xx = texels_dx.x * texels_dx.x + texels_dy.x * texels_dy.x;
     let yy = texels_dx.y * texels_dx.y + texels_dy.y * texels_dy.y;
     let xy = texels_dx.x * texels_dx.y + texels_dy.x * texels_dy.y;
     let half_difference = 0.5 * (xx - yy);
     let radius = sqrt(half_difference * half_difference + xy * xy);
-    // The eigenvector of the larger eigenvalue, in the form whose first component does not cancel.
+    // The eigenvector of the larger eigenvalue, in the form whose first component is computed without cancellation.
     let wide = vec2f(half_difference + radius, xy);
     let tall = vec2f(xy, radius - half_difference);
     let raw = select(tall, wide, half_difference >= 0.0);
@@ -64,12 +64,13 @@ fn footprint_axes(texels_dx: vec2f, texels_dy: vec2f) -> FootprintAxes {
     return FootprintAxes(vec2f(major, minor), along, across);
 }
 
-// The level of detail of the texels under a filter, from the area under each, whose variance is (4^l - 1) / 12.
+// The level of detail of the texels under a filter, derived from the area under each texel. The variance of that area
+// is (4^l - 1) / 12.
 fn filter_level(filtered: FilterVariances) -> f32 {
     return 0.5 * log2(1.0 + 12.0 * filtered.variances.x);
 }
 
-// Of trilinear interpolation at a level of detail, 0 or more.
+// Variances of trilinear interpolation at a level of detail, 0 or more.
 fn level_variances(detail: f32) -> FilterVariances {
     let level = max(detail, 0.0);
     let finer = floor(level);
@@ -77,7 +78,7 @@ fn level_variances(detail: f32) -> FilterVariances {
     return FilterVariances(vec2f(power / 4.0 - 1.0 / 12.0), vec2f((power - 1.0) / 12.0));
 }
 
-// Of the filter of graphics hardware: a sampler with this anisotropy, 1 for a trilinear one, and a bias of its levels.
+// Variances of a hardware texture filter: a sampler with this anisotropy, 1 for a trilinear one, and a level bias.
 fn hardware_variances(axes: FootprintAxes, max_anisotropy: f32, mip_bias: f32) -> FilterVariances {
     let lengths = sqrt(axes.squared_lengths);
     let most_taps = max(max_anisotropy, 1.0);
@@ -96,15 +97,16 @@ fn pixel_factor(part: PixelPart, trace: f32) -> f32 {
     return 1.0 - (1.0 - part.ratio) * min(part.linear_trace / trace, 1.0);
 }
 
-// The pixel's part of a covariance (xx, yy, xy) as a map holds it; the part is the ratio's for what the map holds. The variance
-// of the base along each axis stays whole.
+// The pixel's part of a covariance (xx, yy, xy) stored in a map; `part` is the ratio's part for the quantity that the
+// map stores. The variance of the base along each axis is not reduced.
 fn pixel_covariance(ratio: FootprintRatio, part: PixelPart, stored: vec3f, base: f32) -> vec3f {
     let kept = (1.0 - ratio.magnified) * pixel_factor(part, stored.x + stored.y - 2.0 * base);
     let rest = (1.0 - kept) * base;
     return kept * stored + vec3f(rest, rest, 0.0) + ratio.magnified * ratio.linear_covariance;
 }
 
-// Squared changes of the mean slope per texel along the two axes, and the variances of the filter and of the pixel.
+// The pixel's part, given the squared changes of the mean slope per texel along the two axes and the variances of the
+// filter and of the pixel along them.
 fn pixel_part(changes: vec2f, variances: vec2f, pixel: vec2f) -> PixelPart {
     let covered = dot(changes, variances);
     if covered <= 0.0 {
@@ -113,13 +115,13 @@ fn pixel_part(changes: vec2f, variances: vec2f, pixel: vec2f) -> PixelPart {
     return PixelPart(dot(changes, min(variances, pixel)) / covered, LARGEST_OVER_MEAN * covered);
 }
 
-// All of the variance, as in the papers.
+// The whole variance, as in the papers.
 fn whole_footprint() -> FootprintRatio {
     return FootprintRatio(PixelPart(1.0, 0.0), PixelPart(1.0, 0.0), vec3f(0.0), 0.0);
 }
 
-// What a pixel sees of the variance under a filter, where the filtered mean slope changes by mean_dx to the next pixel to
-// the right and by mean_dy to the one below.
+// The part of the variance under a filter that is under the pixel, if the filtered mean slope changes by mean_dx to
+// the next pixel on the right and by mean_dy to the one below.
 fn footprint_ratio(
     axes: FootprintAxes,
     filtered: FilterVariances,

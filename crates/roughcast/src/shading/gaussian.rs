@@ -1,7 +1,8 @@
-//! A Gaussian of slopes in the surface frame: the off-centre Beckmann lobe of four models.
+//! A Gaussian of slopes in the surface frame: the off-centre Beckmann lobe that four models use.
 //!
-//! Source: Olano & Baker, "LEAN Mapping", 2010, Eq. 1, with the constant that makes it a density (as printed it is none):
-//! `p(h̃) = exp(-½ (h̃ - B)ᵀ Σ⁻¹ (h̃ - B)) / (2 π sqrt |Σ|)` with `h̃ = h.xy / h.z`. Over directions it is `p / h.z⁴`.
+//! Source: Olano & Baker, "LEAN Mapping", 2010, Eq. 1, with the constant that makes it a density (the printed form is
+//! not one): `p(h̃) = exp(-½ (h̃ - B)ᵀ Σ⁻¹ (h̃ - B)) / (2 π sqrt |Σ|)` with `h̃ = h.xy / h.z`. Over directions it is
+//! `p / h.z⁴`.
 
 use std::f32::consts::TAU;
 
@@ -11,11 +12,12 @@ use super::{Form, Masking, Repair, ShadingOptions};
 use crate::moments::Covariance;
 use crate::slope::Slope;
 
-/// The smallest variance along any direction that [`Repair::Clamp`] leaves: a hundredth of that of the shiniest material,
-/// s = 10⁵. Without it a map with its base baked in could be a perfect mirror, whose lobe no float can hold.
+/// The minimum variance along any direction that [`Repair::Clamp`] leaves: a hundredth of that of the shiniest
+/// material, s = 10⁵. Without it, a map that includes its base could be a perfect mirror, whose lobe cannot be
+/// represented in a float.
 pub const LEAST_VARIANCE: f32 = 1e-7;
 
-/// Where `½ (h̃ - B)ᵀ Σ⁻¹ (h̃ - B)` exceeds this, the lobe is zero: `exp(-87)` is the smallest normal f32.
+/// If `½ (h̃ - B)ᵀ Σ⁻¹ (h̃ - B)` exceeds this, the lobe is zero: `exp(-87)` is about the smallest normal f32.
 pub const LARGEST_EXPONENT: f32 = 87.0;
 
 /// A Gaussian of slopes, base roughness included.
@@ -25,23 +27,23 @@ pub struct SlopeGaussian {
     pub mean: Slope,
     /// Covariance Σ.
     pub covariance: Covariance,
-    /// `|Σ|`; no highlight where it is not positive.
+    /// `|Σ|`; there is no highlight unless it is positive.
     pub determinant: f32,
 }
 
-/// The Gaussian with this mean and covariance, base roughness included. [`Repair::Clamp`] raises the variance to at least
-/// [`LEAST_VARIANCE`] along every direction; [`Repair::Published`] leaves it unchanged.
+/// The Gaussian with this mean and covariance, base roughness included. [`Repair::Clamp`] raises the variance to at
+/// least [`LEAST_VARIANCE`] along every direction; [`Repair::Published`] leaves it unchanged.
 pub fn slope_gaussian(mean: Slope, covariance: Covariance, options: &ShadingOptions) -> SlopeGaussian {
     let Covariance { xx, yy, xy } = covariance;
-    // The products are exact in f64: narrow lobes leave little of their difference.
+    // The products are exact in f64; for narrow lobes their difference is small.
     let determinant = (f64::from(xx) * f64::from(yy) - f64::from(xy) * f64::from(xy)) as f32;
     let trace = xx + yy;
-    // Two negative variances also have a positive determinant, and their lobe would grow with the distance.
+    // Two negative variances also give a positive determinant, but their lobe would grow with the distance.
     let determinant = if trace > 0.0 { determinant } else { 0.0 };
     match options.repair {
         Repair::Published => SlopeGaussian { mean, covariance, determinant },
         Repair::Clamp => {
-            // |Σ| / tr Σ is at most the smaller eigenvalue and at least half of it. What is added raises both.
+            // |Σ| / tr Σ is at most the smaller eigenvalue and at least half of it. The added variance raises both.
             let least = if trace > LEAST_VARIANCE { determinant / trace } else { 0.0 };
             let added = (LEAST_VARIANCE - least).max(0.0);
             SlopeGaussian {
@@ -53,12 +55,12 @@ pub fn slope_gaussian(mean: Slope, covariance: Covariance, options: &ShadingOpti
     }
 }
 
-/// The lobe of the Gaussian for unit directions to the viewer and to the light, in the surface frame. Zero where one of
-/// them is not above the surface.
+/// The lobe of the Gaussian for unit directions to the viewer and to the light, in the surface frame. Zero if either
+/// of them is not above the surface.
 pub fn gaussian_lobe(surface: &SlopeGaussian, view: Vector, light: Vector, options: &ShadingOptions) -> f32 {
     let Some(half) = half_vector(view, light) else { return 0.0 };
     let SlopeGaussian { mean, covariance, determinant } = *surface;
-    // Both sides of the quotient times h.z², so that grazing half vectors divide nothing by zero.
+    // Both sides of the quotient are multiplied by h.z², so that grazing half vectors do not divide by zero.
     let (x, y) = (half[0] - mean.x * half[2], half[1] - mean.y * half[2]);
     let squared_distance = squared_deviations(covariance, determinant, [x, y]);
     let scale = 2.0 * half[2] * half[2];
@@ -75,8 +77,8 @@ pub fn gaussian_lobe(surface: &SlopeGaussian, view: Vector, light: Vector, optio
     }
 }
 
-/// `G2 / v.z` about the surface normal. The surface is a flat one on which bumps are drawn, so that no mean slope tilts it.
-/// Viewer and light must be above it.
+/// `G2 / v.z` about the surface normal. The bumps are drawn on a flat surface, so a mean slope does not tilt it.
+/// Viewer and light must be above the surface.
 pub fn gaussian_visible_part(
     surface: &SlopeGaussian,
     view: [f32; 3],
@@ -91,11 +93,12 @@ pub fn gaussian_visible_part(
     visible_part(view[2], of_view, of_light)
 }
 
-/// `dᵀ Σ⁻¹ d`: the square of a distance in standard deviations, for a positive definite covariance and its determinant.
+/// `dᵀ Σ⁻¹ d`: the squared distance in standard deviations, for a positive definite covariance and its determinant.
 ///
-/// It is the square of the standard deviations along x, plus that of what the regression of y on x leaves, in its own
-/// standard deviations. A sum of squares, it loses no digits; those of `yy x² - 2 xy x y + xx y²` cancel along a thin
-/// ellipse: where one axis is a thousand times the other, single floats leave none of it.
+/// It is the sum of the squared standard deviations along x and of the squared residual of the regression of y on x,
+/// in standard deviations of the residual. A sum of squares loses no precision, whereas `yy x² - 2 xy x y + xx y²`
+/// cancels along a thin ellipse: if one axis is a thousand times the other, no significant digits remain in single
+/// floats.
 pub fn squared_deviations(covariance: Covariance, determinant: f32, [x, y]: [f32; 2]) -> f32 {
     let Covariance { xx, xy, .. } = covariance;
     let inverse_xx = 1.0 / xx;
@@ -107,13 +110,15 @@ pub fn squared_deviations(covariance: Covariance, determinant: f32, [x, y]: [f32
 mod tests {
     use super::*;
 
-    /// Axes that are a thousand times as long as the others.
+    /// One axis is a thousand times as long as the other.
     const CONDITION: f64 = 1e6;
-    /// Relative to a square of at least one. `y - xy / xx x` is off by three half roundings of y, which is up to 4000 standard
-    /// deviations of it long: by 7e-4 of one, where it is four of them long and the square is 32. Largest measured: 6e-5.
+    /// Relative to a square of at least one. The error of `y - xy / xx x` is three half roundings of y, which is up
+    /// to 4000 standard deviations long: 7e-4 of a standard deviation, at a distance of four of them, where the
+    /// square is 32. Largest measured: 6e-5.
     const TOLERANCE: f64 = 2.0 * 4.0 * 7e-4 / 32.0;
 
-    /// Offsets up to four standard deviations each way, of ellipses of this condition in all directions.
+    /// Offsets of up to four standard deviations both ways, for ellipses with this condition number in all
+    /// directions.
     fn ellipses() -> impl Iterator<Item = (Covariance, [f32; 2])> {
         let offsets = [-4.0, -2.5, -1.0, -0.1, 0.0, 0.3, 1.0, 2.0, 4.0];
         (0..360).flat_map(move |degrees| {
@@ -135,13 +140,13 @@ mod tests {
         })
     }
 
-    /// The largest error of a way to compute the squares, relative to a square of at least one.
+    /// The maximum error of a method of computing the squares, relative to a square of at least one.
     fn largest_error(way: impl Fn(Covariance, f32, [f32; 2]) -> f32) -> f64 {
         let mut largest = 0.0_f64;
         for (covariance, [x, y]) in ellipses() {
             let [xx, yy, xy] = [covariance.xx, covariance.yy, covariance.xy].map(f64::from);
             let determinant = xx * yy - xy * xy;
-            // Rounding to single floats has made some of them degenerate.
+            // Rounding to single floats has made some of the covariances degenerate.
             if determinant < 0.1 / CONDITION * (xx + yy) * (xx + yy) {
                 continue;
             }

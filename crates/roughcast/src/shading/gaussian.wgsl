@@ -1,43 +1,45 @@
-// A Gaussian of slopes in the surface frame: the off-centre Beckmann lobe of four models. LEAN mapping, Eq. 1.
+// A Gaussian of slopes in the surface frame: the off-centre Beckmann lobe that four models use. LEAN mapping, Eq. 1.
 
-// The smallest variance along any direction that REPAIR_CLAMP leaves.
+// The minimum variance along any direction that REPAIR_CLAMP leaves.
 const LEAST_VARIANCE: f32 = 1e-7;
 
-// Exponents beyond this leave nothing: exp(-87) is the smallest normal single float.
+// For larger exponents the lobe is zero: exp(-87) is about the smallest normal single float.
 const LARGEST_EXPONENT: f32 = 87.0;
 
 struct SlopeGaussian {
     mean: vec2f,        // mean slope B
     variance: vec2f,    // along x and y, base roughness included
     covariance: f32,    // mixed term
-    det: f32,           // of the covariance matrix; no highlight where it is not positive
+    det: f32,           // of the covariance matrix; no highlight unless it is positive
 }
 
-// The nearest covariance by rule: variances below zero become zero, the mixed term is cut to sqrt(xx yy).
+// Makes a covariance positive semidefinite: negative variances become zero, the mixed term is clamped to sqrt(xx yy).
 fn positive_semidefinite(sigma: vec3f) -> vec3f {
     let variances = max(sigma.xy, vec2f(0.0));
     let limit = sqrt(variances.x) * sqrt(variances.y);
     return vec3f(variances, clamp(sigma.z, -limit, limit));
 }
 
-// The Gaussian with this mean and covariance (xx, yy, xy), which has its base roughness in it.
+// The Gaussian with this mean and covariance (xx, yy, xy), base roughness included.
 fn slope_gaussian(mean: vec2f, sigma: vec3f, options: ShadingOptions) -> SlopeGaussian {
     let trace = sigma.x + sigma.y;
-    // Where fma rounds once, the rounding of the square is made good (Kahan); elsewhere this is the plain difference.
+    // If fma rounds only once, the rounding error of the square is compensated (Kahan); otherwise this is the plain
+    // difference.
     let square = sigma.z * sigma.z;
     let rounding = fma(-sigma.z, sigma.z, square);
     let difference = fma(sigma.x, sigma.y, -square) + rounding;
-    // Of two negative variances, too, the determinant is positive, and the lobe would grow with the distance.
+    // Two negative variances also give a positive determinant, but their lobe would grow with the distance.
     let det = select(0.0, difference, trace > 0.0);
-    // The quotient is at most the smaller eigenvalue and at least half of it. What is added raises both.
+    // The quotient is at most the smaller eigenvalue and at least half of it. The added variance raises both.
     let least = select(0.0, det / max(trace, LEAST_VARIANCE), trace > LEAST_VARIANCE);
     let missing = max(LEAST_VARIANCE - least, 0.0);
     let added = select(missing, 0.0, options.repair == REPAIR_PUBLISHED);
     return SlopeGaussian(mean, sigma.xy + added, sigma.z, det + added * (trace + added));
 }
 
-// The square of a distance from the mean in standard deviations: of that along x, and of what the regression of y on x
-// leaves. A sum of squares loses no digits along a thin ellipse, whose quadratic form is a small difference of products.
+// The squared distance from the mean in standard deviations: that along x, plus that of the residual of the
+// regression of y on x. A sum of squares loses no precision along a thin ellipse, where the quadratic form is a small
+// difference of products.
 fn squared_deviations(surface: SlopeGaussian, d: vec2f) -> f32 {
     let inverse_xx = 1.0 / surface.variance.x;
     let rest = d.y - surface.covariance * inverse_xx * d.x;
@@ -60,7 +62,7 @@ fn gaussian_lobe(surface: SlopeGaussian, view: vec3f, light: vec3f, options: Sha
         return 0.0;
     }
     let h = normalize(view + light);
-    // Both sides of the quotient times h.z^2, so that grazing half vectors divide nothing by zero.
+    // Both sides of the quotient are multiplied by h.z^2, so that grazing half vectors do not divide by zero.
     let d = h.xy - surface.mean * h.z;
     let squared_distance = squared_deviations(surface, d);
     let scale = 2.0 * h.z * h.z;

@@ -1,4 +1,4 @@
-// From a distribution to the Gaussian that is shaded: repaired, with its base roughness.
+// Converts a distribution to the Gaussian that is shaded: repaired, with its base roughness added.
 
 fn shaded_gaussian(gaussian: WeightedGaussian, base: u32, options: ShadingOptions) -> SlopeGaussian {
     let stored = vec3f(gaussian.variance, gaussian.covariance);
@@ -6,7 +6,7 @@ fn shaded_gaussian(gaussian: WeightedGaussian, base: u32, options: ShadingOption
     return slope_gaussian(gaussian.mean, repaired + base_to_add(gaussian.mean, base, options), options);
 }
 
-// Of a distribution of one Gaussian. Of several take mixture_surface.
+// For a distribution of one Gaussian; for several use mixture_surface.
 fn gaussian_surface(distribution: Distribution, options: ShadingOptions) -> SlopeGaussian {
     return shaded_gaussian(distribution.first, distribution.base, options);
 }

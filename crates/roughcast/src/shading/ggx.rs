@@ -15,7 +15,8 @@ use crate::distribution::Distribution;
 use crate::moments::Covariance;
 use crate::roughness::Base;
 
-/// Squared lengths of a direction below which it counts as none: of differences of variances, which are below 1e-18.
+/// Shorter squared directions count as zero; they are computed from differences of variances, which are then below
+/// 1e-18.
 const LEAST_SQUARED_DIRECTION: f32 = 1e-36;
 
 /// A facet of GGX.
@@ -34,7 +35,7 @@ pub struct GgxSurface {
 /// The variances of a covariance along its principal axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrincipalAxes {
-    /// Unit vector along the larger variance; the x axis where both are equal.
+    /// Unit vector along the larger variance; the x axis if both are equal.
     pub direction: [f32; 2],
     /// The larger variance.
     pub larger: f32,
@@ -42,7 +43,8 @@ pub struct PrincipalAxes {
     pub smaller: f32,
 }
 
-/// The principal axes of a positive semidefinite covariance. The smaller variance keeps its digits beside a much larger one.
+/// The principal axes of a positive semidefinite covariance. The smaller variance keeps its precision even if the
+/// other is much larger.
 pub fn principal_axes(covariance: Covariance) -> PrincipalAxes {
     let Covariance { xx, yy, xy } = covariance;
     let half_difference = 0.5 * (xx - yy);
@@ -55,7 +57,7 @@ pub fn principal_axes(covariance: Covariance) -> PrincipalAxes {
         let determinant = f64::from(xx) * f64::from(yy) - f64::from(xy) * f64::from(xy);
         (determinant / f64::from(larger)) as f32
     };
-    // The eigenvector of the larger, in the form whose first component does not cancel.
+    // The eigenvector of the larger variance, in the form whose first component is computed without cancellation.
     let [x, y] =
         if half_difference >= 0.0 { [half_difference + radius, xy] } else { [xy, radius - half_difference] };
     let squared = x * x + y * y;
@@ -81,10 +83,10 @@ pub fn ggx_surface(distribution: &Distribution, options: &ShadingOptions) -> Ggx
     ggx_facet(unit_normal(distribution.normal().to_array()), axes.direction, along, across)
 }
 
-/// A facet whose tangent is the direction in the surface's plane, made orthogonal to the bump normal.
+/// A facet whose tangent is the given direction in the surface's plane, made orthogonal to the bump normal.
 fn ggx_facet(normal: Vector, [x, y]: [f32; 2], along: f32, across: f32) -> GgxSurface {
     let direction = [x, y, 0.0];
-    // The normal is never in the surface's plane, so something is left.
+    // The normal is never in the surface's plane, so the projected direction is never zero.
     let in_plane = sum(direction, scaled(normal, -dot(normal, direction)));
     GgxSurface { normal, alpha_along: along, tangent: normalize(in_plane), alpha_across: across }
 }
@@ -98,7 +100,7 @@ pub fn ggx_lobe(surface: &GgxSurface, view: Vector, light: Vector, options: &Sha
     }
     let x = dot(surface.tangent, half) / surface.alpha_along;
     let y = dot(cross(surface.normal, surface.tangent), half) / surface.alpha_across;
-    // The slope density times cos⁻⁴, with the fourth power taken into the bracket: finite at grazing angles.
+    // The slope density times cos⁻⁴, with the fourth power moved into the bracket: finite at grazing angles.
     let bracket = cosine * cosine + x * x + y * y;
     let lobe = 1.0 / (PI * surface.alpha_along * surface.alpha_across * bracket * bracket);
     match options.form {
@@ -108,8 +110,8 @@ pub fn ggx_lobe(surface: &GgxSurface, view: Vector, light: Vector, options: &Sha
     }
 }
 
-/// `G2 / n·v` about the bump normal. The lobe's own widths mask, whatever [`super::Masking`] says: the textures do not tell which part
-/// of them is the base's.
+/// `G2 / n·v` about the bump normal. The full widths of the lobe cause masking, whatever [`super::Masking`] says,
+/// because the textures do not distinguish the part that belongs to the base.
 pub fn ggx_visible_part(surface: &GgxSurface, view: Vector, light: Vector) -> f32 {
     let cosines = [dot(surface.normal, view).max(LEAST_VIEW_COSINE), dot(surface.normal, light)];
     if cosines[1] < LEAST_COSINE {
@@ -119,11 +121,12 @@ pub fn ggx_visible_part(surface: &GgxSurface, view: Vector, light: Vector) -> f3
     visible_part(cosines[0], of_view, ggx_lambda(surface, light, cosines[1]))
 }
 
-/// Smith's Λ of GGX, `(sqrt(1 + (αx² d.x² + αy² d.y²) / d.z²) - 1) / 2`, for a direction with this cosine to the bump normal, above zero.
+/// Smith's Λ of GGX, `(sqrt(1 + (αx² d.x² + αy² d.y²) / d.z²) - 1) / 2`, for a direction whose cosine to the bump
+/// normal is `cosine`, above zero.
 pub fn ggx_lambda(surface: &GgxSurface, direction: Vector, cosine: f32) -> f32 {
     let x = dot(surface.tangent, direction) * surface.alpha_along;
     let y = dot(cross(surface.normal, surface.tangent), direction) * surface.alpha_across;
     let squared = x * x + y * y;
-    // Avoids a difference that cancels for narrow lobes, and a quotient that may overflow.
+    // Avoids a difference that cancels for narrow lobes and a quotient that may overflow.
     0.5 * squared / (cosine * ((cosine * cosine + squared).sqrt() + cosine))
 }

@@ -1,16 +1,17 @@
 // GGX with the baked roughness of a physically based material, isotropic or anisotropic.
 
-// Squared lengths of a direction below which it counts as none: of differences of variances, which are below 1e-18.
+// Shorter squared directions count as zero; they are computed from differences of variances, which are then below
+// 1e-18.
 const LEAST_SQUARED_DIRECTION: f32 = 1e-36;
 
 struct GgxSurface {
     normal: vec3f,          // unit bump normal
     alpha_along: f32,       // width along the tangent
-    tangent: vec3f,         // unit vector across the normal: where the lobe is widest
+    tangent: vec3f,         // unit vector orthogonal to the normal, along which the lobe is widest
     alpha_across: f32,      // width across the tangent
 }
 
-// The larger and the smaller variance of a covariance, and the direction of the larger: x where both are equal.
+// The larger and the smaller variance of a covariance, and the direction of the larger one: x if both are equal.
 struct PrincipalAxes {
     direction: vec2f,
     larger: f32,
@@ -22,11 +23,12 @@ fn principal_axes(sigma: vec3f) -> PrincipalAxes {
     let radius = sqrt(half_difference * half_difference + sigma.z * sigma.z);
     let mean = 0.5 * (sigma.x + sigma.y);
     let larger = mean + radius;
-    // The difference keeps its digits while it is large; the determinant, whose products are rounded once where fma does so, beyond.
+    // The difference is precise while it is large. Otherwise use the determinant, whose products are rounded only
+    // once if fma does so.
     let square = sigma.z * sigma.z;
     let det = fma(sigma.x, sigma.y, -square) + fma(-sigma.z, sigma.z, square);
     let smaller = select(det / larger, mean - radius, radius <= 0.5 * mean);
-    // The eigenvector of the larger, in the form whose first component does not cancel.
+    // The eigenvector of the larger variance, in the form whose first component is computed without cancellation.
     let wide = vec2f(half_difference + radius, sigma.z);
     let tall = vec2f(sigma.z, radius - half_difference);
     let raw = select(tall, wide, half_difference >= 0.0);
@@ -35,7 +37,7 @@ fn principal_axes(sigma: vec3f) -> PrincipalAxes {
     return PrincipalAxes(direction, larger, smaller);
 }
 
-// A facet whose tangent is a direction in the surface's plane, made orthogonal to the bump normal.
+// A facet whose tangent is the given direction in the surface's plane, made orthogonal to the bump normal.
 fn ggx_facet(normal: vec3f, direction: vec2f, along: f32, across: f32) -> GgxSurface {
     let main_direction = vec3f(direction, 0.0);
     let in_plane = main_direction - dot(normal, main_direction) * normal;
@@ -52,16 +54,17 @@ fn ggx_surface(distribution: Distribution, options: ShadingOptions) -> GgxSurfac
     return ggx_facet(unit_normal(distribution.normal), axes.direction, alpha.x, alpha.y);
 }
 
-// Smith's lambda of GGX for a direction with this cosine to the bump normal, above zero.
+// Smith's lambda of GGX for a direction whose cosine to the bump normal is `cosine`, above zero.
 fn ggx_lambda(surface: GgxSurface, direction: vec3f, cosine: f32) -> f32 {
     let x = dot(surface.tangent, direction) * surface.alpha_along;
     let y = dot(cross(surface.normal, surface.tangent), direction) * surface.alpha_across;
     let squared = x * x + y * y;
-    // Avoids a difference that cancels for narrow lobes, and a quotient that may overflow.
+    // Avoids a difference that cancels for narrow lobes and a quotient that may overflow.
     return 0.5 * squared / (cosine * (sqrt(cosine * cosine + squared) + cosine));
 }
 
-// G2 / n.v about the bump normal, with the widths of the lobe itself. Zero where the light is not above the facet.
+// G2 / n.v about the bump normal, with masking by the full widths of the lobe. Zero if the light is not above the
+// facet.
 fn ggx_visible_part(surface: GgxSurface, view: vec3f, light: vec3f) -> f32 {
     let of_view = max(dot(surface.normal, view), LEAST_VIEW_COSINE);
     let of_light = dot(surface.normal, light);
@@ -83,7 +86,7 @@ fn ggx_lobe(surface: GgxSurface, view: vec3f, light: vec3f, options: ShadingOpti
     }
     let x = dot(surface.tangent, h) / surface.alpha_along;
     let y = dot(cross(surface.normal, surface.tangent), h) / surface.alpha_across;
-    // The slope density times cos^-4, with the fourth power taken into the bracket: finite at grazing angles.
+    // The slope density times cos^-4, with the fourth power moved into the bracket: finite at grazing angles.
     let bracket = cosine * cosine + x * x + y * y;
     let lobe = 1.0 / (PI * surface.alpha_along * surface.alpha_across * bracket * bracket);
     if options.form == FORM_PAPER {

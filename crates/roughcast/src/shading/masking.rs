@@ -1,28 +1,29 @@
-//! Shadowing and masking: the fraction of the facets that is visible from both the viewer and the light.
+//! Shadowing and masking: the fraction of the facets that are visible from both the viewer and the light.
 //!
 //! Source: Smith, "Geometrical Shadowing of a Random Rough Surface", 1967, in the height-correlated form
-//! `G2 = 1 / (1 + Λ(v) + Λ(l))` (Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", 2014).
-//! For a Gaussian of slopes `Λ = (erf a - 1) / 2 + exp(-a²) / (2 a √π)` with `a = d.z / sqrt(2 d.xyᵀ Σ d.xy)`; here it is the
-//! rational fit of Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007, section 5.2. GGX has a Λ of its own, beside its
-//! lobe.
+//! `G2 = 1 / (1 + Λ(v) + Λ(l))` (Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs",
+//! 2014). For a Gaussian of slopes `Λ = (erf a - 1) / 2 + exp(-a²) / (2 a √π)` with `a = d.z / sqrt(2 d.xyᵀ Σ d.xy)`.
+//! The code uses the rational fit of Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007,
+//! section 5.2. GGX has its own Λ, next to its lobe.
 
 use super::vector::Vector;
 use crate::moments::Covariance;
 
-/// Where the fit for Gaussian slopes ends: beyond this `a`, Λ is below 0.004 and counts as zero.
+/// The end of the fit for Gaussian slopes: for larger `a`, Λ is below 0.004 and counts as zero.
 const LAST_RATIO: f32 = 1.6;
 
-/// The squared standard deviation of slopes along a direction, times the squared length of the direction in the plane:
-/// `d.xyᵀ Σ d.xy`. Never below zero.
+/// The variance of slopes along a direction, times the squared length of the direction in the plane: `d.xyᵀ Σ d.xy`.
+/// Never negative.
 pub fn projected_variance(covariance: Covariance, direction: Vector) -> f32 {
     let [x, y, _] = direction;
     (covariance.xx * x * x + 2.0 * covariance.xy * x * y + covariance.yy * y * y).max(0.0)
 }
 
-/// Λ of Gaussian slopes for a direction with this cosine to the normal, above zero, and this [`projected_variance`].
+/// Λ of Gaussian slopes for a direction whose cosine to the normal is `cosine`, above zero, and with this
+/// [`projected_variance`].
 pub fn gaussian_lambda(cosine: f32, projected_variance: f32) -> f32 {
     let width = (2.0 * projected_variance).sqrt();
-    // Compared before dividing: along the normal both are zero.
+    // Compared before dividing, since both are zero along the normal.
     if cosine >= LAST_RATIO * width {
         return 0.0;
     }
@@ -30,8 +31,8 @@ pub fn gaussian_lambda(cosine: f32, projected_variance: f32) -> f32 {
     ((1.0 - 1.259 * a + 0.396 * a * a) / (a * (3.535 + 2.181 * a))).max(0.0)
 }
 
-/// `G2 / n·v`: what turns a distribution of normals into a lobe of the physical form. `cosine` is that between the viewer
-/// and the axis of the lobe, above zero.
+/// `G2 / n·v`: converts a distribution of normals to a lobe of the physical form. `cosine` is the cosine between the
+/// direction to the viewer and the axis of the lobe, above zero.
 pub fn visible_part(cosine: f32, lambda_of_view: f32, lambda_of_light: f32) -> f32 {
     1.0 / (cosine * (1.0 + lambda_of_view + lambda_of_light))
 }
@@ -40,10 +41,11 @@ pub fn visible_part(cosine: f32, lambda_of_view: f32, lambda_of_light: f32) -> f
 mod tests {
     use super::*;
 
-    /// Of G1 = 1 / (1 + Λ), by the fit: Walter et al. give a relative error below 0.0035.
+    /// Error of G1 = 1 / (1 + Λ) due to the fit: Walter et al. give a relative error below 0.0035.
     const FIT: f64 = 0.0035;
 
-    /// The complementary error function: Simpson's rule over the tail's integral, far beyond what f64 needs here.
+    /// The complementary error function: Simpson's rule for the integral of the tail, far more precise than needed
+    /// here.
     fn erfc(x: f64) -> f64 {
         let (steps, end) = (4000, 8.0);
         let step = (end - x) / f64::from(steps);
@@ -65,7 +67,7 @@ mod tests {
         let mut largest = 0.0_f64;
         for i in 1..=300 {
             let a = 0.01 * f64::from(i);
-            // Any variance will do: a direction of this cosine, and the variance that gives it this a.
+            // Any variance will do: use a direction with this cosine, and the variance that gives it this a.
             for cosine in [0.02, 0.3, 0.9] {
                 let variance = (cosine / a).powi(2) / 2.0;
                 let got = 1.0 / (1.0 + f64::from(lambda(cosine as f32, variance as f32)));

@@ -1,5 +1,6 @@
-//! A weighted sum of Gaussians of slopes in the surface frame: what LEAN, CLEAN and stored variances are shaded as. One Gaussian
-//! is the usual case.
+//! A weighted sum of Gaussians of slopes in the surface frame.
+//!
+//! LEAN, CLEAN and stored variances are shaded in this form. A single Gaussian is the usual case.
 
 use super::base::base_to_add;
 use super::gaussian::{SlopeGaussian, gaussian_lobe, slope_gaussian};
@@ -23,7 +24,7 @@ impl MixtureSurface {
     }
 }
 
-/// A Gaussian of a distribution, repaired, with its base roughness.
+/// A Gaussian of a distribution, repaired, with its base roughness added.
 #[inline]
 pub fn shaded_gaussian(gaussian: &WeightedGaussian, base: Base, options: &ShadingOptions) -> SlopeGaussian {
     let repaired = match options.repair {
@@ -33,14 +34,16 @@ pub fn shaded_gaussian(gaussian: &WeightedGaussian, base: Base, options: &Shadin
     slope_gaussian(gaussian.mean, repaired + base_to_add(gaussian.mean, base, options), options)
 }
 
-/// The first Gaussian of a distribution, repaired, with its base roughness: all there is where there is one.
+/// The first Gaussian of a distribution, repaired, with its base roughness added. Use it for distributions of a
+/// single Gaussian.
 #[inline]
 pub fn gaussian_surface(distribution: &Distribution, options: &ShadingOptions) -> SlopeGaussian {
     shaded_gaussian(&distribution.gaussians()[0], distribution.base(), options)
 }
 
-/// The Gaussians of a distribution, repaired, each with its base roughness.
-// Not inlined, nor is the lobe: their stack frames would cost the usual case, a single Gaussian, 4 % of a sample.
+/// The Gaussians of a distribution, repaired, each with its base roughness added.
+// This function and the lobe are not inlined: their stack frames would slow down the usual case, a single Gaussian,
+// by 4 % of a sample.
 #[inline(never)]
 pub fn mixture_surface(distribution: &Distribution, options: &ShadingOptions) -> MixtureSurface {
     let parts = distribution.gaussians();

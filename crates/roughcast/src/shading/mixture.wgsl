@@ -1,4 +1,4 @@
-// A weighted sum of Gaussians of slopes in the surface frame, for distributions of several.
+// A weighted sum of Gaussians of slopes in the surface frame, for distributions of several Gaussians.
 
 struct MixtureSurface {
     weights: vec4f,     // a Gaussian of weight 0 is not read
@@ -44,7 +44,7 @@ fn mixture_lobe(surface: MixtureSurface, view: vec3f, light: vec3f, options: Sha
     return lobe;
 }
 
-// The distribution under a pixel, of one of several Gaussians under a texture filter.
+// The distribution under a pixel, derived from that of several Gaussians under a texture filter.
 fn pixel_mixture(
     filtered: Distribution,
     ratio: FootprintRatio,

@@ -1,21 +1,24 @@
-//! Shading models: what a filtered surface reflects. One model per file, each with a WGSL twin of the same name beside it.
+//! Shading models: what a filtered surface reflects. One model per file, each with a WGSL twin of the same name next
+//! to it.
 //!
-//! A model takes a [`Distribution`] of slopes, whatever it comes from, in two steps with the same names in Rust and in WGSL:
+//! A model processes a [`Distribution`] of slopes, whatever its source, in two steps with the same names in Rust and
+//! in WGSL:
 //!
-//! 1. `<model>_surface`: the distribution under a pixel becomes a surface, once a pixel: impossible covariances are repaired and the
-//!    base roughness is added;
-//! 2. `<model>_lobe`: the lobe for a direction to the viewer and one to the light, once a light.
+//! 1. `<model>_surface`, once per pixel: converts the distribution under a pixel to a surface; impossible covariances
+//!    are repaired and the base roughness is added;
+//! 2. `<model>_lobe`, once per light: evaluates the lobe for a direction to the viewer and one to the light.
 //!
-//! [`Shading::surface_of`] and [`Surface::lobe`] do both steps for any model, and [`reflect`] makes radiance of the lobe.
-//! What comes before is not a model's business: [`crate::texture`] reads texels as distributions (`lean_moments` and its like), and
-//! [`pixel_distribution`] takes off what a texture filter covers beyond the pixel.
+//! [`Shading::surface_of`] and [`Surface::lobe`] perform both steps for any model, and [`reflect`] converts the lobe
+//! to radiance. The preceding steps are independent of the model: [`crate::texture`] decodes texels to distributions
+//! (`lean_moments` and similar functions), and [`pixel_distribution`] removes the variance that a texture filter
+//! covers beyond the pixel.
 //!
-//! All directions are unit vectors in the tangent frame of the *surface* (x right, y up, z the surface normal), and `h` is
-//! the half vector. A lobe of slope density `p` has three forms ([`Form`]).
+//! All directions are unit vectors in the tangent frame of the *surface* (x right, y up, z the surface normal), and
+//! `h` is the half vector. A lobe of slope density `p` has three forms ([`Form`]).
 //!
-//! No lobe is ever NaN or infinite, whatever filtering leaves: a zero normal counts as flat, a horizontal one as steep, and
-//! a covariance without width is given the least there is ([`LEAST_VARIANCE`]). The base's exponent s is meant to be from 1
-//! to 10⁵.
+//! No lobe is ever NaN or infinite, whatever the result of filtering: a zero normal counts as flat, a horizontal one
+//! as steep, and a covariance without width is raised to the minimum ([`LEAST_VARIANCE`]). The base's exponent s
+//! should be from 1 to 10⁵.
 //!
 //! ```
 //! use roughcast::shading::{ShadingOptions, Shading};
@@ -90,19 +93,20 @@ named_enum! {
     /// A shading model.
     #[non_exhaustive]
     pub enum Shading: "shading model" {
-        /// Phong: the reflected ray, about the filtered bump normal.
+        /// Phong: a lobe about the reflected ray at the filtered bump normal.
         Phong = "phong",
-        /// Blinn-Phong on the filtered bump normal: the conventional method, which fails.
+        /// Blinn-Phong on the filtered bump normal: the conventional method, which loses the bumps.
         BlinnPhong = "blinn-phong",
         /// Beckmann (Ward) in the frame of the filtered bump normal.
         Beckmann = "beckmann",
-        /// Off-centre Beckmann in the surface frame, of the filtered bump's slope (LEAN Eq. 1 without filtered moments).
+        /// Off-centre Beckmann in the surface frame, about the filtered bump's slope (LEAN Eq. 1 without filtered
+        /// moments).
         OffCentre = "off-centre",
-        /// LEAN mapping, from filtered moments.
+        /// LEAN mapping, using filtered moments.
         Lean = "lean",
-        /// CLEAN mapping, from the filtered trace of the moments.
+        /// CLEAN mapping, using the filtered trace of the moments.
         Clean = "clean",
-        /// Toksvig: Blinn-Phong with the exponent that the averaged normal's length leaves.
+        /// Toksvig: Blinn-Phong with an exponent reduced according to the length of the averaged normal.
         Toksvig = "toksvig",
         /// Off-centre Beckmann with a stored variance.
         Variance = "variance",
@@ -115,26 +119,26 @@ named_enum! {
     /// The form of a lobe, given its density `p` over slopes.
     #[non_exhaustive]
     pub enum Form: "form" {
-        /// `D G2 / n.v`: the normalised distribution D with Smith's height-correlated shadowing and masking, so that a quarter of it
-        /// with Fresnel's term is what a microfacet BRDF reflects of a light's irradiance. Models in the surface frame take
-        /// the surface normal for n, those in the frame of the bump the bump normal.
+        /// `D G2 / n.v`: the normalised distribution D with Smith's height-correlated shadowing and masking. A
+        /// microfacet BRDF reflects a quarter of it, times Fresnel's term, of a light's irradiance. For models in the
+        /// surface frame n is the surface normal, for those in the frame of the bump the bump normal.
         Physical = "physical",
-        /// A microfacet distribution, `D = p / h.z^4`: it integrates to 1 over the projected solid angle of its own axis.
-        /// Blinn-Phong is `(s + 2) / (2 pi) cos^s`.
+        /// A microfacet distribution, `D = p / h.z^4`: it integrates to 1 over the projected solid angle of its own
+        /// axis. Blinn-Phong is `(s + 2) / (2 pi) cos^s`.
         Normalised = "normalised",
-        /// The LEAN paper's: `2 pi p`, without the factor `1 / h.z^4`. Blinn-Phong is `s cos^s`.
+        /// The LEAN paper's form: `2 pi p`, without the factor `1 / h.z^4`. Blinn-Phong is `s cos^s`.
         Paper = "paper",
     }
 }
 
 named_enum! {
-    /// Which slopes cause shadowing and masking in [`Form::Physical`], for models that separate base roughness from bumps. Phong and
-    /// GGX do not.
+    /// Which slopes cause shadowing and masking in [`Form::Physical`], for models that separate base roughness from
+    /// bumps. Phong and GGX do not separate them.
     #[non_exhaustive]
     pub enum Masking: "masking" {
-        /// Those of the base roughness: what bump mapping shows from near, where each bump is lit on its own.
+        /// Those of the base roughness, as in close views of bump mapping, where each bump is lit separately.
         Base = "base",
-        /// Those of base roughness and bumps: what displaced geometry shows (Dupuy et al., "Linear Efficient Antialiased
+        /// Those of base roughness and bumps, as for displaced geometry (Dupuy et al., "Linear Efficient Antialiased
         /// Displacement and Reflectance Mapping", 2013).
         Full = "full",
     }
@@ -144,39 +148,42 @@ named_enum! {
     /// Which variance counts as roughness.
     #[non_exhaustive]
     pub enum FootprintModel: "footprint" {
-        /// That under the pixel: what the texture filter covers beyond it is taken off. See [`footprint_ratio`].
+        /// The variance under the pixel: the part that the texture filter covers beyond it is removed. See
+        /// [`footprint_ratio`].
         Corrected = "corrected",
-        /// All that is under the texture filter, as in the papers.
+        /// All variance under the texture filter, as in the papers.
         Published = "published",
     }
 }
 
 named_enum! {
-    /// What the base roughness of a facet looks like in the plane of the surface, for lobes in the surface frame.
+    /// The shape of a facet's base roughness in the plane of the surface, for lobes in the surface frame.
     #[non_exhaustive]
     pub enum BaseFrame: "base lobe" {
         /// Round, with variance `1 / s` whatever the facet's slope: LEAN's approximation.
         Plane = "plane",
-        /// The true lobe of a facet of slope B, seen there: variance `(1 + B^2)^2 / s` along B, `(1 + B^2) / s` across.
+        /// The actual lobe of a facet of slope B in that plane: variance `(1 + B^2)^2 / s` along B, `(1 + B^2) / s`
+        /// across.
         Facet = "facet",
     }
 }
 
 named_enum! {
-    /// How a covariance that rounding has made invalid is repaired.
+    /// How a covariance that has become invalid by rounding is repaired.
     #[non_exhaustive]
     pub enum Repair: "repair" {
-        /// Made positive semidefinite: negative variances become zero, the mixed term is cut.
+        /// Made positive semidefinite: negative variances become zero, the mixed term is clamped.
         Clamp = "clamp",
-        /// The papers' rules: no highlight where the determinant is not positive (LEAN Figure 16), no covariance (CLEAN).
+        /// The papers' rules: no highlight unless the determinant is positive (LEAN Figure 16), no covariance
+        /// (CLEAN).
         Published = "published",
     }
 }
 
-/// What a renderer needs to know about a surface.
+/// The input that a shading model needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Wanted {
-    /// The filtered normal alone.
+    /// Only the filtered normal.
     Normal,
     /// The distribution of slopes.
     Distribution,
@@ -197,9 +204,9 @@ pub struct ShadingOptions {
     pub form: Form,
     /// The base roughness in the plane of the surface.
     pub base_frame: BaseFrame,
-    /// What to do with invalid covariances.
+    /// How invalid covariances are repaired.
     pub repair: Repair,
-    /// Which slopes cause shadowing and masking, in the physical form.
+    /// Which slopes cause shadowing and masking in the physical form.
     pub masking: Masking,
     /// Which variance counts as roughness.
     pub footprint: FootprintModel,
@@ -228,14 +235,14 @@ impl Default for ShadingOptions {
 }
 
 impl ShadingOptions {
-    /// LEAN mapping as published: the paper's form, and all variance under the texture filter.
+    /// LEAN mapping as published: the paper's form, using all variance under the texture filter.
     #[must_use]
     pub fn published(specular_power: f32) -> Self {
         Self { specular_power, form: Form::Paper, footprint: FootprintModel::Published, ..Self::default() }
     }
 
-    /// The bytes of WGSL's `struct ShadingOptions`: the exponent's bits, the place of each choice in its enum's `ALL`, and two words
-    /// that are not used.
+    /// The bytes of WGSL's `struct ShadingOptions`: the exponent's bits, the index of each choice in its enum's
+    /// `ALL`, and two unused words.
     pub fn to_words(&self) -> [u32; 8] {
         [
             self.specular_power.to_bits(),
@@ -251,7 +258,7 @@ impl ShadingOptions {
 }
 
 impl Shading {
-    /// What the model needs from a source of bumps.
+    /// The input that the model needs from a source of bumps.
     pub const fn wanted(self) -> Wanted {
         match self {
             Self::Phong | Self::BlinnPhong | Self::Beckmann | Self::OffCentre => Wanted::Normal,
@@ -259,7 +266,7 @@ impl Shading {
         }
     }
 
-    /// The model with whose lobe ground truth shades each bump, which it resolves. It has no filtered moments.
+    /// The model whose lobe the ground truth uses to shade each resolved bump. It does not use filtered moments.
     pub const fn reference(self) -> Self {
         match self {
             Self::Phong => Self::Phong,

@@ -1,7 +1,7 @@
 //! Off-centre Beckmann: the lobe of a bump as a Gaussian in the plane of the surface, about the bump's slope.
 //!
-//! Source: LEAN mapping, Eq. 1, without the filtered moments: the filtered normal gives the slope, the base roughness the
-//! covariance. At the finest level it is LEAN's own lobe.
+//! Source: LEAN mapping, Eq. 1, without the filtered moments: the filtered normal gives the slope, the base roughness
+//! the covariance. At the finest level it equals LEAN's lobe.
 
 use super::ShadingOptions;
 use super::gaussian::SlopeGaussian;

@@ -1,4 +1,5 @@
-// Off-centre Beckmann: the lobe of a bump as a Gaussian in the plane of the surface, about the slope of the filtered normal.
+// Off-centre Beckmann: the lobe of a bump as a Gaussian in the plane of the surface, about the slope of the filtered
+// normal.
 
 fn off_centre_surface(distribution: Distribution, options: ShadingOptions) -> SlopeGaussian {
     return gaussian_surface(normal_moments(distribution.normal), options);

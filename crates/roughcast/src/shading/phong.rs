@@ -1,7 +1,7 @@
 //! Phong: a cosine lobe about the reflected ray.
 //!
 //! Source: Phong, "Illumination for Computer Generated Pictures", 1975, on the filtered bump normal. The exponent is
-//! Phong's own: about the half vector, the same highlight has about four times it.
+//! Phong's own; an equal highlight about the half vector needs about four times this exponent.
 
 use std::f32::consts::TAU;
 
@@ -17,8 +17,8 @@ pub fn phong_surface(distribution: &Distribution, options: &ShadingOptions) -> B
 
 /// The lobe for unit directions to the viewer and to the light. Normalised about the reflected ray.
 ///
-/// Phong's lobe is one of directions to the light, not of facets, so that there is nothing to mask: in the physical form it
-/// is `4 (s + 1) / (2 π) cos^s`, with which all light that arrives along the reflected ray is reflected.
+/// Phong's lobe is a distribution of directions to the light, not of facets, so masking does not apply. The physical
+/// form is `4 (s + 1) / (2 π) cos^s`, which reflects all light that arrives along the reflected ray.
 pub fn phong_lobe(surface: &BumpFacet, view: Vector, light: Vector, options: &ShadingOptions) -> f32 {
     if !both_above(view, light) {
         return 0.0;

@@ -1,12 +1,13 @@
-//! The distribution under a pixel, of that under a texture filter, which covers more.
+//! The distribution under a pixel, derived from that under a texture filter, which covers more.
 
 use super::ShadingOptions;
 use super::base::base_in_map;
 use super::footprint::{FootprintRatio, PixelPart};
 use crate::distribution::Distribution;
 
-/// What a pixel sees of a filtered distribution: its part of the bumps' covariance, and the whole of the base roughness that may be
-/// in it. `part` is the ratio's for what the texture stores: `ratio.moments` for LEAN and CLEAN, `ratio.variances` for variances.
+/// The distribution under the pixel: the pixel's part of the bumps' covariance, and the whole base roughness if the
+/// distribution includes it. `part` is the ratio's part for the quantity that the texture stores: `ratio.moments` for
+/// LEAN and CLEAN, `ratio.variances` for variances.
 #[inline]
 pub fn pixel_distribution(
     mut filtered: Distribution,

@@ -1,6 +1,6 @@
-// The distribution under a pixel, of that under a texture filter.
+// The distribution under a pixel, derived from that under a texture filter.
 
-// The base is its variance along each axis, which stays whole.
+// `base` is the variance of the base roughness along each axis, which is not reduced.
 fn pixel_gaussian(
     gaussian: WeightedGaussian,
     ratio: FootprintRatio,
@@ -12,8 +12,8 @@ fn pixel_gaussian(
     return WeightedGaussian(gaussian.mean, seen.xy, seen.z, gaussian.weight);
 }
 
-// Of a distribution of one Gaussian; of several take pixel_mixture. The part is the ratio's for what the texture stores: ratio.moments
-// for LEAN and CLEAN, ratio.variances for variances.
+// For a distribution of one Gaussian; for several use pixel_mixture. `part` is the ratio's part for the quantity that
+// the texture stores: ratio.moments for LEAN and CLEAN, ratio.variances for variances.
 fn pixel_distribution(
     filtered: Distribution,
     ratio: FootprintRatio,

@@ -1,9 +1,10 @@
 //! From lobes to light: ambient, diffuse and specular radiance of a surface under a light.
 //!
-//! Source: Schlick, "A customizable reflectance model for everyday rendering", 1993, for the Fresnel term; Kilgard, "A
-//! practical and robust bump-mapping technique", 2000, for diffuse light from the unnormalised filtered normal; Walter et
-//! al., "Microfacet Models for Refraction through Rough Surfaces", 2007, Eq. 20, for the physical form; LEAN mapping, section
-//! 2, for the others: Ward's model with a Fresnel term, which is Cook & Torrance's without shadowing and masking.
+//! Source: Schlick, "A customizable reflectance model for everyday rendering", 1993, for the Fresnel term; Kilgard,
+//! "A practical and robust bump-mapping technique", 2000, for diffuse light from the unnormalised filtered normal;
+//! Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007, Eq. 20, for the physical form;
+//! LEAN mapping, section 2, for the others: Ward's model with a Fresnel term, which is Cook & Torrance's without
+//! shadowing and masking.
 //!
 //! | part | radiance |
 //! |---|---|
@@ -13,11 +14,11 @@
 //! | specular, normalised | `F(v · h) * lobe * l.z / 4 * E` |
 //! | specular, paper's form | `F(v · h) * lobe / (8 π) * E` |
 //!
-//! The physical form is a microfacet BRDF, `F D G2 / (4 n.l n.v) * n.l * E`: its lobe is `D G2 / n.v`, with Smith's G2 and the
-//! normal that D is about. The other two have no masking. The normalised form is `F D G / (4 n.l n.v) * n.l * E` with `G = n.l n.v` and the surface normal's cosines. The paper's
-//! form folds the constants into the specular coefficient: with `lobe = 2 π p`, `lobe / (8 π)` is `p / 4`, which is what
-//! the other forms give where light, eye and surface normal meet. Away from there both are darker than a microfacet BRDF:
-//! four times at 60°.
+//! The physical form is a microfacet BRDF, `F D G2 / (4 n.l n.v) * n.l * E`: its lobe is `D G2 / n.v`, with Smith's
+//! G2 and the normal that D is about. The other two have no masking. The normalised form is `F D G / (4 n.l n.v) *
+//! n.l * E` with `G = n.l n.v` and the surface normal's cosines. The paper's form folds the constants into the
+//! specular coefficient: with `lobe = 2 π p`, `lobe / (8 π)` is `p / 4`, which equals the other forms where light,
+//! eye and surface normal coincide. Elsewhere both are darker than a microfacet BRDF: by a factor of four at 60°.
 
 use std::f32::consts::PI;
 
@@ -28,16 +29,16 @@ use super::{Form, ShadingOptions, Surface};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Material {
-    /// Part of the light that is scattered diffusely.
+    /// Fraction of the light that is scattered diffusely.
     pub albedo: [f32; 3],
-    /// Light from everywhere: a radiance.
+    /// Ambient light, as a radiance.
     pub ambient: [f32; 3],
     /// Fresnel reflectance at normal incidence.
     pub specular: [f32; 3],
 }
 
 impl Default for Material {
-    /// A grey dielectric with a little light from everywhere.
+    /// A grey dielectric with a little ambient light.
     fn default() -> Self {
         Self { albedo: [0.18; 3], ambient: [0.02; 3], specular: [0.04; 3] }
     }
@@ -55,14 +56,14 @@ pub struct LightSample {
 /// Reflected light, in linear RGB.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Radiance {
-    /// Scattered diffusely.
+    /// Diffusely scattered light.
     pub diffuse: [f32; 3],
-    /// Mirrored by facets.
+    /// Light mirrored by facets.
     pub specular: [f32; 3],
 }
 
-/// Schlick's approximation of Fresnel reflectance, from that at normal incidence and the cosine between half vector and
-/// viewer.
+/// Schlick's approximation of Fresnel reflectance, given the reflectance at normal incidence and the cosine between
+/// the half vector and the direction to the viewer.
 pub fn schlick(specular: f32, cosine: f32) -> f32 {
     let rest = (1.0 - cosine).clamp(0.0, 1.0);
     specular + (1.0 - specular) * rest.powi(5)
@@ -73,8 +74,8 @@ pub fn ambient_radiance(albedo: [f32; 3], ambient: [f32; 3]) -> [f32; 3] {
     [0, 1, 2].map(|i| albedo[i] * ambient[i])
 }
 
-/// Radiance of diffuse reflection. `normal` is the surface's, of the length that filtering has left; `light` is a unit
-/// vector.
+/// Radiance of diffuse reflection. `normal` is the surface's normal, with the length that filtering has left; `light`
+/// is a unit vector.
 pub fn diffuse_radiance(
     normal: [f32; 3],
     albedo: [f32; 3],
@@ -86,8 +87,8 @@ pub fn diffuse_radiance(
     [0, 1, 2].map(|i| albedo[i] / PI * cosine * irradiance[i])
 }
 
-/// Radiance of specular reflection, given a lobe for the same directions and options. `specular` is the reflectance at normal
-/// incidence; `view` and `light` are unit vectors.
+/// Radiance of specular reflection, given a lobe for the same directions and options. `specular` is the reflectance
+/// at normal incidence; `view` and `light` are unit vectors.
 pub fn specular_radiance(
     lobe: f32,
     specular: [f32; 3],
@@ -106,7 +107,7 @@ pub fn specular_radiance(
     [0, 1, 2].map(|i| schlick(specular[i], cosine) * coefficient * lobe * irradiance[i])
 }
 
-/// What a surface reflects of one light towards the viewer.
+/// The light that a surface reflects from one light source towards the viewer.
 pub fn reflect(
     surface: &Surface,
     material: &Material,

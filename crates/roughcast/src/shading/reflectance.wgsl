@@ -1,6 +1,6 @@
-// From lobes to light, in linear RGB. Irradiance is that of a surface which faces the light.
+// From lobes to light, in linear RGB. Irradiance is measured on a surface that faces the light.
 
-// Schlick's approximation of Fresnel reflectance, from that at normal incidence.
+// Schlick's approximation of Fresnel reflectance, given the reflectance at normal incidence.
 fn schlick(specular: f32, cosine: f32) -> f32 {
     let rest = clamp(1.0 - cosine, 0.0, 1.0);
     let square = rest * rest;
@@ -11,13 +11,13 @@ fn ambient_radiance(albedo: vec3f, ambient: vec3f) -> vec3f {
     return albedo * ambient;
 }
 
-// The normal has the length that filtering has left.
+// The normal must keep the length that filtering has left.
 fn diffuse_radiance(normal: vec3f, albedo: vec3f, light: vec3f, irradiance: vec3f) -> vec3f {
     let cosine = select(0.0, max(dot(normal, light), 0.0), light.z > 0.0);
     return albedo / PI * cosine * irradiance;
 }
 
-// The lobe must be of the same directions and options; specular is the reflectance at normal incidence.
+// The lobe must be for the same directions and options; specular is the reflectance at normal incidence.
 fn specular_radiance(
     lobe: f32,
     specular: vec3f,

@@ -1,4 +1,4 @@
-//! A shaded point of any model, from a distribution of slopes.
+//! The surface of any model, built from a distribution of slopes.
 
 use super::beckmann::{beckmann_lobe, beckmann_surface};
 use super::blinn_phong::{blinn_phong_lobe, blinn_phong_surface};
@@ -13,36 +13,38 @@ use super::{Shading, ShadingOptions};
 use crate::distribution::Distribution;
 use crate::slope::Slope;
 
-/// The surface of a model, from the distribution under a pixel.
+/// The surface of a model, built from the distribution under a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
-    /// The normal for diffuse light: the filtered normal at the length that averaging has left, where the source of the bumps
-    /// tells; else the unit normal of the mean slope.
+    /// The normal for diffuse light: the filtered normal with the length that averaging has left, if the source of
+    /// the bumps provides it; otherwise the unit normal of the mean slope.
     pub normal: [f32; 3],
-    /// The model's own part.
+    /// The model-specific part.
     pub model: ModelSurface,
 }
 
-/// The part of a surface that is the model's own.
+/// The model-specific part of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ModelSurface {
-    /// Of [`Shading::Phong`].
+    /// For [`Shading::Phong`].
     Phong(BumpFacet),
-    /// Of [`Shading::BlinnPhong`] and [`Shading::Toksvig`].
+    /// For [`Shading::BlinnPhong`] and [`Shading::Toksvig`].
     BlinnPhong(BumpFacet),
-    /// Of [`Shading::Beckmann`].
+    /// For [`Shading::Beckmann`].
     Beckmann(BumpFacet),
-    /// Of [`Shading::OffCentre`], and of [`Shading::Lean`], [`Shading::Clean`] and [`Shading::Variance`] for distributions of one Gaussian.
+    /// For [`Shading::OffCentre`], and for [`Shading::Lean`], [`Shading::Clean`] and [`Shading::Variance`] with
+    /// distributions of one Gaussian.
     Gaussian(SlopeGaussian),
-    /// Of these three for distributions of several Gaussians. A variant of its own, so that one Gaussian costs no copies of four.
+    /// For these three with distributions of several Gaussians. This is a separate variant so that one Gaussian does
+    /// not require copies of four.
     Mixture(MixtureSurface),
-    /// Of [`Shading::Ggx`].
+    /// For [`Shading::Ggx`].
     Ggx(GgxSurface),
 }
 
 impl Surface {
-    /// The lobe for unit directions to the viewer and to the light, in the surface frame; zero where either is not above
+    /// The lobe for unit directions to the viewer and to the light, in the surface frame; zero if either is not above
     /// the surface.
     pub fn lobe(&self, view: [f32; 3], light: [f32; 3], options: &ShadingOptions) -> f32 {
         match &self.model {
@@ -57,7 +59,7 @@ impl Surface {
 }
 
 impl Shading {
-    /// The surface that the model makes of a distribution of slopes: repaired, with its base roughness.
+    /// The model's surface for a distribution of slopes: repaired, with its base roughness added.
     #[inline]
     pub fn surface_of(self, distribution: &Distribution, options: &ShadingOptions) -> Surface {
         let model = match self {
@@ -75,12 +77,12 @@ impl Shading {
         Surface { normal: distribution.normal().to_array(), model }
     }
 
-    /// The surface of a single bump of this slope, as the supersampled ground truth sees it: that of the model's
+    /// The surface of a single bump of this slope, as in the supersampled ground truth: that of the model's
     /// [reference](Shading::reference).
     #[inline]
     pub fn surface_of_slope(self, slope: Slope, options: &ShadingOptions) -> Surface {
         let resolved = match self.reference() {
-            // The slope itself, and not that of a rounded normal.
+            // Uses the slope itself, not the slope of a rounded normal.
             Self::OffCentre => Self::Lean,
             other => other,
         };

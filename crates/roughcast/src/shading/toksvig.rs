@@ -1,6 +1,7 @@
-//! Toksvig: Blinn-Phong with the exponent that base and bumps leave together, `1 / s' = 1 / s + σ²`.
+//! Toksvig: Blinn-Phong with the combined exponent of base and bumps, `1 / s' = 1 / s + σ²`.
 //!
-//! Source: Toksvig, "Mipmapping normal maps", 2005. His texture gives the variance; any other distribution works too.
+//! Source: Toksvig, "Mipmapping normal maps", 2005. The variance comes from Toksvig's texture; any other distribution
+//! works too.
 
 use super::ShadingOptions;
 use super::facet::{BumpFacet, bump_facet};
@@ -8,7 +9,7 @@ use super::gaussian::LEAST_VARIANCE;
 use crate::distribution::Distribution;
 use crate::roughness::Base;
 
-/// The facet of a distribution's filtered normal, with its dulled exponent.
+/// The facet of a distribution's filtered normal, with its reduced exponent.
 pub fn toksvig_surface(distribution: &Distribution, options: &ShadingOptions) -> BumpFacet {
     let bumps = (0.5 * distribution.whole().covariance.trace()).max(0.0);
     let base = match distribution.base() {

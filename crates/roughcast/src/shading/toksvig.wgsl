@@ -1,4 +1,4 @@
-// Toksvig: Blinn-Phong with the exponent that base and bumps leave together, 1 / s' = 1 / s + variance.
+// Toksvig: Blinn-Phong with the combined exponent of base and bumps, 1 / s' = 1 / s + variance.
 
 fn toksvig_surface(distribution: Distribution, options: ShadingOptions) -> BumpFacet {
     let whole = whole_gaussian(distribution);

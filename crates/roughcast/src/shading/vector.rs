@@ -1,4 +1,4 @@
-//! Vectors of the tangent frame, as arrays: what WGSL has built in.
+//! Vectors of the tangent frame, as arrays, with operations that are built into WGSL.
 
 /// A vector in the tangent frame: x right, y up, z out of the surface.
 pub(crate) type Vector = [f32; 3];
@@ -19,16 +19,16 @@ pub(crate) fn sum(a: Vector, b: Vector) -> Vector {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-/// At unit length. The vector must not be zero.
+/// Normalises a vector, which must not be zero.
 pub(crate) fn normalize(a: Vector) -> Vector {
     scaled(a, 1.0 / dot(a, a).sqrt())
 }
 
-/// Directions lower than this above the surface count as in it, since two that are opposite to each other at the horizon
-/// have no half vector: their sum's square must not vanish in an f32.
+/// Directions with a smaller height above the surface count as lying in it, since two opposite directions at the
+/// horizon have no half vector: the square of their sum must not underflow to zero in an f32.
 pub const LEAST_HEIGHT: f32 = 1e-15;
 
-/// Whether viewer and light are above the surface; nothing is reflected otherwise.
+/// Whether viewer and light are above the surface; otherwise nothing is reflected.
 pub(crate) fn both_above(view: Vector, light: Vector) -> bool {
     view[2] > LEAST_HEIGHT && light[2] > LEAST_HEIGHT
 }

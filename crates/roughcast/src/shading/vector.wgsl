@@ -3,11 +3,11 @@
 const PI: f32 = 3.14159265;
 const TWO_PI: f32 = 6.28318531;
 
-// Directions lower than this above the surface count as in it: two that are opposite to each other at the horizon have no
-// half vector.
+// Directions with a smaller height above the surface count as lying in it: two opposite directions at the horizon
+// have no half vector.
 const LEAST_HEIGHT: f32 = 1e-15;
 
-// Whether viewer and light are above the surface; nothing is reflected otherwise.
+// Whether viewer and light are above the surface; otherwise nothing is reflected.
 fn both_above(view: vec3f, light: vec3f) -> bool {
     return min(view.z, light.z) > LEAST_HEIGHT;
 }

@@ -1,4 +1,4 @@
-//! Base roughness: the material's own, before any bump.
+//! Base roughness: the roughness of the material itself, without any bumps.
 
 use super::fit::fit;
 use super::{SourceError, load_channel};
@@ -7,14 +7,14 @@ use crate::roughness::{RoughnessStored, variance_from_stored};
 use crate::row::Extra;
 use crate::{Image, ImageView};
 
-/// A roughness stored in an image. [`Bake`](crate::Bake) resamples one whose size differs from that of the map.
+/// A roughness stored in an image. [`Bake`](crate::Bake) resamples it if its size differs from that of the map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoughnessMap<'a> {
     /// The pixels.
     pub image: ImageView<'a>,
-    /// The channel that holds roughness; glTF's packed texture has it in 1 (green).
+    /// The channel that holds roughness; 1 (green) in glTF's packed texture.
     pub channel: usize,
-    /// How it is stored.
+    /// How the roughness is stored.
     pub stored: RoughnessStored,
 }
 
@@ -24,12 +24,12 @@ pub struct RoughnessMap<'a> {
 pub enum BaseRoughness<'a> {
     /// The same slope variance everywhere, `alpha^2 / 2 = 1 / s`.
     Variance(f32),
-    /// One for each texel.
+    /// One variance per texel.
     Map(RoughnessMap<'a>),
 }
 
 impl BaseRoughness<'_> {
-    /// A roughness map resampled to `size`, width and height, by [`fit`]; `None` where nothing is to be done.
+    /// The roughness map resampled to `size`, width and height, by [`fit`]; `None` if no resampling is needed.
     pub(crate) fn fitted(&self, size: (usize, usize), wrap: Wrap) -> Option<(Image, usize)> {
         match self {
             BaseRoughness::Map(map)
@@ -62,19 +62,19 @@ impl BaseRoughness<'_> {
                     })
                     .fold(0.0, f32::max)
             }
-            // Refused when it is read.
+            // Rejected when it is read.
             BaseRoughness::Map(_) => 0.0,
         }
     }
 }
 
 impl RoughnessMap<'_> {
-    /// Slope variances of a stretch of row `y` that starts at column `x`.
+    /// Writes the slope variances of a stretch of row `y` that starts at column `x`.
     pub(super) fn fill_variance(&self, x: usize, y: usize, plane: &mut [f32]) {
         load_channel(self.image, self.channel, x, y, plane);
         for value in plane {
             let variance = variance_from_stored(*value, self.stored);
-            // A NaN or negative roughness says nothing: none.
+            // A NaN or negative roughness is invalid and counts as zero.
             *value = if variance.is_finite() && variance > 0.0 { variance } else { 0.0 };
         }
     }
@@ -90,9 +90,9 @@ pub(crate) struct BaseSource<'a> {
 /// How a base roughness is filtered with the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum UseOfBase {
-    /// It is added to the covariance of every texel of level 0 (LEAN Eq. 6).
+    /// Added to the covariance of every texel of level 0 (LEAN Eq. 6).
     FoldedIn,
-    /// It is averaged on its own, as an extra plane.
+    /// Averaged separately, as an extra plane.
     Apart,
 }
 
@@ -131,7 +131,7 @@ impl<'a> BaseSource<'a> {
             _ => unreachable!("the other extras come from the map itself"),
         };
         match self.roughness {
-            // Roughness in green is what tells glTF's packed texture from a picture of roughness alone.
+            // Roughness in green distinguishes glTF's packed texture from an image of roughness alone.
             BaseRoughness::Map(map) if map.channel == PACKED_CHANNEL && channel < map.image.channels() => {
                 load_channel(map.image, channel, x, y, plane);
             }
@@ -143,7 +143,7 @@ impl<'a> BaseSource<'a> {
 /// The channel that holds roughness in glTF's packed texture.
 pub(super) const PACKED_CHANNEL: usize = 1;
 
-/// An extra of a material without a texture that says it: nothing is occluded, nothing is metal.
+/// Default of an extra if the material has no texture for it: not occluded, not metal.
 pub(super) fn default_of_extra(extra: Extra) -> f32 {
     if extra == Extra::Occlusion { 1.0 } else { 0.0 }
 }

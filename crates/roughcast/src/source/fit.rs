@@ -1,7 +1,7 @@
-//! A roughness map of another size than the map that it goes with.
+//! Resamples a roughness map to the size of the map it belongs to.
 //!
-//! Roughness is averaged as slope variance, which is what adds up under a filter; occlusion and metalness, which glTF
-//! packs beside it, as they are.
+//! Roughness is averaged as slope variance, which is additive under a filter. Occlusion and metalness, which glTF packs
+//! into the same texture, are averaged as stored.
 
 use super::base::{PACKED_CHANNEL, RoughnessMap};
 use super::load_channel;
@@ -9,13 +9,13 @@ use super::resize::resized;
 use crate::convention::Wrap;
 use crate::{Image, Samples};
 
-/// The channels of a fitted image that keeps glTF's packed texture together.
+/// Number of channels of a fitted image that keeps glTF's packed texture together.
 const PACKED_CHANNELS: usize = 3;
 
-/// The same roughness at another size: `width * height` pixels of floats, the roughness as the square of alpha.
+/// Resamples a roughness map to `width * height` pixels of floats, with the roughness as the square of alpha.
 ///
-/// Of glTF's packed texture all three channels are kept, in their places; of any other picture only the roughness, which
-/// then is channel 0.
+/// For glTF's packed texture all three channels are kept in place; for any other image only the roughness is kept, as
+/// channel 0.
 pub(super) fn fit(map: &RoughnessMap<'_>, (width, height): (usize, usize), wrap: Wrap) -> (Image, usize) {
     let packed = map.channel == PACKED_CHANNEL && map.image.channels() >= PACKED_CHANNELS;
     let (channels, kept) =
@@ -31,7 +31,7 @@ pub(super) fn fit(map: &RoughnessMap<'_>, (width, height): (usize, usize), wrap:
     (image, if packed { PACKED_CHANNEL } else { 0 })
 }
 
-/// One channel of the whole picture: the square of alpha where it is the roughness, else as stored.
+/// One channel of the whole image: the square of alpha if it is the roughness, otherwise as stored.
 fn plane_of(map: &RoughnessMap<'_>, channel: usize) -> Vec<f32> {
     let width = map.image.width();
     let mut plane = vec![0.0; width * map.image.height()];

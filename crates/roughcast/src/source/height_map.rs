@@ -34,7 +34,7 @@ pub(super) fn fill(
         Gradient::Central => central(above, here, below, scale, bx, by),
         Gradient::Forward => forward(above, here, scale, bx, by),
     }
-    // A gradient may leave out its own texel: it is then finite also where there is no height.
+    // A gradient may not use its own texel, so it can be finite even if the height there is not.
     let heights = &here[1..=width];
     if image.samples().sample_type().is_float() && count_non_finite(heights) > 0 {
         let holes = bx.iter_mut().zip(heights).filter(|(_, height)| !height.is_finite());
@@ -43,12 +43,12 @@ pub(super) fn fill(
     if count_unusable(bx, by, *max_slope) == 0 {
         return SourceCounts::default();
     }
-    // The slope before it is repaired as a vector over a z of one: `repaired_slope` tells too steep from not finite.
+    // Pass the slope before repair as a vector with z = 1, so that `repaired_slope` can tell too steep from non-finite.
     let (raw_x, raw_y) = (bx.to_vec(), by.to_vec());
     repair(bx, by, *max_slope, Slope::default(), |i| Some([raw_x[i], raw_y[i], 1.0]))
 }
 
-/// The mean of all finite heights, which replaces the others where heights are stored. 0 if there are none.
+/// The mean of all finite heights, which replaces non-finite ones in stored heights. 0 if no height is finite.
 pub(super) fn mean_height(image: ImageView<'_>) -> f32 {
     let mut row = vec![0.0; image.width()];
     let (mut sum, mut count) = (0.0, 0u64);
@@ -68,7 +68,7 @@ vectorised! {
     }
 }
 
-/// Loads `plane.len()` heights of a row, from the one left of column `x` to the one right of the stretch.
+/// Loads `plane.len()` heights of a row, starting one texel left of column `x` and ending one right of the stretch.
 fn load_row(image: ImageView<'_>, x: usize, y: usize, wrap: Wrap, plane: &mut [f32]) {
     let inner = plane.len() - 2;
     load_channel(image, 0, x, y, &mut plane[1..=inner]);
@@ -78,7 +78,7 @@ fn load_row(image: ImageView<'_>, x: usize, y: usize, wrap: Wrap, plane: &mut [f
     load_channel(image, 0, right, y, &mut plane[inner + 1..]);
 }
 
-// In all three, `slope = -gradient`, rows grow downwards and y points up, hence the signs.
+// In all three functions, `slope = -gradient`. Rows grow downwards and y points up, hence the signs.
 
 vectorised! {
     fn sobel(above: &[f32], here: &[f32], below: &[f32], scale: f32, bx: &mut [f32], by: &mut [f32]) {

@@ -1,9 +1,9 @@
 // Slopes from height maps. Twin of height_map.rs.
 //
-// A slope is minus the gradient; rows grow downwards and y points up, hence the signs. `scale` turns a stored height into
-// texels. Neighbours are given row by row, each from left to right.
+// A slope is minus the gradient. Rows grow downwards and y points up, hence the signs. `scale` converts a stored height
+// to texels. Neighbours are given row by row, each from left to right.
 
-// The other wrap modes keep an index that is one step outside at the edge.
+// All other wrap modes clamp an index that is one step outside to the edge.
 const WRAP_REPEAT: u32 = 0u;
 
 // The 8-tap Sobel filter divided by 8.
@@ -24,7 +24,7 @@ fn forward(above: vec3f, here: vec3f, scale: f32) -> vec2f {
     return scale * vec2f(here.y - here.z, here.y - above.y);
 }
 
-// A slope that is not too steep, unchanged; others repaired.
+// Returns a slope unchanged if it is not too steep, otherwise repaired.
 fn slope_from_gradient(slope: vec2f, max_slope: f32) -> RepairedSlope {
     let squares = rounded2(slope * slope);
     if (squares.x + squares.y) <= max_slope * max_slope {
@@ -35,7 +35,7 @@ fn slope_from_gradient(slope: vec2f, max_slope: f32) -> RepairedSlope {
 
 // The index of a neighbour that may be one step outside 0 .. size.
 fn neighbour(index: i32, size: i32, wrap: u32) -> i32 {
-    // Mirrored about the edge itself, so the edge texel comes twice, as where the edge goes on.
+    // Mirroring is about the edge itself, which repeats the edge texel, so it equals clamping here.
     let kept = clamp(index, 0, size - 1);
     let repeated = (index + size) % size;
     return select(kept, repeated, wrap == WRAP_REPEAT);

@@ -1,4 +1,4 @@
-//! From a map's pixels to rows of slopes: level 0 of everything.
+//! Converts a map's pixels to rows of slopes: level 0 of every pyramid.
 
 mod base;
 mod fit;
@@ -21,14 +21,14 @@ use crate::{ImageView, SamplesView};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SourceError {
-    /// The channels that the options name are not there.
+    /// The image lacks channels that the options name.
     #[error("a {wanted} needs {needed} channels or more, and this map has {got}")]
     Channels {
-        /// What was to be read.
+        /// What was to be read from the image.
         wanted: &'static str,
         /// Channels needed.
         needed: usize,
-        /// Channels there are.
+        /// Channels present.
         got: usize,
     },
     /// The maximum slope is out of range.
@@ -65,12 +65,12 @@ struct Reading<'a> {
     max_slope: f32,
 }
 
-/// A map with the options by which it is read.
+/// A map with the options used to read it.
 pub(crate) struct MapSource<'a> {
     reading: Reading<'a>,
     base: Option<BaseSource<'a>>,
     extras: Vec<Extra>,
-    /// The height that is stored where there is none. A fixed one would be a cliff, and draw the averages towards itself.
+    /// Height stored for texels whose height is not finite. A fixed value would create a cliff and bias the averages.
     height_of_holes: f32,
 }
 
@@ -101,17 +101,17 @@ impl<'a> MapSource<'a> {
 }
 
 impl MapSource<'_> {
-    /// The same slopes with nothing beside them, for passes that store nothing.
+    /// The same slopes without extras, for passes that store nothing.
     pub fn slopes_only(&self) -> Self {
         Self { extras: Vec::new(), ..*self }
     }
 
-    /// The length that no slope exceeds.
+    /// The maximum slope length.
     pub fn max_slope(&self) -> f32 {
         self.reading.max_slope
     }
 
-    /// Scales slopes longer than this back.
+    /// Sets the maximum slope; steeper slopes are scaled back to it.
     pub fn limit(&mut self, max_slope: f32) {
         self.reading.max_slope = max_slope;
     }
@@ -182,7 +182,7 @@ impl MapSource<'_> {
                     load_channel(self.reading.image, 0, x, y, plane);
                     plane.iter_mut().filter(|v| !v.is_finite()).for_each(|v| *v = self.height_of_holes);
                 }
-                // What maketx writes where there is no height.
+                // The value that maketx writes if there is no height.
                 Kind::Normal => plane.fill(-1.0),
             },
             Extra::BaseVariance | Extra::Occlusion | Extra::Metalness => match &self.base {
@@ -207,8 +207,8 @@ vectorised! {
     }
 }
 
-/// Repairs every texel that the fast loops found unusable, except those that are broken, which become `broken`. `component`
-/// gives a texel's vector.
+/// Repairs every texel that the fast loops found unusable. Broken texels are set to `broken`. `component` returns a
+/// texel's vector.
 fn repair(
     bx: &mut [f32],
     by: &mut [f32],
@@ -241,19 +241,19 @@ fn neighbour(index: usize, offset: isize, size: usize, wrap: Wrap) -> usize {
     (match wrap {
         Wrap::Repeat => moved.rem_euclid(size as isize),
         Wrap::Clamp => moved.clamp(0, last),
-        // Mirrored about the edge itself, so the edge texel comes twice: a step of one stays on it.
+        // Mirroring is about the edge itself, which repeats the edge texel, so a step of one stays on it.
         Wrap::Mirror => moved.clamp(0, last),
     }) as usize
 }
 
-/// One comparison that is also false for NaN.
+/// A single comparison that is also false for NaN.
 #[inline(always)]
 fn is_usable(x: f32, y: f32, max_squared: f32) -> bool {
     x * x + y * y <= max_squared
 }
 
 vectorised! {
-    /// Number of texels in a row that `repair` would have to look at; vectorises.
+    /// Number of texels in a row that `repair` has to process; vectorises.
     fn count_unusable(bx: &[f32], by: &[f32], max_slope: f32) -> u32 {
         let max_squared = max_slope * max_slope;
         bx.iter().zip(by).map(|(x, y)| u32::from(!is_usable(*x, *y, max_squared))).sum()

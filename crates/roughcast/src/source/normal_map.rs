@@ -10,9 +10,9 @@ use crate::slope::{Slope, SourceCounts};
 use crate::vectorised::vectorised;
 use crate::{ImageView, SamplesView};
 
-/// Two-channel normals may lie a little outside the unit disc, through quantisation and block compression; their z
-/// is then zero. Further out than this (squared) they are no normals at all but an empty background, such as (0, 0)
-/// stored as unorm = (-1, -1).
+/// Quantisation and block compression can move two-channel normals slightly outside the unit disc; their z is then
+/// zero. Beyond this squared length they are not normals but an empty background, such as (0, 0) stored as unorm = (-1,
+/// -1).
 const INVALID_XY_SQUARED: f32 = 1.2;
 
 /// Marks a broken texel until it is made neutral.
@@ -34,7 +34,7 @@ pub(super) fn fill(
     counts
 }
 
-/// The same, with [`BROKEN`] for texels that are.
+/// Like [`fill`], but marks broken texels with [`BROKEN`].
 fn fill_unless_broken(
     reading: &Reading<'_>,
     x: usize,
@@ -56,7 +56,7 @@ fn fill_unless_broken(
             *z = (1.0 - x * x - y * y).max(0.0).sqrt();
         }
     }
-    // After z, which belongs to the components as they are stored.
+    // Applied after computing z, which belongs to the components as stored.
     for (plane, factor) in [&mut *nx, &mut *ny].into_iter().zip(options.normal_factors()) {
         if factor != 1.0 {
             plane.iter_mut().for_each(|value| *value *= factor);
@@ -68,14 +68,15 @@ fn fill_unless_broken(
         return SourceCounts::default();
     }
     repair(bx, by, *max_slope, BROKEN, |i| {
-        // An infinite component is no empty background: `repaired_slope` counts it as what it is.
+        // An infinite component is not an empty background: `repaired_slope` counts it as non-finite.
         let finite = nx[i].is_finite() && ny[i].is_finite();
         let outside = z_from_xy && finite && nx[i] * nx[i] + ny[i] * ny[i] > invalid_squared;
         (!outside).then_some([nx[i], ny[i], nz[i]])
     })
 }
 
-/// Gives the broken texels of a stretch the mean slope of those of their eight neighbours that are not; flat where all are.
+/// Sets each broken texel of a stretch to the mean slope of its valid neighbours among the eight; flat if none is
+/// valid.
 fn make_neutral(
     reading: &Reading<'_>,
     x: usize,
@@ -91,7 +92,7 @@ fn make_neutral(
     });
     let broken = (0..bx.len()).filter(|i| bx[*i].is_nan()).collect::<Vec<_>>();
     for i in broken {
-        // Columns i .. i + 3 of the widened rows. The texel itself is not among those that count: it is broken.
+        // Columns i .. i + 3 of the widened rows. The texel itself does not count because it is broken.
         let around = rows.iter().flat_map(|[xs, ys]| xs[i..i + 3].iter().zip(&ys[i..i + 3]));
         let valid = around.filter(|(x, _)| !x.is_nan());
         let (sum_x, sum_y, count) = valid
@@ -101,7 +102,7 @@ fn make_neutral(
     }
 }
 
-/// The slopes of a stretch of a row, x and y, with a texel on either side and [`BROKEN`] for those that are.
+/// The x and y slopes of a stretch of a row, extended by one texel on either side. Broken texels are [`BROKEN`].
 fn widened_stretch(
     reading: &Reading<'_>,
     x: usize,
@@ -121,8 +122,8 @@ fn widened_stretch(
 }
 
 vectorised! {
-    /// Slopes of normals. A z that is not above zero, or infinite, gives NaN or infinity, which no comparison with the
-    /// largest slope accepts, so that one test afterwards finds every unusable texel.
+    /// Slopes of normals. If z is infinite or not above zero, the result is NaN or infinite and fails any comparison
+    /// with the maximum slope, so a single test afterwards finds every unusable texel.
     fn divide_by_z(nx: &[f32], ny: &[f32], nz: &[f32], bx: &mut [f32], by: &mut [f32]) {
         let n = nx.len();
         let (ny, nz, bx, by) = (&ny[..n], &nz[..n], &mut bx[..n], &mut by[..n]);
@@ -158,8 +159,8 @@ fn load_components(
     }
 }
 
-// Twice the code less the full code is a whole number, so the quotient is rounded once, and opposite codes give
-// opposite numbers to the last bit: a map with green up and its twin with green down are one map.
+// Twice the code minus the full code is an integer, so the quotient is rounded only once, and opposite codes give
+// opposite numbers to the last bit. A map with green up and its counterpart with green down therefore read the same.
 
 #[inline(always)]
 fn signed8(sample: u8) -> f32 {
@@ -171,7 +172,7 @@ fn signed16(sample: u16) -> f32 {
     (2.0 * f32::from(sample) - 65535.0) / 65535.0
 }
 
-/// Where the components of a texel are.
+/// Positions of the components in a texel.
 #[derive(Clone, Copy)]
 struct Split {
     channels: usize,
@@ -201,7 +202,7 @@ impl Split {
         nz: &mut [f32],
         value: impl Fn(T) -> f32,
     ) {
-        // The common strides as constants, so that the loops over them vectorise.
+        // The common strides are constants so that the loops vectorise.
         match (self.order, self.channels) {
             (NormalChannels::Xyz, 3) => split_xyz::<T, 3>(texels, nx, ny, nz, value),
             (NormalChannels::Xyz, 4) => split_xyz::<T, 4>(texels, nx, ny, nz, value),
@@ -210,7 +211,7 @@ impl Split {
                 for (i, texel) in texels.chunks_exact(channels).enumerate() {
                     nx[i] = value(texel[x_at]);
                     ny[i] = value(texel[y_at]);
-                    // Two-channel normals get their z from x and y afterwards.
+                    // z of two-channel normals is computed from x and y later.
                     nz[i] = z_at.map_or(0.0, |z_at| value(texel[z_at]));
                 }
             }

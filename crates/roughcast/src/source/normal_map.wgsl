@@ -1,9 +1,9 @@
 // Slopes from normal maps. Twin of normal_map.rs.
 
-// Two-channel normals further outside the unit disc than this (squared) are an empty background.
+// Two-channel normals whose squared length exceeds this are an empty background.
 const INVALID_XY_SQUARED: f32 = 1.2;
 
-// A component stored as an integer code in 0 ..= steps, which stand for -1 ..= 1.
+// A component from an integer code in 0 ..= steps, which maps to -1 ..= 1.
 fn component_from_code(code: f32, steps: f32) -> f32 {
     return quotient(2.0 * code - steps, steps);
 }
@@ -26,7 +26,7 @@ fn repaired_slope_from_normal(normal: vec3f, max_slope: f32) -> RepairedSlope {
     return repaired_slope(normal, max_slope);
 }
 
-// The slope of a two-channel normal, whose x and y are multiplied by the factors once z is known.
+// The slope of a two-channel normal. x and y are multiplied by the factors after computing z.
 fn repaired_slope_from_normal_xy(normal_xy: vec2f, factors: vec2f, max_slope: f32) -> RepairedSlope {
     let squares = rounded2(normal_xy * normal_xy);
     let finite = is_finite(normal_xy.x) & is_finite(normal_xy.y);

@@ -1,10 +1,10 @@
-//! A plane of values at another size: an exact area average along an axis that shrinks, linear interpolation between texel
-//! centres along one that grows.
+//! Resizes a plane of values: exact area average along an axis that shrinks, linear interpolation between texel centres
+//! along an axis that grows.
 
 use crate::convention::Wrap;
 use crate::parallel;
 
-/// `plane`, `from.0` values in each of `from.1` rows, at the size `to`. The weights of each value sum to one.
+/// Resizes `plane`, `from.0` values in each of `from.1` rows, to the size `to`. The weights of each value sum to one.
 pub(crate) fn resized(plane: &[f32], from: (usize, usize), to: (usize, usize), wrap: Wrap) -> Vec<f32> {
     assert_eq!(plane.len(), from.0 * from.1, "a value for each texel");
     if from == to {
@@ -22,7 +22,7 @@ pub(crate) fn resized(plane: &[f32], from: (usize, usize), to: (usize, usize), w
     out
 }
 
-/// The texels along one axis that make a texel of the target, from `start` on, with weights that sum to one.
+/// The source texels along one axis that contribute to a target texel, from `start` on, with weights that sum to one.
 struct Taps {
     start: isize,
     weights: Vec<f64>,
@@ -31,12 +31,12 @@ struct Taps {
 }
 
 impl Taps {
-    /// For texel `index` of `target` texels that cover the same length as `source` texels.
+    /// Taps for texel `index` of `target` texels that cover the same length as `source` texels.
     fn of(index: usize, target: usize, source: usize, wrap: Wrap) -> Self {
         let ratio = source as f64 / target as f64;
         let (start, weights) = if target <= source {
             let (left, right) = (index as f64 * ratio, (index + 1) as f64 * ratio);
-            // In integers, so that an exact boundary takes no texel with a weight of rounding errors.
+            // Computed in integers, so that no texel beyond an exact boundary gets a weight from rounding errors.
             let (first, end) = (index * source / target, ((index + 1) * source).div_ceil(target));
             let covered = |texel: usize| right.min((texel + 1) as f64) - left.max(texel as f64);
             (first as isize, (first..end).map(|texel| covered(texel) / ratio).collect())

@@ -90,7 +90,8 @@ fn decode(units: Units, texel: &[f32]) -> Moments {
 fn bounds(units: Units, peaks: &Peaks) -> Bounds {
     let slope = units.error(units.slope(), peaks.component);
     let trace = units.error(units.trace(), peaks.slope * peaks.slope + 2.0 * peaks.variance);
-    // tr Σ = m - |B|²; |B| is off by at most sqrt(2) of a component, and half of the whole is one axis.
+    // tr Σ = m - |B|²; the error of |B| is at most sqrt(2) times that of a component, and the variance per axis is
+    // half the trace.
     let error = subtraction_error(trace, peaks.slope, std::f32::consts::SQRT_2 * slope);
     Bounds { slope, variance: 0.5 * error, eigenvalue: 0.5 * error }
 }

@@ -1,4 +1,4 @@
-//! What all layouts share: how quantities become stored values, and what encoding and decoding a level needs.
+//! Code shared by all layouts: the mapping of quantities to stored values, and the interface for encoding a level.
 
 use super::TextureInfo;
 use crate::SampleType;
@@ -6,9 +6,9 @@ use crate::convention::NormalRange;
 use crate::named::named_enum;
 use crate::row::{Extra, RowView};
 
-/// Turns a row of moments into the planes of stored values of all of a layout's channels.
+/// Encodes a row of moments into planes of stored values, for all channels of a layout.
 pub(crate) trait RowEncoder: Sync {
-    /// `planes` has one plane for each channel, texture after texture, each as wide as the row.
+    /// `planes` has one plane per channel, texture after texture, each as wide as the row.
     fn encode(&self, row: RowView<'_>, planes: &mut [Vec<f32>]);
 }
 
@@ -32,10 +32,10 @@ named_enum! {
     }
 }
 
-/// A filler of one for layouts with three channels: graphics hardware has no three-channel textures.
+/// A filler of one for layouts with three channels, since graphics hardware has no three-channel textures.
 pub(crate) const OPAQUE: &str = "A";
 
-/// A quantity's way into a texel: `stored = value * mul + add`.
+/// The affine map from a quantity to its stored value: `stored = value * mul + add`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Affine {
     pub mul: f32,
@@ -43,7 +43,7 @@ pub(crate) struct Affine {
 }
 
 impl Affine {
-    /// As it is.
+    /// Stores the value unchanged.
     pub const IDENTITY: Self = Self { mul: 1.0, add: 0.0 };
 
     #[inline(always)]
@@ -53,12 +53,13 @@ impl Affine {
 
     #[inline(always)]
     pub fn load(self, stored: f32) -> f32 {
-        // In f64, so that a scale that is no power of two costs no digits.
+        // In f64, so that a scale that is not a power of two loses no precision.
         ((f64::from(stored) - f64::from(self.add)) / f64::from(self.mul)) as f32
     }
 }
 
-/// How each kind of quantity is stored in a file: unsigned types need scale and bias, floats hold values as they are.
+/// How each kind of quantity is stored in a file: unsigned types need scale and bias, floats hold the values
+/// themselves.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Units {
     sample_type: SampleType,
@@ -106,7 +107,7 @@ impl Units {
         self.unsigned(self.spread_scale)
     }
 
-    /// A signed entry of a covariance's factor, over -spread_scale ..= spread_scale.
+    /// A signed entry of the factor of a covariance, over -spread_scale ..= spread_scale.
     pub fn signed_spread(self) -> Affine {
         self.signed(self.spread_scale)
     }
@@ -119,7 +120,7 @@ impl Units {
         }
     }
 
-    /// Largest number that a texel can hold as it is.
+    /// Largest number that a texel can hold without scaling.
     pub fn largest(self) -> f32 {
         match self.sample_type {
             SampleType::U8 | SampleType::U16 => 1.0,
@@ -128,14 +129,14 @@ impl Units {
         }
     }
 
-    /// Largest rounding error of a quantity with this way of storing, up to the given magnitude.
+    /// Largest rounding error of a quantity stored with this map, up to the given magnitude.
     pub fn error(self, affine: Affine, magnitude: f32) -> f32 {
-        /// Four f32 roundings on the way into a code: the square, the sum, the scale and the bias.
+        /// Four f32 roundings in encoding: the square, the sum, the scale and the bias.
         const ARITHMETIC: f32 = 2.0 * f32::EPSILON;
         let step = match self.sample_type {
             SampleType::U8 => 0.5 / 255.0 / affine.mul,
             SampleType::U16 => 0.5 / 65535.0 / affine.mul,
-            // Eleven bits; below 2^-14 the steps stay at 2^-24.
+            // Eleven significant bits; below 2^-14 the step stays at 2^-24.
             SampleType::F16 => (magnitude / 2048.0).max(0.5_f32.powi(25)),
             SampleType::F32 => magnitude * f32::EPSILON / 2.0,
         };
@@ -143,51 +144,51 @@ impl Units {
     }
 }
 
-/// What a layout's textures can be relied upon to give back. Largest absolute errors of a decoded texel against what
-/// was encoded.
+/// Error bounds of a layout's textures: maximum absolute errors of a decoded texel relative to what was encoded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Bounds {
-    /// Of each component of the mean slope.
+    /// Error of each component of the mean slope.
     pub slope: f32,
-    /// Of the variance along an axis; where the layout keeps only one number for both axes, of the one that it keeps.
+    /// Error of the variance along an axis; if the layout stores a single number for both axes, the error of that
+    /// number.
     pub variance: f32,
-    /// Of the variance along any direction, mixed term included: what the smaller eigenvalue may be off by.
+    /// Error of the variance along any direction, mixed term included, and thus of the smaller eigenvalue.
     pub eigenvalue: f32,
 }
 
 impl Bounds {
-    /// Largest Blinn-Phong exponent that the variance along the axes carries: `1 / s` must stay above its error.
+    /// Largest Blinn-Phong exponent that the variance along the axes can represent: `1 / s` must exceed its error.
     pub fn usable_specular_power(&self) -> f32 {
         1.0 / self.variance
     }
 
-    /// The same for every direction.
+    /// The same along every direction.
     pub fn usable_specular_power_any_direction(&self) -> f32 {
         1.0 / self.eigenvalue
     }
 }
 
-/// The largest magnitudes of what is stored, over all levels.
+/// The largest magnitudes of the stored quantities, over all levels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Peaks {
-    /// Of a component of the slope.
+    /// Largest component of a slope.
     pub component: f32,
-    /// Of the length of a slope.
+    /// Largest length of a slope.
     pub slope: f32,
-    /// Of a variance along an axis, base roughness included where it is folded in.
+    /// Largest variance along an axis, including the base roughness if it is folded in.
     pub variance: f32,
 }
 
 impl Peaks {
-    /// Largest second moment along an axis. Averages are never larger than the largest texel, and a base adds to all.
+    /// Largest second moment along an axis. Averages never exceed the largest texel, and a base adds to all of them.
     pub fn second(&self) -> f32 {
         self.component * self.component + self.variance
     }
 }
 
-/// Errors of a variance that is formed by subtraction, `V = M - B^2`: `e_M + 2 |B| e_B + e_B^2`.
+/// Error of a variance computed by subtraction, `V = M - B^2`: `e_M + 2 |B| e_B + e_B^2`.
 pub(crate) fn subtraction_error(moment_error: f32, slope: f32, slope_error: f32) -> f32 {
     moment_error + 2.0 * slope * slope_error + slope_error * slope_error
 }
@@ -216,5 +217,5 @@ pub(crate) fn map3(out: &mut [f32], a: &[f32], b: &[f32], c: &[f32], f: impl Fn(
     }
 }
 
-/// The unit normal averaged beside the slopes.
+/// The unit normal, averaged in addition to the slopes.
 pub(crate) const NORMAL: [Extra; 3] = [Extra::NormalX, Extra::NormalY, Extra::NormalZ];

@@ -1,6 +1,6 @@
-// How quantities become stored values, and stored values texels. Twin of codec.rs and pack.rs.
+// The mapping of quantities to stored values, and of stored values to texels. Twin of codec.rs and pack.rs.
 
-// A quantity's way into a texel: stored = value * x + y.
+// The affine map from each quantity to its stored value: stored = value * x + y.
 struct Stores {
     slope: vec2f,
     second: vec2f,
@@ -9,7 +9,7 @@ struct Stores {
     unit: vec2f,
 }
 
-// For float texels, which hold values as they are.
+// For float texels, which hold the values themselves.
 fn float_stores() -> Stores {
     let identity = vec2f(1.0, 0.0);
     return Stores(identity, identity, identity, identity, identity);
@@ -27,10 +27,10 @@ fn unsigned_stores(scale: f32) -> Stores {
     );
 }
 
-// A flat map has no slopes to scale by; slopes below this cannot be told from it.
+// A flat map has no slopes to scale by; smaller slopes are indistinguishable from it.
 const SMALLEST_SCALE: f32 = 0.0009765625;
 
-// The smallest scale that holds every slope component up to `component`, its square, and a base variance besides.
+// The smallest scale that can represent every slope component up to `component`, and its square plus a base variance.
 fn smallest_scale(component: f32, base_variance: f32) -> f32 {
     return max(square_root(rounded(component * component) + base_variance), SMALLEST_SCALE);
 }
@@ -39,12 +39,13 @@ fn stored(value: f32, affine: vec2f) -> f32 {
     return rounded(value * affine.x) + affine.y;
 }
 
-// The nearest value that an unsigned texel of `steps` + 1 codes can hold, ties to even.
+// The nearest value that an unsigned texel with `steps` + 1 codes can hold, ties to even.
 fn unorm_nearest(value: vec4f, steps: f32) -> vec4f {
     return round(clamp(value, vec4f(0.0), vec4f(1.0)) * steps) / steps;
 }
 
-// The nearest half float, ties to even: storing it cannot round a second time, whichever way a device rounds.
+// The nearest half float, ties to even, so that storing it cannot round a second time, whatever the device's rounding
+// mode.
 fn half_nearest(value: vec4f) -> vec4f {
     let bits = bitcast<vec4u>(value);
     let normal = (bits + vec4u(0x0fffu) + ((bits >> vec4u(13u)) & vec4u(1u))) & vec4u(0xffffe000u);

@@ -1,4 +1,4 @@
-//! From stored textures back to moments.
+//! Decodes stored textures into moments.
 
 use super::codec::Units;
 use super::{Layout, Part, ShapeFault, TextureArray, TextureInfo, join_layers};
@@ -9,64 +9,64 @@ use crate::{Samples, parallel};
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MomentLevel {
-    /// Texels in a row.
+    /// Number of texels per row.
     pub width: usize,
-    /// Rows.
+    /// Number of rows.
     pub height: usize,
     /// `width * height` moments. Their covariance is positive semidefinite.
     pub moments: Vec<Moments>,
 }
 
-/// Why textures do not decode.
+/// Reasons why textures cannot be decoded.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 #[non_exhaustive]
 pub enum DecodeError {
-    /// There is nothing to decode.
+    /// No textures were given.
     #[error("there are no textures: give at least one file of a layout")]
     NoFiles,
-    /// A layout of several files was given without one of them.
+    /// One of the files of a layout with several files is missing.
     #[error("the layout '{layout}' needs its '{part}' file beside the others, and it is not there")]
     MissingPart {
         /// The layout.
         layout: Layout,
-        /// The part that is not there.
+        /// The missing part.
         part: Part,
     },
-    /// A layout whose layers have files of their own was given without one of them.
+    /// One of the files of a layout whose layers have files of their own is missing.
     #[error(
         "the layout '{layout}' needs the file of its layer '{layer}' beside the others, and it is not there"
     )]
     MissingLayer {
         /// The layout.
         layout: Layout,
-        /// The name of the layer that is not there.
+        /// The name of the missing layer.
         layer: &'static str,
     },
-    /// A file belongs to another bake than the first.
+    /// A file belongs to a different bake from the first one.
     #[error("the '{part}' file belongs to another bake than the '{first}' file: bake them together again")]
     OtherSet {
-        /// The part of another bake.
+        /// The part of the other bake.
         part: Part,
         /// The part that the others are compared with.
         first: Part,
     },
-    /// The files' channels, sizes or levels are not those of the layout.
+    /// The channels, sizes or levels of the files do not match the layout.
     #[error("the textures are not those of the layout '{layout}': {fault}; bake them again")]
     Shape {
         /// The layout.
         layout: Layout,
-        /// What does not fit.
+        /// The mismatch.
         fault: ShapeFault,
     },
 }
 
-/// Decodes the files of one layout: a single one, all parts of `pbr` or of block-compressed `toksvig`, or all layers of a
-/// layout whose layers have files of their own ([`join_layers`] spares the copy that is made of these).
+/// Decodes the files of one layout: a single file, all parts of `pbr` or of block-compressed `toksvig`, or all layers
+/// of a layout whose layers have files of their own (calling [`join_layers`] first avoids a copy of these).
 ///
-/// Base roughness stays in where the files hold it; their info says so.
+/// If the files contain base roughness, so do the moments; the info of the files says so.
 ///
 /// # Errors
-/// [`DecodeError`] where a part is missing or the textures do not belong together.
+/// [`DecodeError`] if a part is missing or the textures do not belong together.
 ///
 /// ```
 /// use roughcast::texture::{Layout, decode};
@@ -102,11 +102,12 @@ pub fn decode(arrays: &[TextureArray]) -> Result<Vec<MomentLevel>, DecodeError> 
     Ok(levels.collect())
 }
 
-/// Turns the channels of a texel of all files of a layout, one after the other, into moments: any function `&[f32] -> Moments`.
+/// Decodes one texel into moments, given its channels in all files of a layout, concatenated: any function `&[f32] ->
+/// Moments`.
 pub(crate) type TexelDecoder = Box<dyn DecodesRows>;
 
-/// Decodes the texels of a row, each of this many channels, and makes their covariance positive semidefinite. By rows, since a
-/// call through a pointer for each texel takes as long as the rest.
+/// Decodes the texels of a row, each with this many channels, and makes their covariance positive semidefinite. It
+/// works on rows because an indirect call per texel would take as long as the rest.
 pub(crate) trait DecodesRows: Sync {
     fn decode_row(&self, texels: &[f32], channels: usize, row: &mut [Moments]);
 }
@@ -120,7 +121,7 @@ impl<F: Fn(&[f32]) -> Moments + Sync> DecodesRows for F {
     }
 }
 
-/// The files of one layout, one for each part that is there, in the order of [`Layout::parts`]. They fit each other.
+/// The files of one layout, one for each part present, in the order of [`Layout::parts`]. They match each other.
 pub(crate) struct Files<'a>(Vec<&'a TextureArray>);
 
 impl<'a> Files<'a> {
@@ -141,7 +142,7 @@ impl<'a> Files<'a> {
         Ok(files)
     }
 
-    /// The size and the channels of a file fit, so that decoding a texel cannot fail.
+    /// Checks that the size and the channels of a file match, so that decoding a texel cannot fail.
     fn check(&self, array: &TextureArray, layout: Layout) -> Result<(), DecodeError> {
         let fault = |fault| Err(DecodeError::Shape { layout, fault });
         let main = self.main();
@@ -160,7 +161,7 @@ impl<'a> Files<'a> {
         }
         for (layer, spec) in array.layers.iter().zip(wanted) {
             let (got, wanted) = (layer.levels[0].channels(), spec.channels.len());
-            // A block-compressed normal has lost its third channel and the filler; nothing else may be missing.
+            // A block-compressed normal has lost its third channel and the filler; no other channels may be missing.
             let short_normal = array.info.part == Part::Normal && got == 2;
             if got < wanted && !short_normal {
                 return fault(ShapeFault::ChannelCount { got, wanted });
@@ -174,7 +175,7 @@ impl<'a> Files<'a> {
         self.0[0]
     }
 
-    /// What the texels of the main file mean.
+    /// The meaning of the texels of the main file.
     pub fn main_info(&self) -> &'a TextureInfo {
         &self.main().info
     }
@@ -184,23 +185,23 @@ impl<'a> Files<'a> {
         Units::new(self.main_info(), self.main().layers[0].sample_type())
     }
 
-    /// Channels of the main file, which a texel begins with.
+    /// Number of channels of the main file, which come first in a texel.
     pub fn channels_of_main(&self) -> usize {
         channels_of(self.main())
     }
 
-    /// What the texels of a part mean, where there is one.
+    /// The meaning of the texels of a part, if it is present.
     pub fn info_of(&self, part: Part) -> Option<&'a TextureInfo> {
         self.0.iter().map(|array| &array.info).find(|info| info.part == part)
     }
 
-    /// The place of a part's first channel in a texel, where there is one.
+    /// The index of a part's first channel in a texel, if the part is present.
     pub fn channel_of(&self, part: Part) -> Option<usize> {
         let place = self.0.iter().position(|array| array.info.part == part)?;
         Some(self.0[..place].iter().map(|array| channels_of(array)).sum())
     }
 
-    /// Channels of all files.
+    /// Total number of channels of all files.
     fn channels(&self) -> usize {
         self.0.iter().map(|array| channels_of(array)).sum()
     }
@@ -225,20 +226,21 @@ impl<'a> Files<'a> {
     }
 }
 
-/// Writes the channels of one image to their places among those of all files.
+/// Writes the channels of one image to their positions among those of all files.
 struct RowLoader<'a> {
     texels: &'a mut [f32],
-    /// Channels of a texel.
+    /// Number of channels per texel.
     stride: usize,
-    /// The place of the image's first channel in a texel.
+    /// The index of the image's first channel in a texel.
     first_channel: usize,
-    /// Channels of the image.
+    /// Number of channels of the image.
     channels: usize,
 }
 
 impl RowLoader<'_> {
     fn row<T: Copy>(&mut self, samples: &[T], to_float: impl Fn(T) -> f32) {
-        // Channel by channel: of a loop over the few channels of a texel the compiler makes a call of memcpy.
+        // Channel by channel, because the compiler turns a loop over the few channels of a texel into a call of
+        // memcpy.
         for channel in 0..self.channels {
             let to = self.texels[self.first_channel + channel..].iter_mut().step_by(self.stride);
             let from = samples[channel..].iter().step_by(self.channels);
@@ -247,7 +249,7 @@ impl RowLoader<'_> {
     }
 }
 
-/// Channels of all layers of a file.
+/// Total number of channels of all layers of a file.
 fn channels_of(array: &TextureArray) -> usize {
     array.layers.iter().map(|layer| layer.levels[0].channels()).sum()
 }

@@ -1,6 +1,6 @@
-//! The meaning of a file's texels: the layout, its scales, and which roughness they contain.
+//! The meaning of a file's texels: the layout, its scales, and the roughness that they contain.
 //!
-//! KTX2 and EXR keep it as pairs of strings, DDS as the eleven reserved words of its header.
+//! KTX2 and EXR store it as pairs of strings, DDS in the eleven reserved words of its header.
 
 mod words;
 
@@ -21,13 +21,13 @@ named_enum! {
         Split = "split",
         /// The normal of the mean slope.
         Normal = "normal",
-        /// Roughness alone.
+        /// Roughness only.
         Roughness = "roughness",
         /// Occlusion, roughness and metalness, as glTF packs them.
         OcclusionRoughnessMetallic = "orm",
         /// Direction and strength of KHR_materials_anisotropy.
         Anisotropy = "anisotropy",
-        /// Toksvig's gloss factor alone.
+        /// Toksvig's gloss factor only.
         Gloss = "gloss",
         /// The width of the lobe along the x axis.
         AlphaX = "alpha-x",
@@ -36,7 +36,7 @@ named_enum! {
     }
 }
 
-/// What the texels of a file mean.
+/// The meaning of a file's texels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TextureInfo {
@@ -44,27 +44,28 @@ pub struct TextureInfo {
     pub layout: Layout,
     /// Which of its files.
     pub part: Part,
-    /// Slopes are stored over `-scale ..= scale`, second moments over `scale^2`. One in float files, which hold values as they are.
+    /// Slopes are stored over `-scale ..= scale`, second moments over `scale^2`. It is one in float files, which hold
+    /// the values themselves.
     pub scale: f32,
-    /// What a stored 1 stands for in the channels that hold the spread of slopes: a variance, in Schilling's layouts a standard
-    /// deviation. One in float files. Their key is `roughcast.variance-scale`.
+    /// The value of a stored 1 in the channels that hold the spread of slopes: a variance, or a standard deviation in
+    /// Schilling's layouts. It is one in float files. The metadata key is `roughcast.variance-scale`.
     pub spread_scale: f32,
-    /// Whether base roughness is in the second moments.
+    /// Whether the second moments include the base roughness.
     pub base: Base,
     /// Slope variance of the base roughness per axis, `alpha^2 / 2`; 0 without one, NaN where it varies over the map.
     #[cfg_attr(feature = "serde", serde(with = "nan_as_none"))]
     pub base_variance: f32,
-    /// The lobe for which the roughness is meant.
+    /// The lobe for which the roughness is intended.
     pub brdf: Brdf,
     /// How a roughness is stored.
     pub roughness_stored: RoughnessStored,
-    /// The bake that the file belongs to, where a layout consists of several files: the same number in all of them, and
-    /// another one in the files of another bake. 0 where the file stands alone.
+    /// Identifies the bake that the file belongs to, if a layout consists of several files: all of them have the same
+    /// number, and files of another bake have a different one. It is 0 if the file stands alone.
     pub set: u64,
-    /// The one layer of the part that the file contains, as an index into [`layers_of`] the whole part, where each layer has a
-    /// file of its own. `None` where the file contains all.
+    /// The single layer that the file contains, if each layer has a file of its own: an index into [`layers_of`] the
+    /// whole part. `None` if the file contains all layers.
     pub layer: Option<u8>,
-    /// What lies beyond the edge of the map.
+    /// How the map continues beyond its edge.
     pub wrap: Wrap,
     /// How floats hold the components of unit vectors; unsigned types always hold `v / 2 + 1/2`.
     pub normal_range: NormalRange,
@@ -86,16 +87,16 @@ mod nan_as_none {
     }
 }
 
-/// Why the metadata of a file could not be read.
+/// Reasons why the metadata of a file could not be read.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 #[non_exhaustive]
 pub enum InfoError {
-    /// It is not a file of ours, or its metadata was stripped.
+    /// The file was not written by this library, or its metadata was stripped.
     #[error(
         "it has no roughcast metadata ('{0}' is missing): it was not written by roughcast, or the metadata was stripped"
     )]
     Missing(&'static str),
-    /// A value makes no sense.
+    /// A value is invalid.
     #[error("its metadata '{key}' has the value '{value}', which is not valid: bake it again")]
     Invalid {
         /// The key.
@@ -121,12 +122,12 @@ const ROUGHNESS_LAYOUT: &str = "roughcast.roughness-layout";
 const SPECULAR_POWER: &str = "roughcast.specular-power";
 const CONVENTIONS: &str = "roughcast.conventions";
 
-/// For readers without this documentation; it is the same in every file and not read back.
+/// For people who read the file without this documentation; it is the same in every file and is not parsed.
 const CONVENTIONS_OF_ALL_FILES: &str = "row 0 is the top; tangent frame x right, y up, z out; slope = N.xy / N.z; second moments raw, order xx yy xy; \
      unsigned texels: slopes over -scale..scale, moments over scale^2";
 
 impl TextureInfo {
-    /// The plain meaning of a layout: unit scales, no base roughness, perceptual GGX roughness.
+    /// The default meaning of a layout: unit scales, no base roughness, perceptual GGX roughness.
     pub fn new(layout: Layout, part: Part) -> Self {
         Self {
             layout,
@@ -145,19 +146,19 @@ impl TextureInfo {
         }
     }
 
-    /// The Blinn-Phong exponent of the base roughness; `None` without one, and where it varies over the map. Toksvig's gloss
-    /// factor is for this exponent.
+    /// The Blinn-Phong exponent of the base roughness; `None` if there is none or if it varies over the map.
+    /// Toksvig's gloss factor is computed for this exponent.
     pub fn specular_power(&self) -> Option<f32> {
         (self.base_variance > 0.0).then(|| 1.0 / self.base_variance)
     }
 
-    /// The meaning of the whole part; this may be one of its layers.
+    /// The meaning of the whole part, if this is one of its layers.
     #[must_use]
     pub fn of_whole_part(&self) -> Self {
         Self { layer: None, ..*self }
     }
 
-    /// The pairs that KTX2 and EXR files keep. Floats are written so that they read back bit for bit.
+    /// The key-value pairs stored in KTX2 and EXR files. Floats are written so that they can be read back exactly.
     pub fn to_pairs(&self) -> BTreeMap<String, String> {
         let pairs = [
             (LAYOUT, self.layout.name().to_owned()),
@@ -187,10 +188,10 @@ impl TextureInfo {
             .collect()
     }
 
-    /// Reads [`TextureInfo::to_pairs`] back; keys of others are passed over.
+    /// Reads the result of [`TextureInfo::to_pairs`]; unknown keys are ignored.
     ///
     /// # Errors
-    /// [`InfoError`] where a key is missing or its value is not valid.
+    /// [`InfoError`] if a key is missing or its value is not valid.
     pub fn from_pairs(pairs: &BTreeMap<String, String>) -> Result<Self, InfoError> {
         fn value<T: std::str::FromStr>(
             pairs: &BTreeMap<String, String>,
@@ -199,7 +200,7 @@ impl TextureInfo {
             let text = pairs.get(key).ok_or(InfoError::Missing(key))?;
             text.parse().map_err(|_| InfoError::Invalid { key, value: text.clone() })
         }
-        /// The value of a key that files of earlier versions lack.
+        /// The value of a key that is missing in files of earlier versions.
         fn value_or<T: std::str::FromStr>(
             pairs: &BTreeMap<String, String>,
             key: &'static str,
@@ -225,7 +226,7 @@ impl TextureInfo {
             set,
             layer: None,
             wrap: value_or(pairs, WRAP, Wrap::Repeat)?,
-            // Before there was a choice, floats were signed.
+            // Earlier versions always stored signed floats.
             normal_range: value_or(pairs, NORMAL_RANGE, NormalRange::Signed)?,
             roughness_texture: value_or(pairs, ROUGHNESS_LAYOUT, before_there_was_a_choice(part))?,
         };
@@ -240,8 +241,8 @@ impl TextureInfo {
         Self { layer, ..read }.checked()
     }
 
-    /// All this comes from files: a scale of zero or NaN would decode into nonsense without a word, and a part that the
-    /// layout does not have would promise other channels than its decoder needs.
+    /// Validates the values, which come from files: a scale of zero or NaN would silently decode into nonsense, and a
+    /// part that the layout does not have would have other channels than its decoder needs.
     fn checked(self) -> Result<Self, InfoError> {
         if !self.layout.parts().contains(&self.part) {
             return Err(InfoError::Invalid { key: PART, value: self.part.to_string() });
@@ -250,7 +251,7 @@ impl TextureInfo {
         if let Some(layer) = self.layer.filter(|layer| usize::from(*layer) >= layers) {
             return Err(InfoError::Invalid { key: LAYER, value: layer.to_string() });
         }
-        // A part that says two things about its channels would be decoded as one and written as the other.
+        // A part with contradictory channels would be decoded in one way and written in another.
         if (self.part == Part::OcclusionRoughnessMetallic)
             != (self.roughness_texture == RoughnessTexture::Packed)
             && matches!(self.part, Part::OcclusionRoughnessMetallic | Part::Roughness)
@@ -265,11 +266,12 @@ impl TextureInfo {
                 return Err(InfoError::Invalid { key, value: value.to_string() });
             }
         }
-        // NaN is allowed: it marks a base that varies over the map.
+        // NaN is allowed: it means that the base varies over the map.
         if self.base_variance < 0.0 || self.base_variance.is_infinite() {
             return Err(InfoError::Invalid { key: BASE_VARIANCE, value: self.base_variance.to_string() });
         }
-        // Only pbr has the choice, and pairs do not name it elsewhere: DDS words that do are read like the pairs.
+        // Only pbr has the choice, and the pairs contain it for no other layout; DDS words that contain it are read
+        // like the pairs.
         let roughness_texture = if self.layout.reads_pbr_options() {
             self.roughness_texture
         } else {
@@ -279,7 +281,7 @@ impl TextureInfo {
     }
 }
 
-/// The channels of a roughness part in files of earlier versions.
+/// The channels of a roughness part in files of earlier versions, which had no choice.
 fn before_there_was_a_choice(part: Part) -> RoughnessTexture {
     match part {
         Part::OcclusionRoughnessMetallic => RoughnessTexture::Packed,

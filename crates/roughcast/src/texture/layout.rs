@@ -1,4 +1,4 @@
-//! The registry of layouts: their names, and where each is described.
+//! The registry of layouts.
 
 use super::rules::{BaseRole, BlockCompression, LayoutRules, Stores};
 use super::{
@@ -11,7 +11,7 @@ use crate::roughness::Anisotropy;
 use crate::shading::Wanted;
 
 named_enum! {
-    /// The layouts in which moments are stored, one file each in [`crate::texture`].
+    /// The layouts in which moments are stored, each implemented in a file of its own in [`crate::texture`].
     ///
     /// ```
     /// use roughcast::SampleType;
@@ -67,12 +67,12 @@ impl Layout {
         self.rules().summary()
     }
 
-    /// The parts that files of this layout can be, the main ones first.
+    /// The parts that files of this layout can contain, the main ones first.
     pub fn parts(self) -> &'static [Part] {
         self.rules().parts()
     }
 
-    /// The parts that a bake with these choices writes, the main one first.
+    /// The parts that a bake with these options writes, the main one first.
     pub fn parts_written(self, blocks: Blocks, pbr: &PbrOptions) -> Vec<Part> {
         self.rules().parts_written(blocks, pbr)
     }
@@ -82,18 +82,19 @@ impl Layout {
         self.rules().sample_types()
     }
 
-    /// The sample type to store in where nothing speaks for another.
+    /// The default sample type.
     pub fn default_sample_type(self) -> SampleType {
         self.rules().default_sample_type()
     }
 
-    /// How a renderer reads this layout's textures for what it wants; `None` for layouts with more channels than a sampler returns.
-    /// `lobe` tells whether a material has an anisotropy texture; other layouts do not care.
+    /// How a renderer reads this layout's textures, depending on what it needs; `None` for layouts with more channels
+    /// than a sampler returns. `anisotropy` tells whether a material has an anisotropy texture; other layouts ignore
+    /// it.
     pub fn texel_reader(self, wanted: Wanted, anisotropy: Anisotropy) -> Option<&'static TexelReader> {
         self.rules().texel_reader(wanted, anisotropy)
     }
 
-    /// The most channels that one texture of the layout has.
+    /// The maximum number of channels of any texture of the layout.
     pub fn most_channels(self) -> usize {
         let infos = self.parts().iter().map(|part| TextureInfo::new(self, *part));
         let channels = infos.flat_map(|info| self.rules().layers(&info)).map(|layer| layer.channels.len());
@@ -110,25 +111,24 @@ impl Layout {
         self.rules().block_compression()
     }
 
-    /// Whether [`PbrOptions`] have a meaning for the layout.
+    /// Whether [`PbrOptions`] apply to the layout.
     pub fn reads_pbr_options(self) -> bool {
         self.rules().reads_pbr_options()
     }
 
-    /// Whether the layout holds variances or standard deviations themselves.
+    /// Whether the layout stores variances or standard deviations directly.
     pub fn stores_variance(self) -> bool {
         self.rules().stores() == Stores::Variances
     }
 
-    /// Whether texels of this type hold slopes or their moments over
-    /// [`TextureInfo::scale`]. Floats hold the values themselves.
+    /// Whether texels of this type hold slopes or their moments scaled by [`TextureInfo::scale`]. Floats hold the
+    /// values themselves.
     pub fn uses_scale(self, sample_type: SampleType) -> bool {
         let is_possible = self.sample_types().contains(&sample_type);
         self.rules().stores() != Stores::Normals && !sample_type.is_float() && is_possible
     }
 
-    /// Whether texels of this type hold variances or standard deviations over
-    /// [`TextureInfo::spread_scale`].
+    /// Whether texels of this type hold variances or standard deviations scaled by [`TextureInfo::spread_scale`].
     pub fn uses_spread_scale(self, sample_type: SampleType) -> bool {
         self.stores_variance() && !sample_type.is_float()
     }

@@ -1,7 +1,7 @@
 //! LEAN mapping: mean slope and raw second moments, in two RGBA textures.
 //!
-//! Source: Olano & Baker, "LEAN Mapping", 2010, Eq. 3 to 6, Figures 15 and 16, with the listing's two faults repaired
-//! (a base roughness is added before the scale is divided out; the scale covers the second moments too).
+//! Source: Olano & Baker, "LEAN Mapping", 2010, Eq. 3 to 6, Figures 15 and 16, with two errors in the listing
+//! corrected (a base roughness is added before the scale is divided out; the scale covers the second moments too).
 //!
 //! | texture | R | G | B | A |
 //! |---|---|---|---|---|
@@ -9,10 +9,11 @@
 //! | `lean2` | B.x | B.y | Mxx | Myy |
 //!
 //! Unsigned types hold `N.xy / 2 + 1/2`, `N.z`, `Mxy / (2 sc²) + 1/2`, `B / (2 sc) + 1/2`, `Mxx / sc²`, `Myy / sc²`;
-//! float types hold the values themselves. N is the averaged unit normal, not renormalised: its length is what
-//! diffuse shading needs (Kilgard).
+//! float types hold the values themselves. N is the averaged unit normal, not renormalised: diffuse shading needs its
+//! length (Kilgard).
 //!
-//! Bounds: with a rounding of `e` in the stored code, `B` is off by `2 sc e`, `Mxx` by `sc² e`, `Mxy` by `2 sc² e`.
+//! Bounds: with a rounding error of `e` in the stored code, the error of `B` is `2 sc e`, of `Mxx` `sc² e`, of `Mxy`
+//! `2 sc² e`.
 
 use super::codec::{
     Affine, Bounds, LayerSpec, NORMAL, Peaks, RowEncoder, Units, map1, map2, map3, subtraction_error,
@@ -114,7 +115,7 @@ pub(super) fn decode(units: Units, texel: &[f32]) -> Moments {
     }
 }
 
-/// Bounds of any layout that stores B and the three raw second moments.
+/// Error bounds of any layout that stores B and the three raw second moments.
 pub(super) fn raw_moment_bounds(
     units: Units,
     peaks: &Peaks,
@@ -125,8 +126,8 @@ pub(super) fn raw_moment_bounds(
     let slope_error = units.error(slope, peaks.component);
     let second_error = units.error(second, peaks.second());
     let mixed_error = units.error(mixed, peaks.second());
-    // Along a unit vector v: vᵀ E_M v <= e_M + e_Mxy (its worst is the diagonal), and the slope's error along v is at
-    // most sqrt(2) of a component's.
+    // Along a unit vector v: vᵀ E_M v <= e_M + e_Mxy (the worst case is the diagonal), and the error of the slope
+    // along v is at most sqrt(2) times that of a component.
     let diagonal = std::f32::consts::SQRT_2 * slope_error;
     Bounds {
         slope: slope_error,

@@ -1,5 +1,6 @@
 // LEAN mapping: mean slope and raw second moments, in two RGBA textures. Twin of lean.rs.
-// Source: Olano & Baker, "LEAN Mapping", 2010, Eq. 3 to 6, Figures 15 and 16, with the listing's two faults repaired.
+// Source: Olano & Baker, "LEAN Mapping", 2010, Eq. 3 to 6, Figures 15 and 16, with two errors in the listing
+// corrected.
 
 // N.x, N.y, N.z, Mxy.
 fn lean1_from_averages(averages: Averages, stores: Stores) -> vec4f {

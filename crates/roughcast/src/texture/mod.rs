@@ -1,7 +1,7 @@
-//! Stored textures: the contents of a baked file, level by level, and what is needed to read it back.
+//! Stored textures: the contents of a baked file, level by level, and the information needed to read it back.
 //!
-//! One layout a file: its description (`rules.rs` has the questions), the encoding of moments into texels, their decoding, and
-//! the bounds of its error. [`Layout`] lists them.
+//! Each layout has one file with its description (answering the questions of `rules.rs`), the encoding of moments
+//! into texels, their decoding, and the bounds of the error. [`Layout`] lists them.
 
 mod bump_slopes;
 mod clean;
@@ -48,12 +48,12 @@ use crate::moments::Moments;
 use crate::{Image, SampleType};
 use rules::Storage;
 
-/// One texture with its levels: level 0 first, each `max(1, floor(n / 2))` of the one before, down to 1x1.
+/// A texture with its levels: level 0 first, each `max(1, floor(n / 2))` of the previous one, down to 1x1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
-    /// Its name inside the array: `lean1`, `lean2`, `normal` ...
+    /// The name of the texture inside the array: `lean1`, `lean2`, `normal` ...
     pub name: &'static str,
-    /// A name for each channel, as an EXR file stores it: `B.x`, `M.xy`, `b0_h` ...
+    /// The name of each channel, as stored in an EXR file: `B.x`, `M.xy`, `b0_h` ...
     pub channels: Vec<&'static str>,
     /// The levels. All have the same number of channels and the same sample type.
     pub levels: Vec<Image>,
@@ -72,27 +72,27 @@ impl Texture {
 /// Textures of equal sizes and equal format that go into one file, as the layers of one array texture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextureArray {
-    /// What the texels mean.
+    /// The meaning of the texels.
     pub info: TextureInfo,
-    /// The layers; at least one.
+    /// The layers, at least one.
     pub layers: Vec<Texture>,
 }
 
 impl TextureArray {
-    /// Width and height of level 0, in texels; zero where there is none.
+    /// Width and height of level 0, in texels; zero if there is no level 0.
     pub fn size(&self) -> (usize, usize) {
         let level = self.layers.first().and_then(|layer| layer.levels.first());
         level.map_or((0, 0), |level| (level.width(), level.height()))
     }
 
-    /// Number of levels of the first layer; zero where there is none.
+    /// Number of levels of the first layer; zero if there are none.
     pub fn level_count(&self) -> usize {
         self.layers.first().map_or(0, |layer| layer.levels.len())
     }
 }
 
 /// The textures of a file with this meaning, in the order of its layers. A block-compressed normal has only the first
-/// two of the channels named here.
+/// two of the channels listed here.
 pub fn layers_of(info: &TextureInfo) -> &'static [LayerSpec] {
     let all = info.layout.rules().layers(info);
     match info.layer.map(usize::from) {
@@ -101,16 +101,17 @@ pub fn layers_of(info: &TextureInfo) -> &'static [LayerSpec] {
     }
 }
 
-/// A texel of LEAN's eight channels as it was stored, with whatever storing has done to its covariance.
+/// Decodes a texel of LEAN's eight channels as stored, without repairing any damage that storage has done to its
+/// covariance.
 pub(crate) fn decode_lean_raw(info: &TextureInfo, sample_type: SampleType, texel: &[f32]) -> Moments {
     lean::decode(codec::Units::new(info, sample_type), texel)
 }
 
-/// What a file with this meaning and sample type can be relied upon to give back, where nothing stored exceeds
-/// `peaks`. Block compression adds errors of its own.
+/// Error bounds of a file with this meaning and sample type, if nothing stored exceeds `peaks`. Block compression
+/// adds errors of its own.
 ///
-/// For [`Layout::Pbr`] this is its plain form, one roughness and a normal with its z; what a bake with other options
-/// gives is in its report.
+/// For [`Layout::Pbr`] this covers the plain form, one roughness and a normal with its z; the bounds for other
+/// options are in the report of the bake.
 pub fn bounds(info: &TextureInfo, sample_type: SampleType, peaks: &Peaks) -> Bounds {
     let pbr = PbrOptions::default();
     let plain = Storage { info, sample_type, blocks: Blocks::None, pbr: &pbr };

@@ -1,11 +1,11 @@
-//! The relation of shading models and textures; the models themselves know nothing about textures.
+//! The relation between shading models and textures; the models themselves are independent of textures.
 
 use super::{Layout, TextureInfo};
 use crate::roughness::Base;
 use crate::shading::{FootprintModel, Masking, Shading, ShadingOptions};
 
 impl Shading {
-    /// The layout that the model is made for. It shades the distributions of any other as well.
+    /// The layout that the model is designed for. It can shade the distributions of any other layout as well.
     pub const fn layout(self) -> Layout {
         match self {
             Self::Phong | Self::BlinnPhong | Self::Beckmann | Self::OffCentre | Self::Lean => Layout::Lean,
@@ -18,9 +18,9 @@ impl Shading {
 }
 
 impl ShadingOptions {
-    /// The same options for textures with this meaning. Maps that hold a base roughness, or a factor of one, bring its
-    /// exponent with them. Where it varies over the map it is no longer told from the bumps: then all of the map's variance
-    /// masks, and none is taken off for the footprint, which could be the base's.
+    /// The same options for textures with this meaning. Maps that contain a base roughness, or a factor relative to
+    /// one, provide its exponent. If it varies over the map, it cannot be separated from the bumps: then all of the
+    /// map's variance causes masking, and none is subtracted for the footprint, since it could belong to the base.
     #[must_use]
     pub fn for_maps(self, info: &TextureInfo) -> Self {
         match (info.base, info.specular_power()) {

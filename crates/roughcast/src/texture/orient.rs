@@ -1,12 +1,13 @@
-//! Directions that agree with their neighbours.
+//! Gives directions signs that agree with their neighbours.
 //!
-//! KHR_materials_anisotropy stores a direction as a vector although it means an axis: v and -v are the same highlight. Where
-//! neighbouring texels hold v and -v, a texture filter finds nothing between them. So each texel, of all levels together,
-//! gets the sign by which it agrees with its neighbours, on its own level and on the coarser one.
+//! KHR_materials_anisotropy stores a direction as a vector although it means an axis: v and -v give the same
+//! highlight. If neighbouring texels hold v and -v, filtering cancels them. So every texel on every level gets the
+//! sign that agrees with its neighbours, both on its own level and on the coarser one.
 //!
-//! The signs spread along a maximum spanning tree, as those of normals do in Hoppe et al., "Surface reconstruction from
-//! unorganized points", 1992: pairs of strongly anisotropic texels whose axes are nearly parallel are joined first. Where no
-//! signs agree everywhere (half a turn around a point, as in a fingerprint), the seam thus lies where it is seen least.
+//! The signs propagate along a maximum spanning tree, as those of normals do in Hoppe et al., "Surface reconstruction
+//! from unorganized points", 1992: pairs of strongly anisotropic texels whose axes are nearly parallel are joined
+//! first. If no consistent signs exist (half a turn around a point, as in a fingerprint), the seam is therefore
+//! placed where it is least visible.
 
 use super::Texture;
 use super::codec::Affine;
@@ -14,10 +15,11 @@ use crate::convention::Wrap;
 use crate::parallel;
 use crate::{Image, Samples, SamplesMut};
 
-/// Gives the directions in the first two channels of all levels signs that agree. The third channel is their strength.
+/// Makes the signs of the directions in the first two channels agree on all levels. The third channel is their
+/// strength.
 ///
-/// Texels without strength take the direction of the texel of the coarser level, so that between them and their neighbours
-/// nothing turns.
+/// Texels with zero strength take the direction of the texel of the coarser level, so that the direction does not
+/// rotate between them and their neighbours.
 pub(crate) fn orient(texture: &mut Texture, wrap: Wrap, unit: Affine) {
     for level in (1..texture.levels.len()).rev() {
         let (finer, coarser) = texture.levels.split_at_mut(level);
@@ -39,7 +41,7 @@ fn covering((x, y): (usize, usize), coarser: (usize, usize)) -> (usize, usize) {
     ((x / 2).min(coarser.0 - 1), (y / 2).min(coarser.1 - 1))
 }
 
-/// Copies the stored direction of the coarser level where this one has none.
+/// Copies the stored direction of the coarser level to texels that have no direction.
 fn fill_from_coarser(finer: &mut Image, coarser: &Image) {
     fn fill<T: Copy>(
         finer: &mut [T],
@@ -70,7 +72,7 @@ fn fill_from_coarser(finer: &mut Image, coarser: &Image) {
     }
 }
 
-/// Turns the directions of a level round where their sign says so. Returns the node behind its last one.
+/// Flips the directions of a level according to their signs. Returns the node after its last one.
 fn turn(image: &mut Image, unit: Affine, first_node: usize, signs: &mut Signs) -> usize {
     fn each<T: Copy>(
         samples: &mut [T],
@@ -99,26 +101,26 @@ fn turn(image: &mut Image, unit: Affine, first_node: usize, signs: &mut Signs) -
     first_node + texels
 }
 
-/// A quarter of a turn, in the units of [`Graph::angles`].
+/// A quarter turn, in the units of [`Graph::angles`].
 const QUARTER: u16 = 1 << 14;
 
-/// Weights of edges go up to [`QUARTER`] times 255, 22 bits; those below these lowest bits do not count.
+/// Weights of edges go up to [`QUARTER`] times 255, which is 22 bits; this many of the lowest bits are ignored.
 const LEAST_WEIGHT_BITS: u32 = 10;
 
-/// Classes of edges, by how much it matters that their ends agree: two for each of the bits that are left.
+/// Classes of edges, by the importance of agreement between their ends: two for each of the remaining bits.
 const CLASSES: u8 = 24;
 
 /// Texels of all levels, with their neighbours.
 struct Graph {
     sizes: Vec<(usize, usize)>,
     wrap: Wrap,
-    /// Direction of each texel; 2^16 is a full turn, so that differences wrap as angles do.
+    /// Direction of each texel; 2^16 is a full turn, so that differences wrap like angles.
     angles: Vec<u16>,
-    /// Strength of each texel, 255 for 1.
+    /// Strength of each texel; 255 represents 1.
     strengths: Vec<u8>,
 }
 
-/// Where an edge of a texel leads to.
+/// The neighbour at the other end of an edge.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Edge {
     Right,
@@ -144,7 +146,7 @@ impl Graph {
                 let first = texel * channels;
                 let [x, y] = [0, 1].map(|channel| unit.load(samples.get(first + channel)));
                 let turns = y.atan2(x) / std::f32::consts::TAU;
-                // Negative angles wrap round; -1/2 and 1/2 are the same.
+                // Negative angles wrap; -1/2 and 1/2 are the same.
                 let angle = (turns * 65536.0).round() as i32 as u16;
                 (angle, (samples.get(first + 2) * 255.0).round() as u8)
             };
@@ -162,14 +164,14 @@ impl Graph {
         graph
     }
 
-    /// Whether two directions are less than a quarter turn apart, and by how much.
+    /// Whether two directions are less than a quarter turn apart, and how strongly they agree.
     fn agreement(&self, a: usize, b: usize) -> (bool, u16) {
         let apart = (self.angles[a].wrapping_sub(self.angles[b]) as i16).unsigned_abs();
         if apart <= QUARTER { (true, QUARTER - apart) } else { (false, apart - QUARTER) }
     }
 
-    /// The class of an edge: the weaker strength times the agreement of the axes, in half octaves. An edge across the border
-    /// of the map counts a quarter, so that a seam that must be lies there and not inside.
+    /// The class of an edge: the weaker strength times the agreement of the axes, in half octaves. An edge across the
+    /// border of the map counts a quarter, so that an unavoidable seam is placed there and not inside.
     fn class(&self, a: usize, b: usize, crosses_border: bool) -> u8 {
         let strength = self.strengths[a].min(self.strengths[b]);
         let weight = u32::from(self.agreement(a, b).1) * u32::from(strength);
@@ -181,8 +183,8 @@ impl Graph {
         }
     }
 
-    /// Calls `f` with the two ends of every edge whose place is wanted, in a fixed order, and with whether it crosses the border
-    /// of the map. `wanted` picks from the places of a level, three a texel.
+    /// Calls `f` with the two ends of every selected edge, in a fixed order, and with a flag for edges that cross the
+    /// border of the map. `wanted` selects among the edge slots of a level, three per texel.
     fn for_each_edge<I: Iterator<Item = usize>>(
         &self,
         wanted: impl Fn(std::ops::Range<usize>) -> I,
@@ -202,7 +204,7 @@ impl Graph {
         }
     }
 
-    /// Where an edge ends; `firsts` are the first nodes of the level and of the one behind it.
+    /// The other end of an edge; `firsts` are the first nodes of the level and of the next one.
     fn end_of(
         &self,
         edge: Edge,
@@ -226,9 +228,9 @@ impl Graph {
         }
     }
 
-    /// The signs along a maximum spanning tree (Kruskal's algorithm, with edges sorted into classes).
+    /// Computes the signs along a maximum spanning tree (Kruskal's algorithm, with edges sorted into classes).
     fn signs(&self) -> Signs {
-        /// The class of edges that lead nowhere.
+        /// The class of edges without a second end.
         const NO_EDGE: u8 = u8::MAX;
         let mut classes = vec![NO_EDGE; 3 * self.angles.len()];
         self.for_each_edge(|all| all, |place, a, b, border| classes[place] = self.class(a, b, border));
@@ -244,7 +246,7 @@ impl Graph {
         signs
     }
 
-    /// Whether the directions point left on the whole: the reference is the x axis.
+    /// Whether the directions point left on average; the reference is the x axis.
     fn points_left(&self, signs: &mut Signs) -> bool {
         let mut sum = 0.0;
         for (node, (angle, strength)) in self.angles.iter().zip(&self.strengths).enumerate() {
@@ -256,11 +258,11 @@ impl Graph {
     }
 }
 
-/// Which texels are turned round: a union-find structure whose links say whether their ends have the same sign.
+/// Which texels are flipped: a union-find structure whose links record whether their ends have the same sign.
 struct Signs {
-    /// The node that each hangs on, itself for a root; the highest bit says that it has the opposite sign.
+    /// The parent of each node, itself for a root; the highest bit means that it has the opposite sign.
     links: Vec<u32>,
-    /// All are turned round once more.
+    /// Whether all texels are flipped additionally.
     turned: bool,
 }
 
@@ -272,7 +274,8 @@ impl Signs {
         Self { links: (0..nodes.expect("images have fewer than 2^31 texels")).collect(), turned: false }
     }
 
-    /// The root that a node hangs on, with the bit that says whether it has the root's sign. Shortens the way there.
+    /// The root of a node, with the bit that says whether its sign is opposite to that of the root. Compresses the
+    /// path.
     fn find(&mut self, node: u32) -> u32 {
         let (mut root, mut sign) = (node, 0);
         while self.links[root as usize] & !OPPOSITE != root {
@@ -290,7 +293,7 @@ impl Signs {
         root | sign
     }
 
-    /// Makes two nodes agree, unless what was joined before has settled it.
+    /// Makes two nodes agree, unless earlier joins have already determined their signs.
     fn join(&mut self, a: usize, b: usize, agree: bool) {
         let (a, b) = (self.find(a as u32), self.find(b as u32));
         let (root_a, root_b) = (a & !OPPOSITE, b & !OPPOSITE);

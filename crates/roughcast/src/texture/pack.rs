@@ -1,4 +1,4 @@
-//! From planes of stored values to interleaved samples, rounded to nearest.
+//! Interleaves planes of stored values into samples, rounded to nearest.
 
 use half::f16;
 use half::slice::HalfFloatSliceExt;
@@ -6,10 +6,10 @@ use half::slice::HalfFloatSliceExt;
 use crate::vectorised::vectorised;
 
 /// 2^23: adding it to a number in 0 ..= 65535 leaves the number, rounded to nearest (ties to even), in the low bits
-/// of the float. One addition instead of a conversion with saturation, and it vectorises.
+/// of the float. This takes one addition instead of a saturating conversion, and it vectorises.
 const ROUND: f32 = 8_388_608.0;
 
-/// `value` in 0 ..= 1 as one of `steps + 1` codes; NaN and what is below 0 give 0, what is above 1 gives `steps`.
+/// `value` in 0 ..= 1 as one of `steps + 1` codes; NaN and values below 0 give 0, values above 1 give `steps`.
 #[inline(always)]
 fn code(value: f32, steps: f32) -> u32 {
     let above = if value > 0.0 { value } else { 0.0 };
@@ -38,11 +38,11 @@ vectorised! {
     }
 }
 
-/// The most channels of one texture of any layout.
+/// The maximum number of channels of a texture of any layout.
 const MOST_CHANNELS: usize = 8;
 
-/// Half floats. The conversion of slices uses the processor's own where it has one, so a block of each plane is
-/// converted in order and only then interleaved.
+/// Half floats. The slice conversion uses the processor's instructions if available, so each plane is converted block
+/// by block and then interleaved.
 pub(crate) fn half(planes: &[Vec<f32>], out: &mut [f16]) {
     const BLOCK: usize = 256;
     let channels = planes.len();
@@ -80,7 +80,7 @@ fn interleave<P: AsRef<[V]>, V: Copy, T: Copy>(planes: &[P], out: &mut [T], to: 
     }
 }
 
-/// With the number of channels known to the compiler, the loop has no inner one and no bounds to check.
+/// The number of channels is a compile-time constant, so the inner loop is unrolled and bounds checks are removed.
 #[inline(always)]
 fn interleave_n<const C: usize, P: AsRef<[V]>, V: Copy, T: Copy>(
     planes: &[P],

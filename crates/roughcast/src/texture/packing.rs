@@ -1,15 +1,16 @@
-//! How to read stored texels as a shader does: one affine map for each kind of quantity, and what the maps hold of the base roughness.
+//! How to decode stored texels as a shader does: one affine map for each kind of quantity, and whether the maps
+//! contain the base roughness.
 
 use super::TextureInfo;
 use super::codec::{Affine, Units};
 use crate::SampleType;
 use crate::roughness::{Base, RoughnessStored};
 
-/// The way from stored texels, as a sampler returns them, to values: `value = stored * scale + offset`, each pair a
-/// `[scale, offset]`. For float texels, which hold values as they are, every pair is `[1, 0]`, except for unit
-/// vectors where [`TextureInfo::normal_range`] states another range.
+/// Converts stored texels, as a sampler returns them, to values: `value = stored * scale + offset`, each pair being
+/// `[scale, offset]`. For float texels, which hold the values themselves, every pair is `[1, 0]`, except for unit
+/// vectors if [`TextureInfo::normal_range`] states another range.
 ///
-/// Filtering and these maps may change places, since both are affine.
+/// Filtering and these maps commute, since both are affine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Packing {
@@ -23,11 +24,11 @@ pub struct Packing {
     pub trace: [f32; 2],
     /// A stored variance or standard deviation.
     pub spread: [f32; 2],
-    /// The signed entry of a covariance's factor, Schilling's d2.
+    /// The signed entry of the factor of a covariance, Schilling's d2.
     pub signed_spread: [f32; 2],
-    /// A component of a unit vector. LEAN's and Schilling's `N.z` is stored as it is and needs none.
+    /// A component of a unit vector. The `N.z` of LEAN and Schilling is stored unscaled and needs none.
     pub unit: [f32; 2],
-    /// Whether the base roughness is in the maps.
+    /// Whether the maps include the base roughness.
     pub base: Base,
     /// How a material's roughness is stored.
     pub roughness_stored: RoughnessStored,
@@ -81,7 +82,7 @@ impl Packing {
 
 fn inverse(affine: Affine) -> [f32; 2] {
     let (mul, add) = (f64::from(affine.mul), f64::from(affine.add));
-    // Zero minus it, so that the offset of floats is a plain zero.
+    // Subtracted from zero, so that the offset of floats is 0 and not -0.
     [(1.0 / mul) as f32, (0.0 - add / mul) as f32]
 }
 
@@ -95,7 +96,7 @@ mod tests {
     use super::*;
     use crate::texture::{Layout, Part};
 
-    /// Two f32 roundings, of the product and of the sum, of numbers up to the full scale.
+    /// Two f32 roundings, of the product and of the sum, for numbers up to full scale.
     const ROUNDING: f32 = 2.0 * f32::EPSILON;
 
     fn info() -> TextureInfo {

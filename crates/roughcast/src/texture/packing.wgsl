@@ -1,4 +1,4 @@
-// How to read stored texels: value = stored * x + y for each kind of quantity; (1, 0) for float textures.
+// How to decode stored texels: value = stored * x + y for each kind of quantity; (1, 0) for float textures.
 // Uploaded: 64 bytes, the numbers in the order of the fields.
 
 struct Packing {
@@ -7,14 +7,14 @@ struct Packing {
     mixed: vec2f,           // Mxy
     trace: vec2f,           // Mxx + Myy
     spread: vec2f,          // a stored variance or standard deviation
-    signed_spread: vec2f,   // the signed entry of a covariance's factor
+    signed_spread: vec2f,   // the signed entry of the factor of a covariance
     unit: vec2f,            // a component of a unit vector
-    base: u32,              // MAPS_...: whether the base roughness is in the maps
+    base: u32,              // MAPS_...: whether the maps include the base roughness
     roughness_stored: u32,  // STORED_...: how a material's roughness is stored
 }
 
 const MAPS_WITHOUT_BASE: u32 = 0u;  // the base roughness is added at shading
-const MAPS_WITH_BASE: u32 = 1u;     // it is in the maps
+const MAPS_WITH_BASE: u32 = 1u;     // the maps include it
 
 const STORED_PERCEPTUAL: u32 = 0u;      // sqrt(alpha)
 const STORED_ALPHA: u32 = 1u;           // alpha

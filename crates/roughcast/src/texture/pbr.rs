@@ -1,5 +1,5 @@
-//! Textures of a physically based material: normal mips from the mean slope, and roughness mips that contain what the
-//! normals lost.
+//! Textures of a physically based material: normal mips from the mean slope, and roughness mips that contain the
+//! detail lost by the normals.
 //!
 //! | part | R | G | B | A |
 //! |---|---|---|---|---|
@@ -10,16 +10,16 @@
 //! | `anisotropy` | direction x | direction y | strength | 1 |
 //! | `alpha-x`, `alpha-y` | α along x or y | | | |
 //!
-//! The roughness is that of base and bumps together: `α² = α0² + 2σ²`. For Beckmann that is exact; for GGX, which has
-//! no finite slope variance, it is a convention; for Blinn-Phong it says `1/s' = 1/s + σ²`. Without anisotropy
-//! `2σ² = tr Σ`. With `anisotropy` the roughness is that across the bumps' main direction, and KHR_materials_anisotropy's
-//! rule `α_t = mix(α_b, 1, strength²)` gives the larger one along it. `alpha-x` and `alpha-y` are the widths along the axes of
-//! the tangent frame, without the mixed term, beside the roughness of both.
+//! The roughness combines base and bumps: `α² = α0² + 2σ²`. For Beckmann that is exact; for GGX, which has no finite
+//! slope variance, it is a convention; for Blinn-Phong it means `1/s' = 1/s + σ²`. Without anisotropy `2σ² = tr Σ`.
+//! With `anisotropy` the roughness is the one across the main direction of the bumps, and KHR_materials_anisotropy's
+//! rule `α_t = mix(α_b, 1, strength²)` gives the larger one along it. `alpha-x` and `alpha-y` are the widths along
+//! the axes of the tangent frame, without the mixed term, stored in addition to the combined roughness.
 //!
-//! Signed components are stored as `v / 2 + 1/2`, in floats only where [`TextureInfo::normal_range`] says so. In layout `g`
-//! roughness is where glTF and three.js read it, between glTF's neutral occlusion and metalness. A block-compressed normal
-//! has two channels; z follows from them. In EXR files the channels are called R, G, B, A, or Y where there is one, so that
-//! any viewer shows them.
+//! Signed components are stored as `v / 2 + 1/2`; in floats only if [`TextureInfo::normal_range`] says so. In layout
+//! `g`, roughness is in the channel where glTF and three.js read it, between neutral values of occlusion and
+//! metalness for glTF. A block-compressed normal has two channels, from which z is reconstructed. In EXR files the
+//! channels are called R, G, B, A, or Y if there is only one, so that any viewer displays them.
 
 use super::codec::{Blocks, Bounds, LayerSpec, OPAQUE, Peaks, RowEncoder, Units, map1};
 use super::decode::{Files, TexelDecoder};
@@ -38,17 +38,17 @@ use crate::shading::Wanted;
 use crate::slope::{LEAST_NORMAL_Z, Normal, Slope, normal_from_slope, slope_from_normal};
 
 named_enum! {
-    /// How `pbr` says in which direction a roughness is larger.
+    /// How `pbr` stores the direction in which the roughness is larger.
     #[non_exhaustive]
     pub enum AnisotropyOutput: "form of anisotropy" {
-        /// Direction and strength, as KHR_materials_anisotropy has them; the roughness is the one across.
+        /// Direction and strength, as in KHR_materials_anisotropy; the roughness is the one across the direction.
         Khr = "khr",
-        /// The widths of the lobe along the x and the y axis of the tangent frame, each in a file of one channel.
+        /// The widths of the lobe along the x and y axes of the tangent frame, each in a file of one channel.
         Alpha = "alpha",
     }
 }
 
-/// The choices of [`Layout::Pbr`](super::Layout::Pbr). No other layout reads them.
+/// The options of [`Layout::Pbr`](super::Layout::Pbr). Other layouts ignore them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -61,7 +61,7 @@ pub struct PbrOptions {
     pub roughness_stored: RoughnessStored,
     /// How the direction in which the roughness is larger is stored; `None` for one roughness in every direction.
     pub anisotropy: Option<AnisotropyOutput>,
-    /// The channels of the roughness.
+    /// The channel layout of the roughness.
     pub roughness_texture: RoughnessTexture,
     /// How floats hold the components of unit vectors; unsigned types always hold `v / 2 + 1/2`.
     pub normal_range: NormalRange,
@@ -75,7 +75,7 @@ setters!(PbrOptions {
 });
 
 impl Default for PbrOptions {
-    /// As glTF reads it: one perceptual roughness, in green.
+    /// The glTF convention: one perceptual roughness, in green.
     fn default() -> Self {
         Self {
             roughness_stored: RoughnessStored::Perceptual,
@@ -224,7 +224,7 @@ const ALPHA_Y_LAYERS: &[LayerSpec] = &[LayerSpec { name: "alpha-y", channels: &[
 /// Encodes the parts one after the other.
 struct Encoder {
     units: Units,
-    /// Channels of the normal texture: 4, or 2 where it will be block-compressed.
+    /// Number of channels of the normal texture: 4, or 2 if it will be block-compressed.
     normal_channels: usize,
     stored: RoughnessStored,
     anisotropy: Option<AnisotropyOutput>,
@@ -288,7 +288,7 @@ impl Encoder {
         for i in 0..row.width() {
             let covariance = Covariance { xx: row.xx[i], yy: row.yy[i], xy: row.xy[i] };
             let strength = strength_of(covariance);
-            // A round lobe has no direction; the tangent is as good as any, and compresses best.
+            // A round lobe has no direction. Any would do; the tangent compresses best.
             let direction =
                 if strength > 0.0 { covariance.main_direction() } else { Slope { x: 1.0, y: 0.0 } };
             x[i] = unit.store(direction.x);
@@ -299,7 +299,7 @@ impl Encoder {
     }
 }
 
-/// KHR_materials_anisotropy's strength: `α_t = mix(α_b, 1, strength²)` solved for it. Widths above 1 count as 1.
+/// KHR_materials_anisotropy's strength, from solving `α_t = mix(α_b, 1, strength²)`. Widths above 1 are clamped to 1.
 fn strength_of(covariance: Covariance) -> f32 {
     let (large, small) = covariance.eigenvalues();
     let along = (2.0 * large.max(0.0)).sqrt().min(1.0);
@@ -307,7 +307,7 @@ fn strength_of(covariance: Covariance) -> f32 {
     if across < 1.0 { ((along - across) / (1.0 - across)).clamp(0.0, 1.0).sqrt() } else { 0.0 }
 }
 
-/// A unit normal as stored, in two channels or more; z is never zero, so that it has a slope.
+/// Decodes a stored unit normal of two or more channels. Its z is never zero, so that it has a slope.
 pub(super) fn normal_from_stored(units: Units, texel: &[f32]) -> Normal {
     let unit = units.unit();
     let (x, y) = (unit.load(texel[0]), unit.load(texel[1]));
@@ -318,7 +318,7 @@ pub(super) fn normal_from_stored(units: Units, texel: &[f32]) -> Normal {
     Normal { x, y, z: z.max(LEAST_NORMAL_Z) }
 }
 
-/// Finds the parts' channels in a texel of all files.
+/// Locates the channels of the parts in a texel of all files.
 fn decoder(files: &Files<'_>) -> TexelDecoder {
     let (units, info) = (files.units(), *files.main_info());
     // A third channel is z; a fourth is a filler.
@@ -338,14 +338,14 @@ fn decoder(files: &Files<'_>) -> TexelDecoder {
     })
 }
 
-/// Moments of base and bumps together, from a normal's texel and the widths along the axes.
+/// Moments of base and bumps together, from a texel of the normal texture and the widths along the axes.
 fn decode_alphas(units: Units, normal: &[f32], alphas: [f32; 2]) -> Moments {
     let mean = slope_from_normal(normal_from_stored(units, normal));
     let [xx, yy] = alphas.map(|alpha| variance_from_stored(alpha, RoughnessStored::Alpha));
     Moments::from_mean_and_covariance(mean, Covariance { xx, yy, xy: 0.0 })
 }
 
-/// Moments of base and bumps together, from the parts' texels.
+/// Moments of base and bumps together, from the texels of the parts.
 fn decode(
     units: Units,
     info: &TextureInfo,

@@ -1,6 +1,6 @@
-//! The properties of a layout. The rest of the code asks these questions and never which layout it is.
+//! The properties of a layout. Other code queries these and never checks for a specific layout.
 //!
-//! Each layout answers in its own file. [`super::layout`] is the registry.
+//! Each layout implements them in its own file. [`super::layout`] is the registry.
 
 use super::codec::{Blocks, Bounds, LayerSpec, Peaks, RowEncoder, Units};
 use super::decode::{Files, TexelDecoder};
@@ -11,7 +11,7 @@ use crate::roughness::Anisotropy;
 use crate::row::Extra;
 use crate::shading::Wanted;
 
-/// A flat map has no slopes to scale by; slopes below this cannot be told from it.
+/// A flat map has no slopes to scale by; smaller slopes are indistinguishable from it.
 pub(crate) const SMALLEST_SCALE: f32 = 1.0 / 1024.0;
 
 /// The quantities that texels hold. Unsigned types hold them over ranges that [`TextureInfo`] records.
@@ -26,8 +26,8 @@ pub(crate) enum Stores {
 }
 
 impl Stores {
-    /// The smallest scale that holds every slope and every second moment that is stored. Layouts of normals record the scale that
-    /// raw moments would have, although they hold nothing over it.
+    /// The smallest scale that can represent every stored slope and second moment. Layouts of normals record the
+    /// scale that raw moments would have, although they store nothing that uses it.
     pub fn smallest_scale(self, peaks: &Peaks) -> f32 {
         let needed = match self {
             Stores::Variances => peaks.component,
@@ -40,13 +40,14 @@ impl Stores {
 /// How a layout treats the base roughness of a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum BaseRole {
-    /// The base is folded into the second moments where [`Base::Baked`](crate::texture::Base::Baked) asks for it; otherwise the
-    /// shader adds it.
+    /// The base is folded into the second moments if [`Base::Baked`](crate::texture::Base::Baked) requests it;
+    /// otherwise the shader adds it.
     OnRequest,
-    /// The base is always part of the stored roughness, and of the moments that it decodes to. Without one it is zero: a mirror.
+    /// The base is always part of the stored roughness and of the decoded moments. Without a base it is zero, as for
+    /// a mirror.
     Contained,
-    /// The layout cannot be made without a base, which it averages apart from the bumps. What it stores depends on the base, but
-    /// the moments that it decodes to do not contain it.
+    /// The layout requires a base, which is averaged separately from the bumps. The stored values depend on the base,
+    /// but the decoded moments do not contain it.
     Apart,
 }
 
@@ -56,13 +57,13 @@ pub enum BaseRole {
 pub enum BlockCompression {
     /// From 8 bits, in textures of one, two or four channels.
     FromEightBits,
-    /// The variance is a small difference of large numbers, and the errors of blocks are larger than it.
+    /// The variance is a small difference of large numbers, and the errors of block compression exceed it.
     WouldLoseVariance,
-    /// No textures for blocks are defined.
+    /// No textures for block compression are defined.
     Undefined,
 }
 
-/// How a bake stores its texels: what encoders and bounds depend on.
+/// How a bake stores its texels, as required by encoders and error bounds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Storage<'a> {
     /// The meaning of the first file.
@@ -70,7 +71,7 @@ pub(crate) struct Storage<'a> {
     pub sample_type: SampleType,
     /// Whether textures are shaped for block compression.
     pub blocks: Blocks,
-    /// The choices of `pbr`.
+    /// The options of `pbr`.
     pub pbr: &'a PbrOptions,
 }
 
@@ -79,25 +80,26 @@ impl Storage<'_> {
         Units::new(self.info, self.sample_type)
     }
 
-    /// Channels of a texture of unit normals: x and y alone where it will be block-compressed.
+    /// Number of channels of a texture of unit normals: only x and y if it will be block-compressed.
     pub fn normal_channels(&self) -> usize {
         if self.blocks == Blocks::Bc { 2 } else { 4 }
     }
 }
 
-/// All sample types, for layouts that unsigned types can hold.
+/// All sample types, for layouts that can be stored in unsigned types.
 pub(super) const ANY_TYPE: &[SampleType] =
     &[SampleType::U8, SampleType::U16, SampleType::F16, SampleType::F32];
 
-/// The sample types of layouts that hold values as they are.
+/// The sample types of layouts that can only be stored in floats.
 pub(super) const FLOATS: &[SampleType] = &[SampleType::F16, SampleType::F32];
 
-/// The rules of one layout. Where a method has a default, it is what most layouts do.
+/// The rules of one layout. The default implementation of a method, if any, fits most layouts.
 pub(crate) trait LayoutRules: Sync {
-    /// What is stored, for lists of layouts: one line without a full stop.
+    /// A description of what is stored, for lists of layouts: one line without a full stop.
     fn summary(&self) -> &'static str;
 
-    /// The number by which DDS files know the layout: 0 to 255, the next free one for a new layout, and never another.
+    /// The number that identifies the layout in DDS files: 0 to 255. A new layout takes the next unused number;
+    /// numbers never change.
     fn number(&self) -> u8;
 
     /// The quantities that texels hold.
@@ -108,7 +110,7 @@ pub(crate) trait LayoutRules: Sync {
         ANY_TYPE
     }
 
-    /// The sample type to store in where nothing speaks for another: the smallest that suits common materials.
+    /// The default sample type: the smallest that suits common materials.
     fn default_sample_type(&self) -> SampleType {
         SampleType::U16
     }
@@ -118,7 +120,7 @@ pub(crate) trait LayoutRules: Sync {
         BaseRole::OnRequest
     }
 
-    /// Whether [`PbrOptions`] have a meaning here.
+    /// Whether [`PbrOptions`] apply.
     fn reads_pbr_options(&self) -> bool {
         false
     }
@@ -128,7 +130,7 @@ pub(crate) trait LayoutRules: Sync {
         BlockCompression::Undefined
     }
 
-    /// The parts that files of this layout can be, the main ones first.
+    /// The parts that files of this layout can contain, the main ones first.
     fn parts(&self) -> &'static [Part] {
         &[Part::Whole]
     }
@@ -139,15 +141,16 @@ pub(crate) trait LayoutRules: Sync {
         vec![Part::Whole]
     }
 
-    /// A part without which these cannot be decoded.
+    /// A missing part that is required to decode the given ones.
     fn missing_part(&self, given: &[Part]) -> Option<Part> {
         given.is_empty().then(|| self.parts()[0])
     }
 
-    /// The textures of a file with this meaning, all layers of it.
+    /// All layers of a file with this meaning.
     fn layers(&self, info: &TextureInfo) -> &'static [LayerSpec];
 
-    /// The quantities that are averaged beside the moments of slopes, in the order of [`RowView`](crate::row::RowView)'s extras.
+    /// The quantities that are averaged in addition to the moments of slopes, in the order of
+    /// [`RowView`](crate::row::RowView)'s extras.
     fn extras(&self, info: &TextureInfo) -> &'static [Extra] {
         let _ = info;
         &[]
@@ -159,26 +162,26 @@ pub(crate) trait LayoutRules: Sync {
         1.0
     }
 
-    /// Turns rows of moments into the channels of all files that are written, one after the other.
+    /// Encodes rows of moments into the channels of all files that are written, concatenated.
     fn encoder(&self, storage: &Storage<'_>) -> Box<dyn RowEncoder>;
 
-    /// Changes textures of which all levels are made.
+    /// Post-processes textures once all levels have been computed.
     fn finish(&self, arrays: &mut [TextureArray]) {
         let _ = arrays;
     }
 
-    /// Turns the channels of a texel of all these files, one after the other, into moments. The files are whole: none of them is
-    /// [missing](Self::missing_part), and each has at least the channels of [`layers`](Self::layers), but for a block-compressed
-    /// normal, which has two.
+    /// Decodes a texel into moments, given its channels in all of these files, concatenated. The files are complete:
+    /// none of them is [missing](Self::missing_part), and each has at least the channels of [`layers`](Self::layers),
+    /// except for a block-compressed normal, which has two.
     fn decoder(&self, files: &Files<'_>) -> TexelDecoder;
 
-    /// How a renderer reads filtered texels of this layout for what it wants. `anisotropy` tells whether a material has an anisotropy texture.
-    /// `None` if a texture has more channels than a sampler returns.
+    /// How a renderer reads filtered texels of this layout, depending on what it needs. `anisotropy` tells whether a
+    /// material has an anisotropy texture. `None` if a texture has more channels than a sampler returns.
     fn texel_reader(&self, wanted: Wanted, anisotropy: Anisotropy) -> Option<&'static TexelReader> {
         let _ = (wanted, anisotropy);
         None
     }
 
-    /// Largest errors of what the textures give back, where nothing stored exceeds `peaks`. Block compression adds its own.
+    /// Maximum errors of the decoded textures, if nothing stored exceeds `peaks`. Block compression adds its own.
     fn bounds(&self, storage: &Storage<'_>, peaks: &Peaks) -> Bounds;
 }

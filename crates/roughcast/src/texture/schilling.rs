@@ -1,7 +1,9 @@
-//! Schilling's bump and roughness pyramids: mean slope and a factor of the covariance, or its larger standard deviation.
+//! Schilling's bump and roughness pyramids: mean slope and a factor of the covariance, or its larger standard
+//! deviation.
 //!
 //! Source: Schilling, "Antialiasing of Bump-Maps", 1997, "The roughness pyramid". `K = D Dᵀ` with D upper triangular,
-//! so the stored numbers are standard deviations, of even accuracy over their range, and D is what filters an environment map.
+//! so the stored numbers are standard deviations with uniform precision over their range, and D can be used to filter
+//! an environment map.
 //!
 //! `schilling`, two textures:
 //!
@@ -136,7 +138,7 @@ pub struct Factor {
 }
 
 impl Factor {
-    /// The factor of a covariance that is positive semidefinite. Without variance along y only `d1` is left.
+    /// The factor of a positive semidefinite covariance. Without variance along y only `d1` is nonzero.
     #[inline(always)]
     pub fn of(covariance: Covariance) -> Self {
         let d3 = covariance.yy.max(0.0).sqrt();
@@ -186,10 +188,10 @@ fn bounds(units: Units, peaks: &Peaks) -> Bounds {
     let deviation = peaks.variance.sqrt();
     let unsigned = units.error(units.spread(), deviation);
     let signed = units.error(units.signed_spread(), deviation);
-    // (d + e)² - d² for each square of a sum; xx has two of them, and |(d1, d2)| is the standard deviation itself.
+    // (d + e)² - d² for each square in a sum; xx has two of them, and |(d1, d2)| is the standard deviation itself.
     let length = unsigned.hypot(signed);
     let variance = 2.0 * deviation * length + length * length;
-    // D is off by a matrix whose norm is at most its Frobenius norm.
+    // The error of D is a matrix whose norm is at most its Frobenius norm.
     let norm = (2.0 * unsigned * unsigned + signed * signed).sqrt();
     let largest = std::f32::consts::SQRT_2 * deviation;
     Bounds {

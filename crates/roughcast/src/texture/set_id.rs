@@ -1,13 +1,13 @@
-//! The number by which the files of one bake know each other.
+//! The number that identifies the files of one bake.
 
 use crate::Samples;
 
 use super::TextureArray;
 
-/// A number for textures that belong together, made from their texels: the same textures give the same number on every
-/// machine. Never 0, which stands for no set.
+/// A number for textures that belong together, computed from their texels: the same textures give the same number on
+/// every machine. It is never 0, which means no set.
 ///
-/// It tells the parts of one bake from those of another, whose files have the same names; it is no protection
+/// It distinguishes the parts of one bake from those of another, whose files have the same names; it does not protect
 /// against forgery.
 pub(crate) fn set_id(arrays: &[TextureArray]) -> u64 {
     let mut hash = Hash(arrays.len() as u64);
@@ -31,13 +31,14 @@ pub(crate) fn set_id(arrays: &[TextureArray]) -> u64 {
     hash.finish()
 }
 
-/// A multiplicative hash over words of 64 bits: exclusive or, multiplication by an odd number, rotation.
+/// A multiplicative hash over 64-bit words: exclusive or, multiplication by an odd number, rotation.
 struct Hash(u64);
 
 impl Hash {
-    /// 2^64 over the golden ratio, made odd: Knuth's multiplicative hashing (The Art of Computer Programming, 6.4).
+    /// 2^64 divided by the golden ratio, made odd: Knuth's multiplicative hashing (The Art of Computer Programming,
+    /// 6.4).
     const MULTIPLIER: u64 = 0x9e37_79b9_7f4a_7c15;
-    /// Brings the product's high bits, which depend on all of the word, down to where the next product mixes them.
+    /// Moves the product's high bits, which depend on the whole word, down so that the next product mixes them.
     const ROTATION: u32 = 32;
 
     fn add(&mut self, word: u64) {
@@ -52,7 +53,7 @@ impl Hash {
         }
     }
 
-    /// Up to four words of 16 bits as one.
+    /// Combines up to four 16-bit words into one.
     fn add_words<T>(&mut self, words: &[T], bits: impl Fn(&T) -> u64) {
         self.add(words.iter().rev().fold(0, |all, word| all << 16 | bits(word)));
     }

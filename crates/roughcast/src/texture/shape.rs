@@ -1,9 +1,9 @@
-//! Whether textures have the shape that all code relies on.
+//! Validation of the shape of textures, which all other code relies on.
 
 use super::{DecodeError, Layout, Part, Texture, TextureArray};
 use crate::levels::level_sizes;
 
-/// Why textures are not those of their layout.
+/// Reasons why textures do not match their layout.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShapeFault {
@@ -19,13 +19,13 @@ pub enum ShapeFault {
     /// The layers of a file have different numbers of levels.
     #[error("its layers differ in number of levels")]
     LevelCounts,
-    /// There are more levels than it takes to reach 1x1.
+    /// There are more levels than needed to reach 1x1.
     #[error("'{layer}' has levels beyond 1x1")]
     TooManyLevels {
         /// The layer's name.
         layer: &'static str,
     },
-    /// A level has not the size that follows from that of level 0.
+    /// The size of a level does not follow from that of level 0.
     #[error(
         "level {level} of '{layer}' has {}x{} texels instead of {}x{}", .got.0, .got.1, .wanted.0, .wanted.1
     )]
@@ -36,10 +36,10 @@ pub enum ShapeFault {
         level: usize,
         /// Its width and height in texels.
         got: (usize, usize),
-        /// Those that it should have.
+        /// The expected width and height.
         wanted: (usize, usize),
     },
-    /// A level is stored in another way than level 0.
+    /// The format of a level differs from that of level 0.
     #[error("level {level} of '{layer}' has another sample type or number of channels")]
     LevelFormat {
         /// The layer's name.
@@ -47,13 +47,13 @@ pub enum ShapeFault {
         /// The level; 0 is the largest.
         level: usize,
     },
-    /// A file is of another layout than the first.
+    /// A file has a different layout from the first.
     #[error("one file holds '{other}'")]
     OtherLayout {
         /// The layout of that file.
         other: Layout,
     },
-    /// A file is of a part that the layout does not have.
+    /// A file contains a part that the layout does not have.
     #[error("it has no part '{part}'")]
     ForeignPart {
         /// The part.
@@ -62,26 +62,26 @@ pub enum ShapeFault {
     /// The files of a layout have different sizes or numbers of levels.
     #[error("the files differ in size or in number of levels")]
     FileSizes,
-    /// A file has not the layers of its part.
+    /// The layers of a file do not match those of its part.
     #[error("{got} layers instead of {wanted}")]
     LayerCount {
-        /// Layers that it has.
+        /// Number of layers found.
         got: usize,
-        /// Layers of the part.
+        /// Number of layers of the part.
         wanted: usize,
     },
     /// A layer has too few channels.
     #[error("{got} channels instead of {wanted}")]
     ChannelCount {
-        /// Channels that it has.
+        /// Number of channels found.
         got: usize,
-        /// Channels of the layer.
+        /// Number of channels of the layer.
         wanted: usize,
     },
     /// Two files contain the same layer.
     #[error("a layer is there twice")]
     RepeatedLayer,
-    /// The files of a part's layers have different metadata.
+    /// The files of a part's layers have contradictory metadata.
     #[error("the files of its layers have contradictory metadata")]
     LayerInfos,
     /// The files of a part's layers have different sizes or numbers of levels.
@@ -93,11 +93,11 @@ pub enum ShapeFault {
 }
 
 impl TextureArray {
-    /// Checks that there are layers, that all have the same levels, each `max(1, floor(n / 2))` of the one before, and that the
-    /// levels of a layer have one sample type and one number of channels.
+    /// Checks that there are layers, that all have the same levels, each `max(1, floor(n / 2))` of the previous one,
+    /// and that all levels of a layer have the same sample type and number of channels.
     ///
     /// # Errors
-    /// [`DecodeError::Shape`] where they do not.
+    /// [`DecodeError::Shape`] if they do not.
     pub fn check(&self) -> Result<(), DecodeError> {
         match self.fault() {
             None => Ok(()),
@@ -126,7 +126,7 @@ impl TextureArray {
     }
 }
 
-/// The first level that has not its size, or not the format of level 0.
+/// The first level that has the wrong size, or a format different from level 0.
 fn level_fault(layer: &Texture, sizes: &[(usize, usize)]) -> Option<ShapeFault> {
     let format = (layer.levels[0].samples().sample_type(), layer.levels[0].channels());
     layer.levels.iter().zip(sizes).enumerate().find_map(|(number, (level, wanted))| {

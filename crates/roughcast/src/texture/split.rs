@@ -1,8 +1,8 @@
-//! One file a layer instead of one file with array layers, for readers that know no array textures.
+//! Splits array layers into one file per layer, for readers that do not support array textures.
 
 use super::{DecodeError, ShapeFault, Texture, TextureArray, TextureInfo, layers_of, set_id};
 
-/// Gives textures a common [`TextureInfo::set`], by which files of one bake are known, where they have none yet.
+/// Assigns a common [`TextureInfo::set`], which identifies the files of one bake, to textures that have none yet.
 pub fn mark_set(arrays: &mut [TextureArray]) {
     if arrays.iter().all(|array| array.info.set == 0) {
         let set = set_id(arrays);
@@ -10,7 +10,7 @@ pub fn mark_set(arrays: &mut [TextureArray]) {
     }
 }
 
-/// The meaning of each layer of a file, once each has a file of its own. A part of one layer stays as it is.
+/// The meaning of each layer of a file, once each has a file of its own. A part of one layer is unchanged.
 pub fn split_infos(info: &TextureInfo) -> Vec<TextureInfo> {
     let layers = layers_of(info).len();
     if layers == 1 {
@@ -19,11 +19,11 @@ pub fn split_infos(info: &TextureInfo) -> Vec<TextureInfo> {
     (0..layers as u8).map(|layer| TextureInfo { layer: Some(layer), ..*info }).collect()
 }
 
-/// Puts layers that come from files of their own back together. Arrays that have all their layers stay as they are.
+/// Joins layers that come from separate files. Arrays that have all their layers are unchanged.
 ///
 /// # Errors
-/// [`DecodeError::MissingLayer`] where a layer is missing, [`DecodeError::OtherSet`] and [`DecodeError::Shape`] where layers
-/// do not belong together.
+/// [`DecodeError::MissingLayer`] if a layer is missing, [`DecodeError::OtherSet`] and [`DecodeError::Shape`] if
+/// layers do not belong together.
 pub fn join_layers(arrays: Vec<TextureArray>) -> Result<Vec<TextureArray>, DecodeError> {
     arrays.iter().try_for_each(TextureArray::check)?;
     let (single, mut joined): (Vec<_>, Vec<_>) =
@@ -41,7 +41,7 @@ pub fn join_layers(arrays: Vec<TextureArray>) -> Result<Vec<TextureArray>, Decod
     Ok(joined)
 }
 
-/// Joins the layers of one part; there is at least one.
+/// Joins the layers of one part, of which there is at least one.
 fn join(mut layers: Vec<TextureArray>) -> Result<TextureArray, DecodeError> {
     layers.sort_by_key(|array| array.info.layer);
     let info = layers[0].info.of_whole_part();
@@ -73,7 +73,7 @@ fn join(mut layers: Vec<TextureArray>) -> Result<TextureArray, DecodeError> {
     Ok(TextureArray { info, layers: textures })
 }
 
-/// A file for each layer: the inverse of [`join_layers`].
+/// Splits arrays into one file per layer: the inverse of [`join_layers`].
 pub fn split_layers(arrays: Vec<TextureArray>) -> Vec<TextureArray> {
     let split = |array: TextureArray| {
         let infos = split_infos(&array.info);

@@ -1,7 +1,7 @@
-//! Toksvig: the averaged normal, not renormalised, and the gloss factor that its length gives.
+//! Toksvig: the averaged normal, not renormalised, and the gloss factor derived from its length.
 //!
-//! Source: the method that the LEAN paper compares with (Toksvig 2005): with L the length of the averaged normal, the
-//! variance is `(1 - L) / L` and the gloss factor `L / (L + s (1 - L))`, by which the exponent s is multiplied.
+//! Source: the method that the LEAN paper compares with (Toksvig 2005). With L the length of the averaged normal, the
+//! variance is `(1 - L) / L`, and the exponent s is multiplied by the gloss factor `L / (L + s (1 - L))`.
 //!
 //! | part | R | G | B | A |
 //! |---|---|---|---|---|
@@ -10,9 +10,9 @@
 //! | `gloss` (block-compressed) | gloss factor | | | |
 //! | `gloss` (block-compressed), s varies | gloss factor | length of N | | |
 //!
-//! Unsigned types hold `N / 2 + 1/2`. The length does not survive two-channel block compression, so there the normal
-//! is stored at unit length and the factor in a texture of its own. An s that varies over the map is averaged as 1/s; the
-//! factor alone then says nothing of the length, which stands beside it.
+//! Unsigned types hold `N / 2 + 1/2`. The length does not survive two-channel block compression, so in that case the
+//! normal is stored at unit length and the factor in a separate texture. An s that varies over the map is averaged as
+//! 1/s; the length then cannot be derived from the factor and is stored next to it.
 
 use super::codec::{Affine, Blocks, Bounds, LayerSpec, Peaks, RowEncoder, Units, map1};
 use super::decode::{Files, TexelDecoder};
@@ -73,7 +73,7 @@ impl LayoutRules for Toksvig {
     fn layers(&self, info: &TextureInfo) -> &'static [LayerSpec] {
         match info.part {
             Part::Normal => NORMAL_LAYERS,
-            // An exponent that varies does not tell what the length was.
+            // If the exponent varies, the length cannot be derived from the gloss factor.
             Part::Gloss if info.base_variance.is_nan() => GLOSS_AND_LENGTH_LAYERS,
             Part::Gloss => GLOSS_LAYERS,
             _ => LAYERS,
@@ -128,14 +128,14 @@ fn gloss_factor(length: f32, base_variance: f32) -> f32 {
     if spread > 0.0 { length * base_variance / (length * base_variance + spread) } else { 1.0 }
 }
 
-/// What is stored.
+/// The set of stored channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Form {
     /// `N.x, N.y, N.z, gloss` in one texture.
     Whole,
     /// `n.x, n.y` and `gloss` in two.
     Parts,
-    /// `n.x, n.y` and `gloss, length` in two, for an exponent that varies.
+    /// `n.x, n.y` and `gloss, length` in two, for a varying exponent.
     PartsWithLength,
 }
 
@@ -188,14 +188,13 @@ fn decode(units: Units, texel: &[f32]) -> Moments {
     Moments::from_mean_and_covariance(slope_from_normal(normal), variance)
 }
 
-/// Toksvig's variance; that of zero length is finite, since no texel is infinitely rough.
+/// Toksvig's variance. It is finite even for zero length, since no texel is infinitely rough.
 fn variance_from_length(length: f32) -> f32 {
     let length = length.clamp(f32::MIN_POSITIVE, 1.0);
     (1.0 - length) / length
 }
 
-/// The same from the block-compressed parts, where the gloss factor says what the length was, or the length stands beside
-/// it.
+/// The same from the block-compressed parts, where the length is derived from the gloss factor or stored next to it.
 fn decode_parts(units: Units, info: &TextureInfo, normal: &[f32], gloss_and_length: &[f32]) -> Moments {
     let mean = slope_from_normal(normal_from_stored(units, normal));
     let gloss = gloss_and_length[0].clamp(0.0, 1.0);
@@ -208,7 +207,7 @@ fn decode_parts(units: Units, info: &TextureInfo, normal: &[f32], gloss_and_leng
 }
 
 fn bounds(units: Units, info: &TextureInfo, peaks: &Peaks) -> Bounds {
-    // No texel is steeper than the peak, so neither N.z nor the length is below this.
+    // No texel is steeper than the peak, so neither N.z nor the length is smaller than this.
     let shortest = 1.0 / (1.0 + peaks.slope * peaks.slope).sqrt();
     let of_length = |error: f32| {
         let rest = (shortest - error).max(f32::MIN_POSITIVE);
@@ -222,11 +221,11 @@ fn bounds(units: Units, info: &TextureInfo, peaks: &Peaks) -> Bounds {
     Bounds { slope: slope_error(units, normal_channels, peaks), variance, eigenvalue: variance }
 }
 
-/// Error of a variance `V <= largest` read back from the gloss factor `g = 1 / (1 + s V)`: `dV = dg / (s g²)`.
+/// Error of a variance `V <= largest` decoded from the gloss factor `g = 1 / (1 + s V)`: `dV = dg / (s g²)`.
 fn gloss_error(units: Units, info: &TextureInfo, largest: f32) -> f32 {
     let inverse = 1.0 + largest / info.base_variance;
     let relative = units.error(Affine::IDENTITY, 1.0) * inverse;
-    // A factor that may be rounded to nothing says nothing of the variance.
+    // A factor that may be rounded to zero does not constrain the variance.
     if relative < 1.0 { info.base_variance * inverse * relative / (1.0 - relative) } else { f32::INFINITY }
 }
 
@@ -236,7 +235,7 @@ mod tests {
 
     #[test]
     fn the_gloss_factor_scales_the_exponent_by_the_added_variance() {
-        const ROUNDING: f32 = 1e-5; // f32 rounding, relative, where 1 - L has lost digits
+        const ROUNDING: f32 = 1e-5; // relative f32 rounding error, where 1 - L has lost digits
         for (length, s) in [(0.9_f32, 10.0_f32), (0.5, 100.0), (0.999, 13777.0)] {
             let factor = gloss_factor(length, 1.0 / s);
             let added = (1.0 - length) / length;

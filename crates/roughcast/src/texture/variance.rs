@@ -1,7 +1,9 @@
-//! Mean slope and the variance along each axis, made of the float pyramid: nothing is subtracted at shading, so eight
-//! bits go far; the price is that hardware interpolates variances between texels as if they were linear.
+//! Mean slope and the variance along each axis, computed from the float pyramid.
 //!
-//! Source: the way out that "Shiny and CLEAN" names for eight-bit textures.
+//! Nothing is subtracted during shading, so eight bits are often enough; the price is that hardware interpolates
+//! variances between texels as if they were linear.
+//!
+//! Source: the alternative that "Shiny and CLEAN" suggests for eight-bit textures.
 //!
 //! | R | G | B | A |
 //! |---|---|---|---|

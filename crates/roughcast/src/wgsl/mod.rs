@@ -1,51 +1,54 @@
-//! The library in WGSL: twins of the Rust files that they stand beside, as modules that are put together without a preprocessor.
+//! The library in WGSL: twins of the Rust files next to them, as modules that are concatenated without a
+//! preprocessor.
 //!
-//! Functions have the names and the order of arguments of their Rust twins; a mean slope is a `vec2f`, a covariance a
-//! `vec3f` (xx, yy, xy). The modules have no entry points and no resources. Local names repeat between functions.
+//! Functions have the same names and argument order as their Rust twins; a mean slope is a `vec2f`, a covariance a
+//! `vec3f` (xx, yy, xy). The modules have no entry points and no resources. Local names are not unique across
+//! functions.
 //!
-//! - [`Role::Model`], [`Role::Companion`] and [`Role::Part`] shade: [`library`] puts together what a model needs.
-//! - [`Role::Detail`] are sources of bumps, which need some functions of their host; each file says which.
-//! - [`Role::Bake`] are the rules of baking, for a host with bindings and entry points.
+//! - [`Role::Model`], [`Role::Companion`] and [`Role::Part`] are for shading: [`library`] assembles what a model
+//!   needs.
+//! - [`Role::Detail`] modules are sources of bumps, which call some functions of their host; each file lists them.
+//! - [`Role::Bake`] modules implement the arithmetic of baking, for a host with bindings and entry points.
 
 mod modules;
 
 use crate::UnknownName;
 pub use modules::MODULES;
 
-/// A piece of the library.
+/// A module of the library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Module {
-    /// Its name: of a model, the one that the command line uses.
+    /// The name of the module; for a model, the one used on the command line.
     pub name: &'static str,
     /// The code.
     pub source: &'static str,
-    /// The modules that it uses directly. They come before it in [`MODULES`].
+    /// The modules that it uses directly. They precede it in [`MODULES`].
     pub needs: &'static [&'static str],
-    /// What it is, in a line.
+    /// A one-line description.
     pub summary: &'static str,
     /// The paper that it implements.
     pub citation: &'static str,
-    /// Whether it is for users to call, or only a part of others.
+    /// Whether it is meant to be called by users or is only part of other modules.
     pub role: Role,
 }
 
-/// What a module is for.
+/// The purpose of a module.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Role {
     /// A shading model.
     Model,
-    /// Functions beside the models.
+    /// Functions used together with the models.
     Companion,
-    /// What others are made of.
+    /// A building block of other modules.
     Part,
-    /// A source of bumps, which needs functions of its host.
+    /// A source of bumps, which calls functions of its host.
     Detail,
     /// The arithmetic of baking, rounded as on the CPU.
     Bake,
 }
 
-/// The conventions of all modules, a sentence a line.
+/// The conventions of all modules, one sentence per line.
 pub const CONVENTIONS: &[&str] = &[
     "Directions are unit vectors in the tangent frame of the surface: x right (growing u), y up, z the surface normal.",
     "A slope is (N.x / N.z, N.y / N.z). Second moments and covariances are in the order xx, yy, xy, and have no unit.",
@@ -57,7 +60,7 @@ pub const CONVENTIONS: &[&str] = &[
     "No lobe is NaN or infinite for texels that filtering can give and specular powers from 1 to 100000.",
 ];
 
-/// The module of this name.
+/// The module with this name.
 ///
 /// # Errors
 /// [`UnknownName`] if there is none.
@@ -69,10 +72,10 @@ pub fn module(name: &str) -> Result<&'static Module, UnknownName> {
     })
 }
 
-/// The modules of these names and all that they need, each once, in the order of [`MODULES`].
+/// The modules with these names and all their dependencies, each once, in the order of [`MODULES`].
 ///
 /// # Errors
-/// [`UnknownName`] if one of the names is of no module.
+/// [`UnknownName`] if there is no module with one of the names.
 pub fn modules(names: &[&str]) -> Result<Vec<&'static Module>, UnknownName> {
     let mut wanted = names.iter().map(|name| module(name)).collect::<Result<Vec<_>, _>>()?;
     let mut next = 0;
@@ -88,22 +91,22 @@ pub fn modules(names: &[&str]) -> Result<Vec<&'static Module>, UnknownName> {
     Ok(MODULES.iter().filter(|module| wanted.contains(module)).collect())
 }
 
-/// The source of the modules of these names with all that they need.
+/// The source of the modules with these names and all their dependencies.
 ///
 /// # Errors
-/// [`UnknownName`] if one of the names is of no module.
+/// [`UnknownName`] if there is no module with one of the names.
 pub fn library(names: &[&str]) -> Result<String, UnknownName> {
     let sources = modules(names)?.into_iter().map(|module| module.source);
     Ok(sources.collect::<Vec<_>>().join("\n"))
 }
 
-/// The source of all modules of one role, without what they need of others.
+/// The source of all modules with one role, without their dependencies on other roles.
 pub fn library_of(role: Role) -> String {
     let sources = MODULES.iter().filter(|module| module.role == role).map(|module| module.source);
     sources.collect::<Vec<_>>().join("\n")
 }
 
-/// Code in which whole words are replaced: how a host's generic names become those of a model.
+/// Replaces whole words in code; used to replace a host's generic names by those of a model.
 ///
 /// ```
 /// use roughcast::wgsl::renamed;
@@ -115,7 +118,7 @@ pub fn renamed(code: &str, names: &[(&str, &str)]) -> String {
     map_words(code, |word, _| names.iter().find(|(from, _)| *from == word).map(|(_, to)| (*to).to_owned()))
 }
 
-/// Code in which words are replaced by what `new` gives for them; it is also given the code that stands between this word and the last
+/// Replaces words in code by the result of `new`, which also receives the code between the previous word and this
 /// one, since a word after a single dot is a member of a struct.
 pub fn map_words(code: &str, new: impl Fn(&str, &str) -> Option<String>) -> String {
     let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
@@ -204,7 +207,7 @@ mod tests {
         ] {
             assert_eq!(words(ShadingOptions { footprint, ..default })[5], number(name));
         }
-        // A caller that leaves all choices zero has the defaults.
+        // A caller that leaves all choices zero gets the defaults.
         assert_eq!(words(default)[1..], [0; 7]);
         assert_eq!(f32::from_bits(default.to_words()[0]), default.specular_power);
     }

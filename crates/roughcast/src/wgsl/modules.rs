@@ -1,8 +1,8 @@
-//! The table of all WGSL modules, each after those that it needs.
+//! The table of all WGSL modules, each after its dependencies.
 
 use super::{Module, Role};
 
-/// Every module, each after those that it needs.
+/// Every module, each after its dependencies.
 pub const MODULES: &[Module] = &[
     Module {
         name: "exact",

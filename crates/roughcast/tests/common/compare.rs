@@ -2,20 +2,20 @@
 
 use super::level::{Level, NAMES, Plane, Texel, eigenvalues};
 
-/// One rounding of a single float, relative.
+/// Relative error of one single-float rounding.
 pub const EPS: f64 = f32::EPSILON as f64;
 
-/// What single floats may cost on the way down a pyramid.
+/// Tolerance for single-float arithmetic in a pyramid.
 ///
-/// A footprint's mean slope is off by some roundings of its rms slope (a weighted mean of numbers that are each off by
-/// a rounding of themselves), and of `floor`, the size of the numbers of which slopes are differences; its second
-/// moments by the square's share of that.
+/// A footprint's mean slope is off by some roundings of its rms slope (it is a weighted mean of rounded values) and of
+/// `floor`, the size of the values whose differences are slopes. Its second moments are off by the corresponding amount
+/// for a square.
 #[derive(Clone, Copy, Debug)]
 pub struct Rounding {
-    /// How many roundings.
+    /// The number of roundings.
     pub count: f64,
-    /// Size of the numbers that level 0 was computed of: 1 for components of a normal, the largest height for heights,
-    /// 0 where slopes were given as they are.
+    /// Size of the values that level 0 was computed from: 1 for components of a normal, the largest height for heights,
+    /// 0 if slopes were given directly.
     pub floor: f64,
 }
 
@@ -30,7 +30,8 @@ impl Rounding {
     }
 }
 
-/// Compares levels plane by plane; `tolerance` is asked for B and for M. Gives the worst error in tolerances.
+/// Compares levels plane by plane; `tolerance` returns the tolerances of B and M. Returns the worst error in
+/// tolerances.
 pub fn compare_levels(
     got: &[Level],
     wanted: &[Level],
@@ -66,12 +67,12 @@ pub fn compare_levels(
     Ok(worst)
 }
 
-/// Levels that may differ by rounding.
+/// Compares levels that may differ by rounding.
 pub fn compare_rounded(got: &[Level], wanted: &[Level], rounding: Rounding) -> Result<f64, String> {
     compare_levels(got, wanted, |texel| (rounding.slope(texel), rounding.second(texel)))
 }
 
-/// Compares one quantity on every level, with an absolute tolerance for each wanted value.
+/// Compares one quantity on every level, with an absolute tolerance for each expected value.
 pub fn compare_planes(
     got: &[Plane],
     wanted: &[Plane],
@@ -100,7 +101,7 @@ pub fn compare_planes(
     Ok(worst)
 }
 
-/// The mean of every plane is the same on every level, within `tolerance` of B and of M.
+/// Checks that the mean of every plane is the same on every level, within `tolerance` of B and of M.
 pub fn check_means(levels: &[Level], tolerance: (f64, f64)) -> Result<(), String> {
     for (plane, name) in NAMES.iter().enumerate() {
         let allowed = if plane < 2 { tolerance.0 } else { tolerance.1 };
@@ -119,7 +120,7 @@ pub fn check_means(levels: &[Level], tolerance: (f64, f64)) -> Result<(), String
     Ok(())
 }
 
-/// `M - B Bᵀ` is positive semidefinite at every texel, but for `roundings` of its second moments.
+/// Checks that `M - B Bᵀ` is positive semidefinite at every texel, within `roundings` of its second moments.
 pub fn check_semidefinite(levels: &[Level], roundings: f64) -> Result<(), String> {
     for (number, level) in levels.iter().enumerate() {
         for (index, texel) in level.texels().enumerate() {
@@ -136,7 +137,7 @@ pub fn check_semidefinite(levels: &[Level], roundings: f64) -> Result<(), String
     Ok(())
 }
 
-/// Unwraps a comparison, saying what was compared.
+/// Unwraps a comparison; a failure names what was compared.
 #[track_caller]
 pub fn expect<T>(result: Result<T, String>, what: &dyn std::fmt::Debug) -> T {
     result.unwrap_or_else(|fault| panic!("{what:?}: {fault}"))

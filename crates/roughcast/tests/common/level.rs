@@ -1,4 +1,4 @@
-//! Levels of moments in f64, from the oracle, from stored samples and from the library's decoder alike.
+//! Levels of moments in f64, whether from the oracle, from stored samples or from the library's decoder.
 
 use roughcast::texture::{MomentLevel, Texture, TextureArray};
 use roughcast::{Baked, Image};
@@ -27,7 +27,7 @@ impl Plane {
 pub struct Level {
     pub width: usize,
     pub height: usize,
-    /// As [`NAMES`] has them.
+    /// The planes, in the order of [`NAMES`].
     pub planes: [Vec<f64>; 5],
 }
 
@@ -46,7 +46,7 @@ impl Texel {
         [self.m[0] - x * x, self.m[1] - y * y, self.m[2] - x * y]
     }
 
-    /// Root mean square of the slopes of the footprint.
+    /// Root mean square slope of the footprint.
     pub fn rms(self) -> f64 {
         (self.m[0] + self.m[1]).max(0.0).sqrt()
     }
@@ -92,7 +92,7 @@ pub fn channel_of(image: &Image, channel: usize) -> Plane {
     Plane { width, height, values }
 }
 
-/// The layer of a file that has this name.
+/// The layer of a file with this name.
 pub fn layer<'a>(array: &'a TextureArray, name: &str) -> &'a Texture {
     array
         .layers
@@ -101,7 +101,7 @@ pub fn layer<'a>(array: &'a TextureArray, name: &str) -> &'a Texture {
         .unwrap_or_else(|| panic!("no layer is called {name}"))
 }
 
-/// The channel of that name of every level of a texture, as stored.
+/// The channel with this name on every level of a texture, as stored.
 pub fn stored(texture: &Texture, channel: &str) -> Vec<Plane> {
     let index = texture.channels.iter().position(|name| *name == channel);
     let index =
@@ -109,7 +109,7 @@ pub fn stored(texture: &Texture, channel: &str) -> Vec<Plane> {
     texture.levels.iter().map(|image| channel_of(image, index)).collect()
 }
 
-/// The levels of a file of the layout `moments`, as stored and untouched by the decoder.
+/// The levels of a file of the layout `moments`, as stored, without the decoder's changes.
 pub fn raw_moments(baked: &Baked) -> Vec<Level> {
     let texture = layer(&baked.arrays[0], "moments");
     let planes = NAMES.map(|name| stored(texture, name));
@@ -126,7 +126,7 @@ pub fn raw_moments(baked: &Baked) -> Vec<Level> {
 pub fn raw_lean(baked: &Baked) -> Vec<Level> {
     let sc = f64::from(baked.report.scale);
     let is_float = layer(&baked.arrays[0], "lean2").sample_type().is_float();
-    // Floats hold the values themselves.
+    // Floats hold the values directly.
     let signed = |v: f64| if is_float { v } else { 2.0 * v - 1.0 };
     let (first, second) = (layer(&baked.arrays[0], "lean1"), layer(&baked.arrays[0], "lean2"));
     let channel = |texture, name, load: &dyn Fn(f64) -> f64| -> Vec<Plane> {
@@ -150,7 +150,7 @@ pub fn raw_lean(baked: &Baked) -> Vec<Level> {
         .collect()
 }
 
-/// What the library's decoder gives.
+/// The levels as the library's decoder returns them.
 pub fn decoded(arrays: &[TextureArray]) -> Vec<Level> {
     let levels = roughcast::texture::decode(arrays).unwrap_or_else(|error| panic!("{error}"));
     levels.iter().map(from_decoded).collect()
@@ -171,7 +171,7 @@ pub fn planes(levels: &[Level], quantity: impl Fn(Texel) -> f64) -> Vec<Plane> {
     levels.iter().map(plane).collect()
 }
 
-/// The same made of several stored channels.
+/// The same, computed from several stored channels.
 pub fn combined<const N: usize>(channels: [Vec<Plane>; N], f: impl Fn([f64; N]) -> f64) -> Vec<Plane> {
     let levels = channels[0].len();
     let value = |level: usize, i: usize| f(std::array::from_fn(|k| channels[k][level].values[i]));

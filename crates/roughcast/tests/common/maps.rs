@@ -1,4 +1,4 @@
-//! Synthetic maps: slopes and heights in f64, and every way to store them.
+//! Synthetic maps: slopes and heights in f64, and all ways to store them.
 
 use half::f16;
 use roughcast::texture::RoughnessStored;
@@ -6,8 +6,8 @@ use roughcast::{
     Green, HeightSense, Image, Kind, NormalChannels, NormalRange, Red, SampleType, Samples, SourceOptions,
 };
 
-/// Sizes that exercise every path: single lines, odd and even, one and several tiles and bands of the fused pass,
-/// sizes that halve evenly for a while and then do not.
+/// Sizes that exercise every path: single lines, odd and even sizes, one and several tiles and bands of the fused pass,
+/// sizes that halve evenly for a few levels and then do not.
 pub const SIZES: [(usize, usize); 11] = [
     (1, 1),
     (1, 7),
@@ -22,7 +22,7 @@ pub const SIZES: [(usize, usize); 11] = [
     (1088, 192),
 ];
 
-/// Pseudo-random numbers (splitmix64), the same on every machine.
+/// Pseudo-random numbers (splitmix64), identical on every machine.
 pub struct Random(pub u64);
 
 impl Random {
@@ -34,19 +34,19 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// In 0 .. 1.
+    /// A number in 0 .. 1.
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// In -1 .. 1.
+    /// A number in -1 .. 1.
     pub fn signed(&mut self) -> f64 {
         2.0 * self.unit() - 1.0
     }
 }
 
-/// Slopes up to about 1.4, row by row: waves and noise, steeper along x than along y, with a mean and a correlation,
-/// so that no two of the five moments are alike.
+/// Slopes up to about 1.4, row by row: waves and noise, steeper along x than along y, with a nonzero mean and a
+/// correlation, so that all five moments are different.
 pub fn slopes(width: usize, height: usize, seed: u64) -> Vec<[f64; 2]> {
     let mut random = Random(seed);
     let mut slopes = Vec::with_capacity(width * height);
@@ -77,7 +77,7 @@ pub fn heights(width: usize, height: usize, seed: u64) -> Vec<f64> {
     heights
 }
 
-/// Samples of a type; unsigned types take 0 ..= 1.
+/// Samples of a type; unsigned types represent 0 ..= 1.
 pub fn samples(values: &[f64], sample_type: SampleType) -> Samples {
     match sample_type {
         SampleType::U8 => Samples::U8(values.iter().map(|v| (v * 255.0).round() as u8).collect()),
@@ -98,14 +98,14 @@ pub fn height_map(width: usize, height: usize, sample_type: SampleType, seed: u6
     (image(width, height, 1, samples(&values, sample_type)), options)
 }
 
-/// Slopes stored as the vectors (b.x, b.y, 1) in signed singles: level 0 reads them back to the last bit.
+/// Slopes stored as the vectors (b.x, b.y, 1) in signed single floats, which level 0 reads back exactly.
 pub fn slope_map(width: usize, height: usize, slopes: &[[f64; 2]]) -> (Image, SourceOptions) {
     let values: Vec<f64> = slopes.iter().flat_map(|[x, y]| [*x, *y, 1.0]).collect();
     let options = SourceOptions::default().with_range(NormalRange::Signed);
     (image(width, height, 3, samples(&values, SampleType::F32)), options)
 }
 
-/// Unit normals of slopes, stored as the options say, in `channels` channels. Channels without a meaning hold junk.
+/// Unit normals of slopes, stored as the options specify, in `channels` channels. Unused channels contain junk.
 pub fn normal_map(
     size: (usize, usize),
     slopes: &[[f64; 2]],
@@ -113,7 +113,7 @@ pub fn normal_map(
     options: &SourceOptions,
     channels: usize,
 ) -> Image {
-    /// Junk that would be seen if it were read.
+    /// Junk that would be noticed if it were read.
     const JUNK: f64 = 0.77;
     let mut values = vec![JUNK; slopes.len() * channels];
     for (texel, [x, y]) in values.chunks_exact_mut(channels).zip(slopes) {
@@ -141,14 +141,14 @@ pub fn normal_map(
     image(size.0, size.1, channels, samples(&values, sample_type))
 }
 
-/// An 8-bit OpenGL normal map of [`slopes`], as most maps are.
+/// An 8-bit OpenGL normal map of [`slopes`], the most common kind.
 pub fn plain_normal_map(width: usize, height: usize, seed: u64) -> (Image, SourceOptions) {
     let options = SourceOptions::default();
     let map = normal_map((width, height), &slopes(width, height, seed), SampleType::U8, &options, 3);
     (map, options)
 }
 
-/// Slopes gentle enough that no roughness exceeds 1, where the stored forms end.
+/// Slopes small enough that no roughness exceeds 1, the largest that the stored forms can represent.
 pub fn gentle_map(width: usize, height: usize) -> (Image, SourceOptions) {
     let slopes: Vec<[f64; 2]> = slopes(width, height, 31).into_iter().map(|b| b.map(|v| 0.5 * v)).collect();
     slope_map(width, height, &slopes)
@@ -161,7 +161,7 @@ pub fn material_map(width: usize, height: usize) -> Image {
     image(width, height, 3, samples(&values, SampleType::U8))
 }
 
-/// Slope variances of a roughness map, by the table of conventions.
+/// Slope variances of a roughness map, computed from the table of conventions.
 pub fn variances(image: &Image, channel: usize, stored: RoughnessStored) -> Vec<f64> {
     let variance = |r: f64| match stored {
         RoughnessStored::Perceptual => r.powi(4) / 2.0,

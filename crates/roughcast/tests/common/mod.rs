@@ -1,8 +1,8 @@
-//! What the integration tests share: maps to bake, an oracle in plain f64 arithmetic, comparators, real files.
+//! Shared by the integration tests: maps to bake, an oracle in plain f64 arithmetic, comparators, real files.
 //!
 //! The oracle shares no code with the library: it follows the papers and the documented rules, texel by texel.
 
-// Every test file is a crate of its own and uses a part of this.
+// Every test file is a separate crate and uses only some of this.
 #![allow(dead_code)]
 
 pub mod compare;
@@ -14,12 +14,12 @@ pub mod slope_oracle;
 
 use roughcast::{Bake, BakeOptions, Baked, BaseRoughness, Image, PyramidFilter, SampleType, SourceOptions};
 
-/// Bakes, where it must not fail.
+/// Bakes a map that must succeed.
 pub fn baked(image: &Image, source: &SourceOptions, options: &BakeOptions) -> Baked {
     baked_with(image, source, None, options)
 }
 
-/// Bakes with a base roughness, where it must not fail.
+/// Bakes a map that must succeed, with a base roughness.
 pub fn baked_with(
     image: &Image,
     source: &SourceOptions,
@@ -34,7 +34,7 @@ pub fn baked_with(
         .unwrap_or_else(|error| panic!("{options:?}: {error}"))
 }
 
-/// Options for a layout and a sample type, everything else as by default.
+/// Options for a layout and a sample type; everything else has its default.
 pub fn options(layout: roughcast::texture::Layout, bits: SampleType) -> BakeOptions {
     BakeOptions::default().with_layout(layout).with_sample_type(bits)
 }

@@ -1,14 +1,14 @@
-//! The pyramid in f64: explicit weights for each level, raw moments averaged by them.
+//! The pyramid in f64: explicit weights for each level, which average raw moments.
 
 use roughcast::{PyramidFilter, Wrap};
 
 use super::level::{Level, Plane};
 use super::slope_oracle::Slopes;
 
-/// The texels that make one texel of the next level, with their weights.
+/// The texels that contribute to one texel of the next level, with their weights.
 pub type Weights = Vec<(usize, f64)>;
 
-/// Weights from a line of `from` texels to the next level's `max(1, from / 2)`.
+/// Weights from a line of `from` texels to the `max(1, from / 2)` texels of the next level.
 pub fn line_weights(from: usize, filter: PyramidFilter, wrap: Wrap) -> Vec<Weights> {
     let to = if from > 1 { from / 2 } else { 1 };
     (0..to)
@@ -23,7 +23,7 @@ pub fn line_weights(from: usize, filter: PyramidFilter, wrap: Wrap) -> Vec<Weigh
         .collect()
 }
 
-/// Texel j of `to` covers `from / to` texels; in units of 1/to of a finer texel all edges are whole numbers.
+/// Texel j of `to` covers `from / to` texels; in units of 1/to of a finer texel, all edges are integers.
 fn coverage(j: usize, from: usize, to: usize) -> Weights {
     let (start, end) = (j * from, (j + 1) * from);
     (0..from)
@@ -43,8 +43,8 @@ fn smoothed_tent(t: f64) -> f64 {
     integral(&tent, t - 0.5, t + 0.5, &[-1.0, 0.0, 1.0])
 }
 
-/// The integral of a function that is a polynomial of degree five or less between knots: three-point Gauss-Legendre on
-/// each piece, which is exact there.
+/// The integral of a function that is a polynomial of degree at most five between knots, by three-point Gauss-Legendre
+/// quadrature on each piece, which is exact for it.
 fn integral(f: &dyn Fn(f64) -> f64, from: f64, to: f64, knots: &[f64]) -> f64 {
     let mut edges = vec![from];
     edges.extend(knots.iter().copied().filter(|knot| *knot > from && *knot < to));
@@ -79,7 +79,8 @@ fn kernel_weights(
     sums.into_iter().enumerate().filter(|(_, weight)| *weight > 1e-12).collect()
 }
 
-/// A texel index beyond the edge. Clamping is mirroring here: every texel has to count the same, or means would drift.
+/// Wraps a texel index beyond the edge. Clamping mirrors here: every texel needs the same total weight, or means would
+/// drift.
 fn folded(index: i64, size: usize, wrap: Wrap) -> usize {
     let size = size as i64;
     let mut index = index;
@@ -94,7 +95,7 @@ fn folded(index: i64, size: usize, wrap: Wrap) -> usize {
     index as usize
 }
 
-/// One level of one quantity from the level before.
+/// One level of one quantity, computed from the previous level.
 pub fn reduced(plane: &Plane, filter: PyramidFilter, wrap: Wrap) -> Plane {
     let columns = line_weights(plane.width, filter, wrap);
     let rows = line_weights(plane.height, filter, wrap);
@@ -152,7 +153,7 @@ pub fn bump_moments(slopes: &Slopes, filter: PyramidFilter, wrap: Wrap) -> Vec<L
     moments(slopes, &vec![0.0; slopes.texels.len()], filter, wrap)
 }
 
-/// For each level the weights by which level 0 makes each of its texels, along one side.
+/// For each level, the weights with which level 0 contributes to each of its texels, along one side.
 pub fn composed_weights(size: usize, levels: usize, filter: PyramidFilter, wrap: Wrap) -> Vec<Vec<Weights>> {
     let mut composed: Vec<Vec<Weights>> = vec![(0..size).map(|i| vec![(i, 1.0)]).collect()];
     for level in 1..levels {

@@ -1,4 +1,4 @@
-//! The real maps of the test data, by their manifests.
+//! The real maps of the test data, as listed in their manifests.
 
 use image::DynamicImage;
 use roughcast::{Image, Samples};
@@ -8,9 +8,9 @@ use roughcast::{Image, Samples};
 pub struct Entry {
     pub path: String,
     pub kind: String,
-    /// "GL (+Y) ..." or "DX (-Y) ...", where known.
+    /// "GL (+Y) ..." or "DX (-Y) ...", if known.
     pub convention: String,
-    /// Rms of the slopes, where it was measured.
+    /// Rms slope, if it was measured.
     pub slope_rms: Option<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! Slopes from pixels, in f64, straight from the documented rules.
+//! Slopes from pixels, in f64, computed directly from the documented rules.
 
 use roughcast::{
     Gradient, Green, HeightSense, Image, Kind, NormalChannels, NormalRange, Red, Samples, SourceCounts,
@@ -14,7 +14,7 @@ pub struct Slopes {
     pub counts: SourceCounts,
 }
 
-/// A sample as a number: unsigned types as 0 ..= 1, floats as they are.
+/// A sample as a number: unsigned types as 0 ..= 1, floats unchanged.
 pub fn sample(image: &Image, x: usize, y: usize, channel: usize) -> f64 {
     let index = (y * image.width() + x) * image.channels() + channel;
     match image.samples() {
@@ -45,7 +45,7 @@ pub fn slopes(image: &Image, options: &SourceOptions) -> Slopes {
     Slopes { width, height, texels: (0..read.len()).map(texel).collect(), counts }
 }
 
-/// The mean of those of a texel's eight neighbours that have a slope.
+/// The mean slope of those of a texel's eight neighbours that have one.
 fn mean_around(
     slopes: &[Option<[f64; 2]>],
     (width, height): (usize, usize),
@@ -92,7 +92,7 @@ fn slope_of_normal(
             counts.non_finite += 1;
             return None;
         }
-        // Further outside the unit disc than rounding and compression bring a normal: an empty background.
+        // Farther outside the unit disc than rounding and compression can move a normal: an empty background.
         if nx * nx + ny * ny > 1.2 {
             counts.invalid += 1;
             return None;
@@ -105,7 +105,7 @@ fn slope_of_normal(
     repaired(right * nx, up * ny, nz, options, counts)
 }
 
-/// The slope of a normal, not longer than the options allow; `None` for one that is no surface's.
+/// The slope of a normal, clamped to the length that the options allow; `None` if no surface can have the normal.
 fn repaired(x: f64, y: f64, z: f64, options: &SourceOptions, counts: &mut SourceCounts) -> Option<[f64; 2]> {
     let longest = f64::from(options.max_slope.before_a_look());
     let across = x.hypot(y);
@@ -127,14 +127,14 @@ fn repaired(x: f64, y: f64, z: f64, options: &SourceOptions, counts: &mut Source
     }
 }
 
-/// Where a row or column next to the map's edge comes from.
+/// The source index of a row or column next to the map's edge.
 fn inside(index: i64, size: usize, wrap: Wrap) -> usize {
     let size = size as i64;
     let inside = match wrap {
         Wrap::Repeat => (index + size) % size,
         Wrap::Clamp if index < 0 => 0,
         Wrap::Clamp if index >= size => size - 1,
-        // The edge is the line between two texels, so the first texel beyond it is the edge texel's image.
+        // The edge is the line between two texels, so the first texel beyond it mirrors the edge texel.
         Wrap::Mirror if index < 0 => -1 - index,
         Wrap::Mirror if index >= size => 2 * size - 1 - index,
         _ => index,
@@ -151,7 +151,7 @@ fn slope_of_height(
 ) -> Option<[f64; 2]> {
     let sense = if options.height_sense == HeightSense::WhiteDeep { -1.0 } else { 1.0 };
     let unit = sense * f64::from(options.height_scale) * image.width() as f64;
-    // Columns to the right, rows up.
+    // Columns go right, rows go up.
     let h = |right: i64, up: i64| {
         let column = inside(x as i64 + right, image.width(), options.wrap);
         let row = inside(y as i64 - up, image.height(), options.wrap);
@@ -170,7 +170,7 @@ fn slope_of_height(
             (right, up)
         }
     };
-    // A gradient may leave out its own texel, which has no height all the same.
+    // A texel without a height has no slope, even if the gradient does not read the texel itself.
     let hole = if h(0, 0).is_finite() { 0.0 } else { f64::NAN };
     repaired(-slope_right + hole, -slope_up, 1.0, options, counts)
 }

@@ -9,8 +9,8 @@ use roughcast::{Covariance, Moments, Slope};
 use super::oracle;
 use super::support::{Frame, Random, Vector, dot, narrow, normalize, scaled, sum, surface_of_texels, wide};
 
-/// Relative, of a lobe where it is above `DEEPEST` of its peak: half vector and bump normal are rounded to 6e-8, which a
-/// lobe of s = 16384 turns into `s sinθ 6e-8`, at four standard deviations 3e-5; three roundings add up.
+/// Relative tolerance for a lobe that is above `DEEPEST` of its peak: half vector and bump normal are rounded to 6e-8,
+/// which a lobe of s = 16384 amplifies to `s sinθ 6e-8`, at four standard deviations 3e-5; three roundings add up.
 const TOLERANCE: f64 = 1e-4;
 
 /// `exp(-8)`: four standard deviations from the peak.
@@ -38,8 +38,8 @@ fn options(specular_power: f32, form: Form) -> ShadingOptions {
     ShadingOptions::default().with_specular_power(specular_power).with_form(form)
 }
 
-/// The largest relative difference over many draws, where the lobe is not far below its peak. At least a hundred draws
-/// must count.
+/// The largest relative difference over many draws in which the lobe is not far below its peak. At least a hundred
+/// draws must count.
 fn largest_difference(mut draw: impl FnMut(&mut Random) -> Option<(f64, f64, f64)>) -> f64 {
     let mut random = Random(7);
     let (mut counted, mut largest) = (0, 0.0_f64);
@@ -54,7 +54,7 @@ fn largest_difference(mut draw: impl FnMut(&mut Random) -> Option<(f64, f64, f64
     largest
 }
 
-/// Of a base lobe against an oracle, which takes the slope and the half vector.
+/// The difference of a base lobe from an oracle, which is given the slope and the half vector.
 fn difference_of(shading: Shading, options: ShadingOptions, oracle: impl Fn([f64; 2], Vector) -> f64) -> f64 {
     largest_difference(|random| {
         let slope = draw_slope(random);
@@ -123,7 +123,7 @@ fn the_facets_base() {
 
 #[test]
 fn phong() {
-    /// The reflected ray turns twice as far as the normal, its rounding too.
+    /// The reflected ray turns by twice the normal's angle, and so does its rounding error.
     const REFLECTED: f64 = 2.0;
     for s in POWERS {
         let options = options(s, Form::Normalised);
@@ -142,7 +142,7 @@ fn phong() {
     }
 }
 
-/// A mean slope and a covariance of bumps, whose eigenvalues are not more than a hundred times apart.
+/// A mean slope and a covariance of bumps, whose eigenvalues differ by at most a factor of a hundred.
 fn draw_moments(random: &mut Random) -> Moments {
     let angle = random.between(0.0, std::f64::consts::PI);
     let large = 10.0_f64.powf(random.between(-4.0, -0.5));
@@ -156,7 +156,7 @@ fn draw_moments(random: &mut Random) -> Moments {
     Moments::from_mean_and_covariance(draw_slope(random), covariance)
 }
 
-/// The texels of a float file of the layout that `shading` samples, and the covariance in f64 of what they hold.
+/// The texels of a float file of the layout that `shading` samples, and in f64 the covariance that they represent.
 fn texels_of(shading: Shading, moments: Moments) -> (Vec<[f32; 4]>, [f64; 3]) {
     let Moments { mean, xx, yy, xy } = moments;
     let (x, y) = (f64::from(mean.x), f64::from(mean.y));
@@ -270,7 +270,7 @@ fn the_comparison_detects_a_slightly_wrong_lobe() {
 
 #[test]
 fn a_rounded_cosine_is_too_inaccurate() {
-    // Why the models take a tangent: the plain power in single floats fails the same test.
+    // The reason that the models use a tangent: the plain power in single floats fails the same test.
     let s = 13_777.0_f32;
     let plain = largest_difference(|random| {
         let h = Frame::SURFACE.direction([0; 2].map(|_| random.between(-4.0, 4.0) / f64::from(s).sqrt()));

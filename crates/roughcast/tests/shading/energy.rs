@@ -16,7 +16,8 @@ use roughcast::{Anisotropy, Covariance, Distribution, MAX_GAUSSIANS, WeightedGau
 use super::oracle::reflected;
 use super::support::{Frame, Vector, narrow, surface_of_texels};
 
-/// Of an integral: the quadrature of GGX's tail, which falls slowest, is good to 2e-5, single floats add as much at s = 16384.
+/// Tolerance of an integral: the quadrature of GGX's tail, which falls slowest, is accurate to 2e-5, and single floats
+/// add as much at s = 16384.
 const TOLERANCE: f64 = 1e-4;
 
 /// Rings and spokes of the quadrature.
@@ -25,10 +26,11 @@ const SPOKES: u32 = 96;
 
 const POWERS: [f32; 6] = [1.0, 8.0, 64.0, 1024.0, 13_777.0, 16_384.0];
 
-/// Integral over all directions `h` of a frame's hemisphere of `lobe(h) cosθ dω`, where θ is the angle to the frame's
+/// Integral of `lobe(h) cosθ dω` over all directions `h` of a frame's hemisphere, where θ is the angle to the frame's
 /// normal: over slopes it is `lobe cos⁴θ` times the area.
 ///
-/// Ellipses about `centre` with half axes along `axes`, from zero to infinity: their size is t / (1 - t).
+/// Integrates over ellipses about `centre` with half axes along `axes`, from zero to infinity: their size is t / (1 -
+/// t).
 fn integral(frame: &Frame, centre: [f64; 2], axes: [[f64; 2]; 2], lobe: impl Fn(Vector) -> f64) -> f64 {
     let [a, b] = axes;
     let area = (a[0] * b[1] - a[1] * b[0]).abs();
@@ -51,7 +53,7 @@ fn round(width: f64) -> [[f64; 2]; 2] {
     [[width, 0.0], [0.0, width]]
 }
 
-/// The lobe where viewer and light both look along the half vector.
+/// The lobe if viewer and light are both along the half vector.
 fn along(surface: ModelSurface, options: ShadingOptions) -> impl Fn(Vector) -> f64 {
     let surface = Surface { normal: [0.0, 0.0, 1.0], model: surface };
     move |h| f64::from(surface.lobe(narrow(h), narrow(h), &options))
@@ -117,7 +119,7 @@ fn off_centre_lobes_of_both_bases() {
     }
 }
 
-/// A bump normal, and the exponents whose lobes about it stay above the surface: what lies below is cut off.
+/// A bump normal, and the exponents whose lobes about it stay above the surface: what is below is cut off.
 fn bumps() -> [(Vector, &'static [f32]); 3] {
     [
         ([0.0, 0.0, 1.0], &POWERS),
@@ -149,7 +151,7 @@ fn phong_about_the_reflected_ray() {
     let view = [0.1, 0.2, 0.974_679_434_480_896_4];
     for (normal, powers) in bumps() {
         for s in powers {
-            // Flat bumps take any exponent only where the reflected ray is the surface normal itself.
+            // Flat bumps can have any exponent only if the reflected ray is the surface normal itself.
             let view = if *s < 512.0 || normal[2] == normal[0] { [0.0, 0.0, 1.0] } else { view };
             let options = options(*s, Form::Normalised);
             let surface = Surface {
@@ -166,7 +168,7 @@ fn phong_about_the_reflected_ray() {
 
 #[test]
 fn ggx_isotropic_and_anisotropic() {
-    // Its tail reaches the horizon whatever its width, so only a flat bump keeps all of it above the surface.
+    // The tail reaches the horizon whatever its width, so only a flat bump keeps all of it above the surface.
     for s in POWERS {
         let options = options(s, Form::Normalised);
         let lobe = ModelSurface::Ggx(ggx_surface(&flat(), &options));
@@ -239,11 +241,11 @@ fn the_integral_detects_unnormalised_lobes() {
     let surface = ModelSurface::Beckmann(beckmann_surface(&flat(), &paper));
     let width = round(1.0 / 32.0);
     assert!(!is_one(integral(&Frame::SURFACE, [0.0; 2], width, along(surface, paper))));
-    // A constant that is off by a thousandth.
+    // A constant that is off by a thousandth is detected.
     let normalised = options(1024.0, Form::Normalised);
     let lobe = along(surface, normalised);
     assert!(!is_one(integral(&Frame::SURFACE, [0.0; 2], width, |h| 1.001 * lobe(h))));
-    // Blinn-Phong with Beckmann's constant: off by 2 / s.
+    // Blinn-Phong with Beckmann's constant is off by 2 / s.
     let surface = ModelSurface::BlinnPhong(blinn_phong_surface(&flat(), &normalised));
     let lobe = along(surface, normalised);
     assert!(!is_one(integral(&Frame::SURFACE, [0.0; 2], width, |h| 1024.0 / 1026.0 * lobe(h))));
@@ -266,7 +268,7 @@ fn every_reader_samples_textures_of_its_layout() {
         }
     }
     assert!(readers > 10, "{readers}");
-    // Every model can shade the layout that it is made for.
+    // Every model can shade the layout that was designed for it.
     for shading in Shading::ALL {
         assert!(
             shading.layout().texel_reader(shading.wanted(), Anisotropy::Isotropic).is_some(),
@@ -275,7 +277,7 @@ fn every_reader_samples_textures_of_its_layout() {
     }
 }
 
-/// Gaussians; the first few of them, with new weights, make a mixture.
+/// Gaussians; the first few of them, with new weights, form a mixture.
 fn parts(count: usize) -> Vec<WeightedGaussian> {
     let all = [
         (0.5, [0.1, -0.2], [0.02, 0.01, 0.005]),
@@ -308,7 +310,7 @@ fn mixtures_of_one_to_four_gaussians() {
 
 #[test]
 fn the_lobe_of_a_mixture_is_the_weighted_sum_of_its_gaussians() {
-    /// Of the sum: four products and their sum in single floats.
+    /// Tolerance of the sum: four products and their sum in single floats.
     const ROUNDING: f64 = 1e-6;
     for form in Form::ALL {
         let options = options(64.0, *form);

@@ -1,4 +1,4 @@
-//! Footprint correction: what a pixel sees of the variance under a texture filter.
+//! Footprint correction: how much of the variance under a texture filter a pixel sees.
 
 use roughcast::shading::{
     FilterVariances, FootprintModel, FootprintRatio, ModelSurface, PixelPart, Shading, ShadingOptions,
@@ -16,15 +16,15 @@ fn close(a: f32, b: f64) -> bool {
     (f64::from(a) - b).abs() <= ROUNDING * b.abs().max(1e-3)
 }
 
-/// The variance about a point of the weights that trilinear interpolation between levels `l` and `l + 1` gives to the texels
-/// of level 0, averaged over the place of the point: by summing up weights.
+/// The variance, about a point, of the weights that trilinear interpolation between levels `l` and `l + 1` gives to the
+/// texels of level 0, averaged over the point's position: computed by summing weights.
 fn variance_of_weights(level: i32, blend: f64) -> f64 {
     const PLACES: u32 = 512;
     let of_level = |level: i32| {
         let side = 2.0_f64.powi(level);
         let mut total = 0.0;
         for place in 0..PLACES {
-            // From the centre of one texel of the level to that of the next.
+            // From the centre of one texel of the level to the next centre.
             let t = (f64::from(place) + 0.5) / f64::from(PLACES);
             for (texel, weight) in [(0.0, 1.0 - t), (1.0, t)] {
                 for fine in 0..side as u32 {
@@ -41,7 +41,7 @@ fn variance_of_weights(level: i32, blend: f64) -> f64 {
 
 #[test]
 fn variances_of_levels_are_those_of_their_weights() {
-    /// The midpoint rule over the places, of a parabola.
+    /// The midpoint rule over the positions, for a parabola.
     const QUADRATURE: f64 = 1e-5;
     for level in 0..5 {
         for blend in [0.0, 0.25, 0.7] {
@@ -53,7 +53,7 @@ fn variances_of_levels_are_those_of_their_weights() {
             );
         }
     }
-    // Stored variances lack what lies between texels: 4^l / 6.
+    // Stored variances do not include the variance between texels: 4^l / 6.
     let FilterVariances { moments, variances } = level_variances(3.0);
     assert!(close(moments[0] - variances[0], 64.0 / 6.0) && level_variances(0.0).variances == [0.0; 2]);
     assert_eq!(level_variances(-3.0), level_variances(0.0));
@@ -66,7 +66,7 @@ fn taps_of_an_anisotropic_filter_spread_along_the_longer_axis() {
     let FilterVariances { moments, .. } = hardware_variances(&axes, 16.0, 0.0);
     // Four taps two texels apart: -3, -1, 1, 3.
     assert!(close(moments[0] - level, 5.0) && moments[1] == level, "{moments:?}");
-    // A trilinear filter takes the longer axis both ways; two taps at most, a level between.
+    // A trilinear filter uses the longer axis in both directions; with at most two taps, a level between.
     let trilinear = hardware_variances(&axes, 1.0, 0.0);
     assert_eq!(trilinear, level_variances(3.0));
     let two = hardware_variances(&axes, 2.0, 0.0).moments;
@@ -137,7 +137,7 @@ fn degenerate_footprints_give_ratios() {
     }
 }
 
-/// Of the mean over places of the trace that LEAN finds in a ramp of slopes at level 0, corrected.
+/// The mean over positions of the corrected trace that LEAN finds in a ramp of slopes at level 0.
 fn corrected_trace_of_a_ramp(gradient: [f32; 2], texels: f32, options: &ShadingOptions) -> f64 {
     const PLACES: u32 = 64;
     let axes = footprint_axes([texels, 0.0], [0.0, texels]);
@@ -146,7 +146,7 @@ fn corrected_trace_of_a_ramp(gradient: [f32; 2], texels: f32, options: &ShadingO
     let mut total = 0.0;
     for place in 0..PLACES {
         let t = (place as f32 + 0.5) / PLACES as f32;
-        // Between texels whose slopes differ by the gradient: t (1 - t) times its square.
+        // Between texels whose slopes differ by the gradient, the variance is t (1 - t) times its square.
         let [x, y] = gradient;
         let part = t * (1.0 - t);
         let bumps = Covariance { xx: part * x * x, yy: part * y * y, xy: part * x * y };
@@ -186,7 +186,7 @@ fn pixels_that_cover_whole_texels_are_unchanged() {
 
 #[test]
 fn the_correction_fades_out_on_coarser_levels() {
-    // A footprint of four to one for a trilinear filter, which covers too much across it.
+    // A footprint of four to one with a trilinear filter, which covers too much across it.
     let ratio = |long: f32| {
         let axes = footprint_axes([long, 0.0], [0.0, 0.25 * long]);
         let filter = hardware_variances(&axes, 1.0, 0.0);
@@ -201,7 +201,7 @@ fn the_correction_fades_out_on_coarser_levels() {
 fn detail_below_the_texel_is_kept() {
     let part = PixelPart { ratio: 0.1, linear_trace: 0.02 };
     assert!((part.factor(0.02) - 0.1).abs() < 1e-6 && (part.factor(0.01) - 0.1).abs() < 1e-6);
-    // Of a trace of 2 a hundredth may be the ramp's.
+    // A hundredth of a trace of 2 may come from the ramp.
     assert!((part.factor(2.0) - 0.991).abs() < 1e-6);
     for trace in [0.0, -1.0, f32::NAN] {
         assert_eq!(part.factor(trace), 1.0);
@@ -218,7 +218,7 @@ fn a_magnified_texel_has_only_the_linear_change() {
     let options = ShadingOptions::default();
     let ratio = footprint_ratio(&axes, &level_variances(0.0), change(dx), change(dy), &options);
     assert!(ratio.magnified > 0.99, "{ratio:?}");
-    // A quarter of `G J Jᵀ Gᵀ`: the pixel's Gaussian as the slopes have it.
+    // A quarter of `G J Jᵀ Gᵀ`: the pixel's Gaussian in the space of slopes.
     let products = |i: usize, j: usize| {
         f64::from(change(dx)[i]) * f64::from(change(dx)[j])
             + f64::from(change(dy)[i]) * f64::from(change(dy)[j])
@@ -227,7 +227,7 @@ fn a_magnified_texel_has_only_the_linear_change() {
     for (found, wanted) in [(xx, products(0, 0)), (yy, products(1, 1)), (xy, products(0, 1))] {
         assert!((f64::from(found) / (0.25 * wanted) - 1.0).abs() < 1e-3, "{found} {wanted}");
     }
-    // From level 1 on, and where several taps are averaged, there is detail between.
+    // From level 1 on, and if several taps are averaged, there is detail in between.
     for filter in [level_variances(1.0), level_variances(4.0)] {
         assert_eq!(footprint_ratio(&axes, &filter, change(dx), change(dy), &options).magnified, 0.0);
     }
@@ -236,7 +236,7 @@ fn a_magnified_texel_has_only_the_linear_change() {
     assert_eq!(footprint_ratio(&long, &taps, [0.3, 0.0], [0.01, 0.0], &options).magnified, 0.0);
 }
 
-/// The covariance that LEAN, CLEAN and stored variances shade.
+/// The covariance that LEAN, CLEAN and stored variances use for shading.
 fn shaded(
     shading: Shading,
     sigma: Covariance,
@@ -269,7 +269,7 @@ fn models_of_moments_shade_the_part_of_the_pixel_and_the_whole_base() {
         assert!(close(found.xx, kept * 0.04 + base) && close(found.yy, kept * 0.04 + base), "{found:?}");
         let whole = shaded(shading, sigma, &FootprintRatio::WHOLE, Base::None, &options);
         assert!(close(whole.xx, 0.04 + base), "{whole:?}");
-        // A base in the map is not excess and stays whole.
+        // A base in the map is not excess variance and is kept in full.
         let found = shaded(shading, sigma, &ratio, Base::Baked, &options);
         assert!(close(found.xx, kept * (0.04 - base) + base), "{shading}: {found:?}");
     }

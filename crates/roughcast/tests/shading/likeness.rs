@@ -1,4 +1,4 @@
-//! Models that must agree where one is a special case, or the limit, of another.
+//! Models that must agree because one is a special case, or the limit, of another.
 
 use roughcast::shading::{
     BaseFrame, FootprintRatio, Form, Shading, ShadingOptions, Surface, base_covariance,
@@ -20,7 +20,7 @@ fn lean_texels(moments: Moments) -> [[f32; 4]; 2] {
     [[0.0, 0.0, 1.0, xy], [mean.x, mean.y, xx, yy]]
 }
 
-/// The largest relative difference of two surfaces' lobes over directions about the slope, where they are above a
+/// The largest relative difference of two surfaces' lobes over directions about the slope where they are above a
 /// thousandth of their peak.
 fn difference(one: Surface, other: Surface, about: Slope, width: f64, options: &ShadingOptions) -> f32 {
     let centre = [f64::from(about.x), f64::from(about.y)];
@@ -92,7 +92,7 @@ fn clean_is_lean_for_isotropic_bumps_and_variance_is_lean_without_mixed_terms() 
     let of = |one, other| difference(one, other, mean, 0.1, &options);
     assert!(of(lean(round), clean(round)) < ROUNDING);
     assert!(of(lean(straight), variance(straight)) < ROUNDING);
-    // What each leaves out shows.
+    // The terms that each model omits make a difference.
     assert!(of(lean(straight), clean(straight)) > 0.1);
     assert!(of(lean(slanted), variance(slanted)) > 0.1);
 }
@@ -114,7 +114,7 @@ fn lobes_turn_with_the_bumps() {
         let turned = turned.lobe(turn3(view), turn3(light), &options);
         assert!(plain > 0.1 && (plain / turned - 1.0).abs() < ROUNDING, "{shading}: {plain} {turned}");
     }
-    // Of LEAN with its bumps too: R Σ Rᵀ.
+    // The same for LEAN with bumps: R Σ Rᵀ.
     let sigma = Covariance { xx: 0.03, yy: 0.005, xy: 0.004 };
     let turned_sigma = Covariance {
         xx: cos * cos * sigma.xx - 2.0 * sin * cos * sigma.xy + sin * sin * sigma.yy,
@@ -143,8 +143,8 @@ fn lobes_are_reciprocal() {
     }
 }
 
-/// The Jacobian of the map from slopes about a facet to slopes of the surface, at the facet: its J Jᵀ is the facet's
-/// base but for 1 / s.
+/// The Jacobian J of the map from slopes about a facet to slopes of the surface, at the facet: J Jᵀ is the facet's base
+/// except for the factor 1 / s.
 #[test]
 fn the_base_of_a_facet_is_a_rotated_round_lobe() {
     const STEP: f64 = 1e-5;
@@ -173,8 +173,8 @@ fn the_base_of_a_facet_is_a_rotated_round_lobe() {
     }
 }
 
-/// The largest difference, within two standard deviations, between the densities over solid angle of an off-centre lobe and of
-/// Beckmann's about the bump, relative to the latter.
+/// The largest difference, within two standard deviations, between the densities over solid angle of an off-centre lobe
+/// and of Beckmann's lobe about the bump, relative to the latter.
 fn against_the_bumps_own(base: BaseFrame, s: f32) -> f64 {
     let options = options(s).with_base_frame(base);
     let slope = Slope { x: 0.8, y: -0.4 };
@@ -196,10 +196,10 @@ fn against_the_bumps_own(base: BaseFrame, s: f32) -> f64 {
 
 #[test]
 fn the_base_of_a_facet_converges_to_beckmann_about_the_bump() {
-    // To first order: what is left falls as the lobe's width, 1 / sqrt(s).
+    // They agree to first order: the remainder falls with the lobe's width, 1 / sqrt(s).
     let left = [100.0, 1600.0, 25_600.0].map(|s| against_the_bumps_own(BaseFrame::Facet, s));
     assert!(left[1] < 0.3 * left[0] && left[2] < 0.3 * left[1], "{left:?}");
-    // LEAN's own base does not: at this slope of 0.9 it stays too narrow.
+    // LEAN's own base does not converge: at this slope of 0.9 it stays too narrow.
     let plane = [100.0, 1600.0, 25_600.0].map(|s| against_the_bumps_own(BaseFrame::Plane, s));
     assert!(plane.iter().all(|left| *left > 0.5), "{plane:?}");
 }

@@ -1,17 +1,17 @@
-//! The lobes' densities over slopes in f64, from the papers' formulas and without regard for rounding.
+//! The lobes' densities over slopes in f64, from the papers' formulas, without regard for rounding.
 
 use std::f64::consts::{PI, TAU};
 
 use super::support::{Frame, Vector, cross, dot, normalize, scaled, sum};
 use roughcast::shading::Form;
 
-/// `h` in a frame, as a slope, and the cosine to the frame's normal.
+/// `h` in a frame, as a slope, and the cosine of its angle to the frame's normal.
 fn slope_in(frame: &Frame, h: Vector) -> ([f64; 2], f64) {
     let [x, y, z] = frame.0.map(|axis| dot(axis, h));
     ([x / z, y / z], z)
 }
 
-/// Without the masking of the physical form, which is up to the caller.
+/// Without the masking of the physical form, which the caller applies.
 fn in_form(density: f64, cosine: f64, form: Form) -> f64 {
     match form {
         Form::Paper => TAU * density,
@@ -41,7 +41,8 @@ pub fn cosine_lobe(axis: Vector, direction: Vector, s: f64, form: Form) -> f64 {
     if dot(axis, direction) <= 0.0 {
         return 0.0;
     }
-    // From the sine: near one, a cosine rounded in f64 costs s = 16384 four digits of sixteen, which is no matter.
+    // Computed from the sine: near one, rounding a cosine in f64 costs s = 16384 four digits of sixteen, which is
+    // acceptable.
     let sine = cross(axis, direction);
     let power = (0.5 * s * (-dot(sine, sine)).ln_1p()).exp();
     match form {
@@ -57,7 +58,7 @@ pub fn reflected(normal: Vector, view: Vector) -> Vector {
     sum(scaled(normal, 2.0 * dot(normal, view)), scaled(view, -1.0))
 }
 
-/// GGX with widths along a direction of the surface's plane and across it.
+/// GGX with one width along a direction of the surface's plane and one across it.
 pub fn ggx(normal: Vector, direction: [f64; 2], [ax, ay]: [f64; 2], h: Vector, form: Form) -> f64 {
     let normal = normalize(normal);
     let in_plane = [direction[0], direction[1], 0.0];

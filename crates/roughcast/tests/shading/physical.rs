@@ -12,20 +12,21 @@ use roughcast::{Covariance, Moments, Slope};
 use super::oracle;
 use super::support::{Frame, Random, Vector, dot, narrow, normalize, scaled, sum, surface_of_texels, wide};
 
-/// Of G2 by the rational fit of Λ, whose G1 is off by 0.0035 at most (Walter et al., 2007, section 5.2): G2 holds two of them.
+/// Tolerance of G2 with the rational fit of Λ, whose G1 is off by at most 0.0035 (Walter et al., 2007, section 5.2): G2
+/// contains two of them.
 const FIT: f64 = 0.007;
-/// Of single floats: those of [`super::accuracy`]'s lobes, and a few for GGX's Λ.
+/// Tolerance for single floats: that of the lobes in [`super::accuracy`], and a few roundings for GGX's Λ.
 const ROUNDING: f64 = 2e-4;
 
-/// Models whose lobe is one of facets.
+/// Models whose lobe is that of microfacets.
 const MODELS: [Shading; 4] = [Shading::BlinnPhong, Shading::Beckmann, Shading::OffCentre, Shading::Ggx];
 
 fn options(specular_power: f32) -> ShadingOptions {
     ShadingOptions::default().with_specular_power(specular_power).with_form(Form::Physical)
 }
 
-/// Λ of Gaussian slopes with this variance, by its definition: the slopes beyond the direction's own hide it.
-/// `∫ (t - c) p(t) dt / c` over slopes t beyond the cotangent c of the direction's angle, by Simpson's rule.
+/// Λ of Gaussian slopes with this variance, by its definition: slopes beyond the direction's own hide it. `∫ (t - c)
+/// p(t) dt / c` over slopes t beyond the cotangent c of the direction's angle, by Simpson's rule.
 fn gaussian_lambda(variance: f64, axis: Vector, direction: Vector) -> f64 {
     const STEPS: u32 = 2000;
     let cosine = dot(axis, direction);
@@ -49,7 +50,7 @@ fn ggx_lambda(alpha: f64, axis: Vector, direction: Vector) -> f64 {
     0.5 * ((1.0 + alpha * alpha * tangent_squared).sqrt() - 1.0)
 }
 
-/// The lobe of a bump by its definition in f64.
+/// The lobe of a bump in f64, by its definition.
 fn expected(shading: Shading, slope: [f64; 2], s: f64, view: Vector, light: Vector) -> f64 {
     let normal = Frame::SURFACE.direction(slope);
     let h = normalize(sum(view, light));
@@ -101,7 +102,7 @@ fn lobes_match_their_definitions_in_f64() {
             let tolerance = if shading == Shading::Ggx { ROUNDING } else { FIT };
             let found = difference(shading, s, &options(s));
             assert!(found < tolerance, "{shading}, s {s}: {found:e}");
-            // Without masking, or with the terms of the older forms, they are not.
+            // Without masking, or with the terms of the older forms, they differ.
             let normalised = options(s).with_form(Form::Normalised);
             let found = difference(shading, s, &normalised);
             assert!(found > 10.0 * tolerance, "{shading}, s {s}: {found:e}");
@@ -156,7 +157,7 @@ fn a_flat_map_matches_the_microfacet_brdf_at_any_angle() {
     }
 }
 
-/// Light that a white surface sends towards a viewer when it gets a radiance of one from everywhere.
+/// Light that a white surface reflects towards a viewer under uniform incident radiance of one.
 fn white_furnace(surface: &Surface, degrees: f64, options: &ShadingOptions) -> f64 {
     const STEPS: u32 = 300;
     let white = Material { albedo: [0.0; 3], ambient: [0.0; 3], specular: [1.0; 3] };
@@ -178,7 +179,7 @@ fn white_furnace(surface: &Surface, degrees: f64, options: &ShadingOptions) -> f
 
 #[test]
 fn a_white_surface_reflects_no_more_than_it_receives() {
-    /// Of the quadrature, for a lobe that is 10 cells wide, and of the fit.
+    /// Tolerance of the quadrature, for a lobe that is 10 cells wide, and of the fit.
     const ERROR: f64 = 0.01;
     let furnace = |surface: &Surface, options: &ShadingOptions, what: &str| {
         for degrees in [0.0, 45.0, 75.0, 88.0] {
@@ -193,7 +194,7 @@ fn a_white_surface_reflects_no_more_than_it_receives() {
             furnace(&surface, &options, &format!("{shading}, s {s}"));
         }
     }
-    // With bumps, where all of them mask.
+    // With bumps, if both base and bumps mask.
     for sigma in [Covariance::isotropic(0.1), Covariance { xx: 0.4, yy: 0.01, xy: 0.03 }] {
         let options = options(200.0).with_masking(Masking::Full);
         let moments = Moments::from_mean_and_covariance(Slope::default(), sigma);
@@ -201,7 +202,7 @@ fn a_white_surface_reflects_no_more_than_it_receives() {
         let surface =
             surface_of_texels(Shading::Lean, &texels, &FootprintRatio::WHOLE, &Packing::IDENTITY, &options);
         furnace(&surface, &options, &format!("{sigma:?}"));
-        // Masked by the base alone they shine at grazing angles, as bump mapping does.
+        // If only the base masks, bumps are too bright at grazing angles, as in bump mapping.
         let base = options.with_masking(Masking::Base);
         assert!(white_furnace(&surface, 88.0, &base) > 1.0 + 10.0 * ERROR);
     }
@@ -219,7 +220,7 @@ fn the_brdf_is_reciprocal() {
                 Shading::OffCentre => [0.0, 0.0, 1.0],
                 _ => Frame::SURFACE.direction([f64::from(slope.x), f64::from(slope.y)]),
             };
-            // The BRDF is the lobe over the light's cosine; Phong's is the lobe.
+            // The BRDF is the lobe divided by the light's cosine; for Phong it is the lobe.
             let cosines = match shading {
                 Shading::Phong => [1.0; 2],
                 _ => [view, light].map(|direction| dot(axis, wide(direction))),
@@ -233,7 +234,7 @@ fn the_brdf_is_reciprocal() {
 
 #[test]
 fn bumps_facing_away_from_the_viewer_are_not_black() {
-    // Seen from 80 degrees, a bump that is tilted by 20 degrees away; the light is behind it.
+    // Seen from 80 degrees, a bump that is tilted away by 20 degrees; the light is behind it.
     let direction = |degrees: f64| {
         let (sin, cos) = degrees.to_radians().sin_cos();
         narrow([sin, 0.0, cos])
@@ -282,13 +283,13 @@ fn maps_bring_the_exponent_of_their_base() {
         base_variance,
         ..TextureInfo::new(layout, Part::Whole)
     };
-    // Toksvig's factor was baked for one exponent.
+    // Toksvig's factor is baked for one exponent.
     for layout in [Layout::Toksvig, Layout::Lean] {
         let options = default.for_maps(&baked(layout, 1.0 / 32.0));
         assert_eq!(options.specular_power, 32.0);
         assert_eq!((options.masking, options.footprint), (default.masking, default.footprint));
     }
-    // Of a base that varies nobody knows which part of the variance it is.
+    // For a varying base it is unknown which part of the variance it contributes.
     let varied = default.for_maps(&baked(Layout::Lean, 0.0));
     assert_eq!((varied.masking, varied.footprint), (Masking::Full, FootprintModel::Published));
     let none = default.for_maps(&TextureInfo::new(Layout::Lean, Part::Whole));

@@ -1,4 +1,4 @@
-//! Radiance: the parts of the equation, and where its two forms meet.
+//! Radiance: the parts of the equation, and the case in which its two forms agree.
 
 use std::f32::consts::PI;
 
@@ -27,7 +27,7 @@ fn fresnel_goes_from_its_given_value_to_one() {
     assert!(close(schlick(0.04, 0.0), 1.0));
     assert!(close(schlick(0.0, 0.5), 1.0 / 32.0));
     assert_eq!(schlick(1.0, 0.3), 1.0);
-    // A cosine that rounding has made too large changes nothing.
+    // A cosine that rounding has made larger than one does not change the result.
     assert_eq!(schlick(0.04, 1.000_000_1), 0.04);
 }
 
@@ -38,7 +38,7 @@ fn diffuse_light_takes_the_normal_at_its_length() {
     assert!(close(full[0], 0.5) && close(full[1], 1.0) && full[2] == 0.0);
     let averaged = diffuse_radiance([0.0, 0.0, 0.8], [0.5; 3], UP, irradiance);
     assert!(close(averaged[0], 0.4));
-    // A bump that faces away, and light from below the surface on a bump that would see it.
+    // A bump that faces away, and light from below the surface on a bump that faces it.
     assert_eq!(diffuse_radiance([-0.8, 0.0, 0.6], [0.5; 3], [0.8, 0.0, 0.6], irradiance), [0.0; 3]);
     assert_eq!(diffuse_radiance([0.8, 0.0, 0.6], [0.5; 3], [0.8, 0.0, -0.6], irradiance), [0.0; 3]);
     assert_eq!(ambient_radiance([0.5, 0.25, 0.1], [0.2, 0.1, 0.0]), [0.1, 0.025, 0.0]);
@@ -87,7 +87,8 @@ fn specular_light_is_cook_and_torrances_without_masking() {
 
 #[test]
 fn a_white_surface_reflects_no_more_than_it_receives() {
-    // The normalised form over all lights, for one viewer: F = 1, no masking, so at most the area that faces the viewer.
+    // The normalised form integrated over all lights, for one viewer: F = 1, no masking, so at most the area that faces
+    // the viewer.
     const STEPS: u32 = 400;
     let white = Material { albedo: [0.0; 3], ambient: [0.0; 3], specular: [1.0; 3] };
     let view = [0.6, 0.0, 0.8];

@@ -1,4 +1,4 @@
-//! No lobe is NaN, infinite or negative, whatever the texels, the options and the directions.
+//! No lobe is NaN, infinite or negative, for any texels, options and directions.
 
 use roughcast::shading::{
     BaseFrame, FootprintModel, FootprintRatio, Form, Masking, Repair, Shading, ShadingOptions,
@@ -11,7 +11,7 @@ use super::support::{Frame, Random, narrow, surface_of_texels};
 
 const POWERS: [f32; 4] = [1.0, 100.0, 16_384.0, 1e5];
 
-/// All options, each with a packing of floats for every statement about the maps.
+/// All options, each with a float packing for every statement about the maps.
 fn all_options() -> Vec<(ShadingOptions, Packing)> {
     let mut all = Vec::new();
     for specular_power in POWERS {
@@ -39,7 +39,7 @@ fn all_options() -> Vec<(ShadingOptions, Packing)> {
     all
 }
 
-/// Directions of half vectors: straight up, towards the bump, and as good as horizontal.
+/// Directions of half vectors: straight up, towards the bump, and nearly horizontal.
 fn directions() -> Vec<[f32; 3]> {
     let mut all = vec![[0.0, 0.0, 1.0], [1.0, 0.0, 1e-6], [0.0, -1.0, 1e-20], [-1.0, 0.0, f32::MIN_POSITIVE]];
     all.push([1.0, 0.0, 1e-42]);
@@ -92,7 +92,7 @@ fn extreme_texels_of_unsigned_textures() {
 
 #[test]
 fn the_roughest_lobe_is_finite_for_light_at_the_horizon() {
-    // A stored exponent of 1e-3, the least that counts: its width is 45.
+    // A stored exponent of 1e-3, the smallest that is used: its width is 45.
     let packing =
         Packing { base: Base::Baked, roughness_stored: RoughnessStored::SpecularPower, ..Packing::IDENTITY };
     let options = ShadingOptions::default();
@@ -120,7 +120,7 @@ fn a_mirror_with_its_base_baked_in_is_finite() {
             check(shading, &texels, &packing, &options);
         }
     }
-    // Repaired it still shows a highlight, by the paper's rule it shows none.
+    // When repaired it still shows a highlight; under the paper's rule it shows none.
     let h = narrow(Frame::SURFACE.direction([0.25, 0.0]));
     let lobe = |repair| {
         let options = ShadingOptions::default().with_repair(repair);
@@ -135,7 +135,7 @@ fn a_mirror_with_its_base_baked_in_is_finite() {
 
 #[test]
 fn invalid_covariances_are_repaired_or_show_nothing() {
-    // M.xx below B.x²: a variance of -0.01, not made good by a base of 1 / 256.
+    // M.xx below B.x²: a variance of -0.01, which a base of 1 / 256 does not compensate.
     let texels = [[0.1, 0.0, 0.9, 0.0], [0.25, 0.0, 0.0525, 0.01]];
     let h = narrow(Frame::SURFACE.direction([0.25, 0.0]));
     let lobe = |repair| {

@@ -1,10 +1,10 @@
-//! Vectors in f64, random numbers, frames, and what a renderer makes of texels.
+//! Vectors in f64, random numbers, frames, and how a renderer decodes texels.
 
 use roughcast::Anisotropy;
 use roughcast::shading::{FootprintRatio, Shading, ShadingOptions, Surface};
 use roughcast::texture::Packing;
 
-/// The surface that a model makes of filtered texels of the layout that it is made for.
+/// The surface that a model makes from filtered texels of its layout.
 pub fn surface_of_texels(
     shading: Shading,
     texels: &[[f32; 4]],
@@ -48,14 +48,14 @@ pub fn wide(a: [f32; 3]) -> Vector {
     a.map(f64::from)
 }
 
-/// A right-handed orthonormal frame; the last is the normal.
+/// A right-handed orthonormal frame; the last vector is the normal.
 pub struct Frame(pub [Vector; 3]);
 
 impl Frame {
-    /// The surface's own.
+    /// The surface's own frame.
     pub const SURFACE: Self = Self([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
 
-    /// About this normal, with the tangent nearest to x.
+    /// A frame about this normal, with the tangent nearest to x.
     pub fn about(normal: Vector) -> Self {
         let normal = normalize(normal);
         let tangent = normalize(sum([1.0, 0.0, 0.0], scaled(normal, -normal[0])));
@@ -69,7 +69,7 @@ impl Frame {
     }
 }
 
-/// SplitMix64, by Sebastiano Vigna: numbers from 0 to 1 that are the same on every run.
+/// SplitMix64, by Sebastiano Vigna: numbers from 0 to 1 that are identical on every run.
 pub struct Random(pub u64);
 
 impl Random {
@@ -85,7 +85,7 @@ impl Random {
         low + (high - low) * self.unit()
     }
 
-    /// A unit direction above the surface, at least `z` high.
+    /// A unit direction above the surface, with z at least `z`.
     pub fn direction_above(&mut self, z: f64) -> Vector {
         let z = self.between(z, 1.0);
         let angle = self.between(0.0, std::f64::consts::TAU);

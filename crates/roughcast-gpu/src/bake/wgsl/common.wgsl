@@ -1,21 +1,22 @@
 // The parameters of every pass of a bake.
 
 struct Params {
-    // Of the level that is read.
+    // Size of the level that is read.
     size: vec2u,
     zero: u32,
-    // 0: the map repeats beyond its edges; otherwise the edge texels do.
+    // 0: the map repeats beyond its edges; otherwise the edge texels are repeated.
     wrap: u32,
-    // The largest slope before anything is known of the map; slope_limit() is the one that counts.
+    // The largest slope as known before the map is read; slope_limit() returns the one that applies.
     max_slope: f32,
     // The factor from a stored height to texels.
     height_scale: f32,
-    // Slope variance of a base roughness that is folded in (LEAN Eq. 6), otherwise zero.
+    // Slope variance of a base roughness that is folded in (LEAN Eq. 6); zero if there is none.
     base_variance: f32,
-    // The factor of x and y of a normal.
+    // Factor that scales the x and y of a normal.
     normal_factor_x: f32,
     normal_factor_y: f32,
-    // Columns between the texels of a row that an automatic limit of slopes samples; zero if the limit is known.
+    // Distance in columns between the texels that an automatic slope limit samples in a row; zero if the limit is
+    // known.
     survey_stride: u32,
 }
 

@@ -1,4 +1,4 @@
-// A normal's component from a code.
+// Decodes a normal's component from a code.
 fn map_component(stored: f32) -> f32 {
     return component_from_code(stored, MAP_STEPS);
 }

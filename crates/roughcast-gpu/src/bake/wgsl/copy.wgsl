@@ -1,4 +1,4 @@
-// A plain copy from texture to texture, 16 bytes per texel, the reference for a bake's bandwidth.
+// A plain copy from texture to texture, 16 bytes per texel, used as the reference for a bake's bandwidth.
 //
 // Defined elsewhere: the bindings source and copied.
 

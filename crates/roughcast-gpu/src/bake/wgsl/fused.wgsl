@@ -1,8 +1,8 @@
-// Several levels in one dispatch, each a quarter of the previous one: a thread averages 4x4 texels in its registers, then
-// the 16x16 threads of a workgroup average their results in workgroup memory.
+// Several levels in one dispatch, each a quarter of the previous one: a thread averages 4x4 texels in its registers,
+// then the 16x16 threads of a workgroup average their results in workgroup memory.
 //
-// Defined elsewhere: HALVINGS, params, input_averages(at), average_of_quad(...), store_0(at, averages) ... store_6, each of
-// which knows its level's size and ignores texels that lie outside or are not wanted.
+// Defined elsewhere: HALVINGS, params, input_averages(at), average_of_quad(...), store_0(at, averages) ... store_6.
+// Each store function knows its level's size and ignores texels outside of it and levels that are not requested.
 
 // 256 averages of 32 bytes: 8 KiB.
 var<workgroup> held_low: array<vec4f, 256>;
@@ -38,7 +38,7 @@ fn quad(at: vec2u) -> Averages {
     return averages;
 }
 
-// The average of four held averages that lie `stride` threads apart, held in place of the first.
+// The average of four averages in workgroup memory whose threads are `stride` apart; it replaces the first of them.
 fn average_of_held(at: vec2u, stride: u32) -> Averages {
     let first = 2u * stride * (16u * at.y + at.x);
     let averages = average_of_quad(

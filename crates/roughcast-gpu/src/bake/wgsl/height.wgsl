@@ -1,4 +1,5 @@
-// Slopes of a height map. Defined elsewhere: map_height, is_hole, and map_gradient of the columns and rows about a texel.
+// Slopes of a height map. Defined elsewhere: map_height, is_hole, and map_gradient, which takes the columns and rows
+// around a texel.
 
 fn map_heights(xs: vec3i, y: i32) -> vec3f {
     return vec3f(map_height(vec2i(xs.x, y)), map_height(vec2i(xs.y, y)), map_height(vec2i(xs.z, y)));

@@ -1,4 +1,4 @@
-// What a dispatch reads: a level as floats, as the previous dispatch left it.
+// The input of a dispatch: a level as floats, as stored by the previous dispatch.
 fn input_averages(at: vec2u) -> Averages {
     let index = 2u * (at.y * params.size.x + at.x);
     let low = state_in[index];

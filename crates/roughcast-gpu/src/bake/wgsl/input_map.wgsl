@@ -1,4 +1,4 @@
-// What a pass reads: the map.
+// The input of a pass: the map.
 fn input_averages(at: vec2u) -> Averages {
     return averages_of_slope(map_slope(at).slope);
 }

@@ -1,4 +1,4 @@
-// What a pass reads: the map, whose repairs it counts.
+// The input of a pass: the map. Repaired texels are counted.
 fn input_averages(at: vec2u) -> Averages {
     let repaired = map_slope(at);
     if repaired.fault != FAULT_NONE {

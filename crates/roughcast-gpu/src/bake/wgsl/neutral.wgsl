@@ -1,4 +1,4 @@
-// Broken texels of a normal map: they get the mean slope of those of their eight neighbours that are not broken.
+// Repairs the broken texels of a normal map: each gets the mean slope of its unbroken neighbours among the eight.
 //
 // Defined elsewhere: params, slope_unless_broken(at).
 

@@ -1,4 +1,4 @@
-// A texel of the next level: the equal average of four.
+// A texel of the next level: the equal average of four texels.
 fn next_averages(at: vec2u) -> Averages {
     let first = 2u * at;
     return average_of_four(

@@ -1,4 +1,4 @@
-// A texel of the next level, by coverage.
+// A texel of the next level, weighted by coverage.
 fn next_averages(at: vec2u) -> Averages {
     return weighted_averages(at);
 }

@@ -1,4 +1,4 @@
-// What a pass writes: CLEAN's texels of the level that is read.
+// The output of a pass: CLEAN's texels of the level that is read.
 @fragment
 fn fragment(corner: Corner) -> @location(0) vec4f {
     opaque_zero = params.zero;

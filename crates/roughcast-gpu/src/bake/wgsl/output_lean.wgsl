@@ -1,4 +1,4 @@
-// What a pass writes: LEAN's texels of the level that is read.
+// The output of a pass: LEAN's texels of the level that is read.
 
 struct Output {
     @location(0) lean1: vec4f,

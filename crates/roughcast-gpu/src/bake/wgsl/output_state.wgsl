@@ -1,4 +1,4 @@
-// What a pass writes: the next level as floats. Defined elsewhere: next_averages.
+// The output of a pass: the next level as floats. Defined elsewhere: next_averages.
 
 struct Output {
     @location(0) low: vec4f,

@@ -1,10 +1,10 @@
-// The smallest scale that represents every slope of a map, and the automatic limit of slopes: one pass over the map, and one
-// workgroup that evaluates the result.
+// Finds the smallest scale that represents every slope of a map, and the automatic slope limit. One pass reads the map;
+// a single workgroup then evaluates the result.
 //
 // Defined elsewhere: params, map_slope(at), and the bindings survey and packed_stores.
 
 struct Survey {
-    // The largest component, as bits: non-negative floats are in the order of their bits.
+    // The largest component, as bits: non-negative floats compare in the same order as their bits.
     peak: atomic<u32>,
     sampled: atomic<u32>,
     histogram: array<atomic<u32>, SLOPE_BINS>,
@@ -13,7 +13,7 @@ struct Survey {
 var<workgroup> group_peak: atomic<u32>;
 var<workgroup> group_histogram: array<atomic<u32>, SLOPE_BINS>;
 
-// For the pass over the map: the limit is not known yet.
+// Used in the pass over the map, where the limit is not known yet.
 fn slope_limit() -> f32 {
     return params.max_slope;
 }
@@ -55,12 +55,12 @@ fn look(
     }
 }
 
-// Bins that a thread adds up; 256 threads for all of them.
+// Bins that each thread sums; 256 threads cover all bins.
 const BINS_A_THREAD: u32 = (SLOPE_BINS + 255u) / 256u;
 
 var<workgroup> counts_of_threads: array<u32, 256>;
 
-// The length that all but the steepest texels stay below.
+// The slope length that only the steepest texels exceed.
 fn slope_exceeded() -> f32 {
     let allowed = atomicLoad(&survey.sampled) / STEEP_ONE_IN;
     var above = 0u;

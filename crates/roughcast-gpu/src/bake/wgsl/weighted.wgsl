@@ -1,4 +1,4 @@
-// One level from the previous one, for any size: each texel by the coverage of the finer ones.
+// One level from the previous one, for any size: each texel is the average of the finer texels, weighted by coverage.
 //
 // Defined elsewhere: params, input_averages(at).
 

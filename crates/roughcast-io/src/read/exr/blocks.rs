@@ -1,8 +1,8 @@
-//! From the blocks of an EXR to the rows of an image.
+//! Unpacks the blocks of an EXR into the rows of an image.
 //!
-//! The offset table contains the position of each block. Every block of level 0 is looked up first, and must lie within the file
-//! and identify itself as the expected block; only then is the image allocated, and each block unpacked once. The
-//! work and the memory are thus bounded by the pixels and by the bytes of the file, however damaged it is.
+//! The offset table contains the position of each block. Every block of level 0 is looked up first, and must lie within
+//! the file and identify itself as the expected block; only then is the image allocated, and each block unpacked once.
+//! The number of pixels and the file size therefore bound the work and the memory, however damaged the file is.
 
 use exr::block::UncompressedBlock;
 use exr::block::chunk::{
@@ -57,7 +57,7 @@ impl Grid {
         self.height.div_ceil(self.block_height)
     }
 
-    /// Pixels of a block of this column and row, which at the right and lower edge may be cut.
+    /// Size in pixels of the block in this column and row; blocks at the right and lower edge may be smaller.
     fn size(&self, column: usize, row: usize) -> (usize, usize) {
         (
             self.block_width.min(self.width - column * self.block_width),
@@ -112,14 +112,14 @@ impl<'a> Source<'a> {
         })
     }
 
-    /// The bytes of one block: rows of all channels of the file, each channel in one run.
+    /// The bytes of one block: row by row, with the samples of each channel of the file contiguous within a row.
     fn unpack(&self, column: usize, row: usize) -> Result<Vec<u8>, ReadError> {
         let header = &self.meta.headers[self.part];
         let (width, height) = self.grid.size(column, row);
         let raw_bytes = width * height * header.channels.bytes_per_pixel;
         let packed = self.blocks[row * self.grid.columns() + column];
         if packed.len() > raw_bytes {
-            // A block that compression would make longer is stored as it is.
+            // A block that would grow under compression is stored uncompressed.
             return Err(malformed(FORMAT, "a block is longer than its pixels"));
         }
         let is_dwa = matches!(header.compression, Compression::DWAA(_) | Compression::DWAB(_));
@@ -170,7 +170,7 @@ impl<'a> Source<'a> {
 
 /// A sample type of the image.
 pub(super) trait Sample: Copy + Send {
-    /// Copies a run of samples of one channel, stored as half or float in the machine's byte order.
+    /// Copies a run of samples of one channel, stored as half or float in native byte order.
     fn copy_run<'t>(stored: SampleType, run: &[u8], target: impl Iterator<Item = &'t mut Self>)
     where
         Self: 't;
@@ -198,10 +198,10 @@ impl Sample for f32 {
     }
 }
 
-/// The y that the file uses for the block of scan lines of this row: data windows need not begin at 0.
+/// The y coordinate that the file stores for the scan-line block at this row: data windows need not begin at 0.
 fn scan_line_y(header: &Header, row: usize) -> i32 {
     let lines = (row * header.compression.scan_lines_per_block()) as i64;
-    // The data window lies within 31 bits, so its rows do.
+    // The coordinates of the data window fit in 31 bits, so its rows do too.
     (i64::from(header.own_attributes.layer_position.y()) + lines) as i32
 }
 

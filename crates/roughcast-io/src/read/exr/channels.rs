@@ -1,4 +1,4 @@
-//! Which channels of an EXR are read, and in which order.
+//! Selects the channels of an EXR to read, and their order.
 
 use exr::math::Vec2;
 use exr::meta::MetaData;
@@ -11,11 +11,11 @@ use super::FORMAT;
 use super::names::{Choice, choose};
 use crate::{ReadError, ReadOptions};
 
-/// Channels of one image. OpenImageIO's bump slopes have six.
+/// Maximum number of channels of an image. OpenImageIO's bump slopes have six.
 const MAX_CHANNELS: usize = 16;
-/// Channels of one file. Renderers write some two hundred; each costs time for every block.
+/// Maximum number of channels of a file. Renderers write about two hundred; each costs time for every block.
 const MAX_STORED_CHANNELS: usize = 1024;
-/// The most layers that an error lists.
+/// Maximum number of layers listed in an error.
 const MAX_LISTED: usize = 24;
 /// The first of the six channels of OpenImageIO's and RenderMan's bump slopes, which belong together.
 const FIRST_BUMP_SLOPE: &str = "b0_h";
@@ -23,33 +23,33 @@ const FIRST_BUMP_SLOPE: &str = "b0_h";
 /// The channels that become the image.
 #[derive(Debug)]
 pub(super) struct Selection {
-    /// The part that they belong to.
+    /// The part that contains them.
     pub(super) part: usize,
     /// In the order of the image.
     pub(super) channels: Vec<SelectedChannel>,
-    /// Half where all of them are halves, else float.
+    /// Half if all channels are half, otherwise float.
     pub(super) sample_type: SampleType,
-    /// The layer that they belong to, where the file has no channels without one.
+    /// The layer that contains them, if all channels of the file belong to layers.
     pub(super) layer: Option<String>,
-    /// What else the file contains, in words, if nothing was chosen.
+    /// Description of the file's other contents, if the options chose nothing.
     pub(super) left_out: Option<String>,
 }
 
-/// One channel of the file that becomes one of the image.
+/// A channel of the file that becomes a channel of the image.
 #[derive(Debug)]
 pub(super) struct SelectedChannel {
     /// Its name, without the layer.
     pub(super) name: String,
     /// How it is stored.
     pub(super) stored: SampleType,
-    /// Bytes of a pixel that other channels take before it. In a row of n pixels it begins at n times as many.
+    /// Bytes per pixel of the channels before it. In a row of n pixels, the channel begins at n times this offset.
     pub(super) bytes_before: usize,
 }
 
 /// The channels of one layer of one part.
 struct Group<'a> {
     part: usize,
-    /// Its name for users: the part's name, the layer's, or both; empty for channels without any.
+    /// Its display name: the name of the part, of the layer, or both; empty for channels without either.
     name: String,
     channels: Vec<Candidate<'a>>,
 }
@@ -62,10 +62,10 @@ struct Candidate<'a> {
     bytes_before: usize,
 }
 
-/// Chooses the channels of the image: those that `options` name, or the unambiguous ones.
+/// Chooses the channels of the image: those named in `options`, or else the unambiguous ones.
 ///
-/// Channels without a layer take precedence over those of layers; of several layers one must be chosen, unless only one has anything to
-/// read. `keep_all` takes all channels of the first part as they are.
+/// Channels without a layer take precedence over channels in layers. If there are several layers, the options must name
+/// one, unless only one has anything to read. `keep_all` takes all channels of the first part as they are.
 ///
 /// # Errors
 /// [`ReadError::Unsupported`]: luminance with chroma, subsampled channels, integers, more than 16 channels.
@@ -88,7 +88,8 @@ pub(super) fn select(meta: &MetaData, options: &ReadOptions, keep_all: bool) -> 
     let choices: Vec<(&Group<'_>, Choice)> = groups.iter().map(|group| (group, choice_of(group))).collect();
     let promising: Vec<&(&Group<'_>, Choice)> =
         choices.iter().filter(|(_, choice)| *choice != Choice::Nothing).collect();
-    // In a single part, channels without a layer are the picture, and layers are what a renderer computed in addition.
+    // In a single part, the channels without a layer are the picture, and the layers are a renderer's additional
+    // outputs.
     let one_part = groups.iter().all(|group| group.part == groups[0].part);
     let bare = promising.iter().find(|(group, _)| one_part && group.name.is_empty());
     let (group, choice) = match (bare, &promising[..]) {
@@ -135,8 +136,8 @@ fn groups(meta: &MetaData) -> Result<Vec<Group<'_>>, ReadError> {
     if groups.is_empty() { Err(malformed(FORMAT, "it has no channels")) } else { Ok(groups) }
 }
 
-/// `part.layer`, but `layer` if the part has the same name, as Nuke and Blender write it; parts without a name are identified
-/// by their number.
+/// `part.layer`, or `layer` if the part has the same name (as Nuke and Blender write it). Parts without a name are
+/// identified by their number.
 fn group_name(part_name: Option<&str>, layer: &str, part: Option<usize>) -> String {
     let part_name = part_name.map(str::to_owned).or_else(|| part.map(|number| number.to_string()));
     match part_name {
@@ -152,7 +153,8 @@ fn choice_of(group: &Group<'_>) -> Choice {
     choose(&names)
 }
 
-/// The selection that a clear choice makes; `None` if it is not clear. No choice turns luminance and chroma into colours.
+/// The selection for a clear choice; `None` if the choice is ambiguous. Luminance and chroma are never converted to
+/// colours.
 fn clear(group: &Group<'_>, choice: Choice) -> Option<Result<Selection, ReadError>> {
     if has_chroma(group) {
         return Some(Err(unsupported(FORMAT, "luminance with chroma", "save it as RGB")));
@@ -163,7 +165,7 @@ fn clear(group: &Group<'_>, choice: Choice) -> Option<Result<Selection, ReadErro
     }
 }
 
-/// The layer of this name, the last part of its name, or the part of this number.
+/// The layer whose name, or the last component of whose name, is this one, or the part with this number.
 fn layer_of<'g, 'a>(groups: &'g [Group<'a>], wanted: &str) -> Result<&'g Group<'a>, ReadError> {
     let by = |test: &dyn Fn(&Group<'_>) -> bool| {
         let found: Vec<&Group<'a>> = groups.iter().filter(|group| test(group)).collect();
@@ -177,7 +179,7 @@ fn layer_of<'g, 'a>(groups: &'g [Group<'a>], wanted: &str) -> Result<&'g Group<'
         .ok_or_else(|| missing(groups, wanted))
 }
 
-/// The channels that the options name, in that order.
+/// The channels named in the options, in that order.
 fn named(groups: &[Group<'_>], options: &ReadOptions) -> Result<Selection, ReadError> {
     let within: Vec<&Group<'_>> = match &options.layer {
         Some(layer) => vec![layer_of(groups, layer)?],
@@ -209,7 +211,7 @@ fn named(groups: &[Group<'_>], options: &ReadOptions) -> Result<Selection, ReadE
     }
     let channels = chosen.iter().map(|(group, i)| {
         let candidate = &group.channels[*i];
-        // A channel chosen by name is read for its values, even an alpha.
+        // A channel chosen by name, even alpha, is treated as data.
         let name = if candidate.name.eq_ignore_ascii_case("A") { "alpha" } else { &candidate.name };
         candidate.selected(name)
     });
@@ -247,7 +249,7 @@ fn of_channels(
     Ok(Selection { part, channels, sample_type, layer, left_out: None })
 }
 
-/// Every block holds every channel: one that is subsampled moves all that follow it.
+/// Refuses subsampled channels: every block holds every channel, so a subsampled one shifts all channels after it.
 pub(super) fn check_sampling(header: &Header) -> Result<(), ReadError> {
     if header.channels.list.iter().any(|channel| channel.sampling != Vec2(1, 1)) {
         return Err(unsupported(FORMAT, "a subsampled channel", "save all channels in full size"));
@@ -277,7 +279,7 @@ fn missing(groups: &[Group<'_>], wanted: &str) -> ReadError {
     ReadError::NoSuchChannel { format: FORMAT, wanted: wanted.to_owned(), contents: listed(groups.iter()) }
 }
 
-/// Layers with their channels, in words: `Depth (Z), Normal (X, Y, Z)`.
+/// A text list of layers with their channels: `Depth (Z), Normal (X, Y, Z)`.
 fn listed<'g, 'a: 'g>(groups: impl Iterator<Item = &'g Group<'a>>) -> String {
     let words = |group: &Group<'_>| {
         let names: Vec<&str> = group.channels.iter().map(|channel| channel.name.as_str()).collect();

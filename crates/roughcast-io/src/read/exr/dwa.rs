@@ -1,24 +1,24 @@
 //! Checks the counts at the head of a DWA block against the pixels of the block.
 //!
-//! The `exr` crate allocates by these counts before it looks at the data, so a damaged block could ask for any amount of
-//! memory. Layout after `internal_dwa_compressor.h` of OpenEXR.
+//! The `exr` crate allocates by these counts before it looks at the data, so a damaged block could ask for any amount
+//! of memory. The layout follows OpenEXR's `internal_dwa_compressor.h`.
 
 use super::super::memory::malformed;
 use super::FORMAT;
 use crate::ReadError;
 
-/// Numbers of 64 bits at the head of a block.
+/// Number of 64-bit values at the head of a block.
 const COUNTS: usize = 11;
-/// Pixels along the side of a block of the cosine transform.
+/// Side of a cosine-transform block in pixels.
 const DCT_SIDE: u64 = 8;
 
 /// Checks that the counts of one block are possible.
 ///
-/// `width` and `height` are the pixels of the block, `channels` their number in the file, `raw_bytes` the bytes of the
-/// block without compression.
+/// `width` and `height` are the size of the block in pixels, `channels` is the number of channels in the file, and
+/// `raw_bytes` is the uncompressed size of the block in bytes.
 ///
 /// # Errors
-/// [`ReadError::Malformed`] if the head is cut or states more than the pixels can need.
+/// [`ReadError::Malformed`] if the head is truncated or states more than the pixels can need.
 pub(super) fn check(
     block: &[u8],
     width: usize,

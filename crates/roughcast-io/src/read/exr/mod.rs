@@ -1,8 +1,8 @@
-//! OpenEXR: scan lines and tiles, level 0 of mip and rip maps, any flat part of several.
+//! OpenEXR: scan lines and tiles, level 0 of mip and rip maps, any flat part of a multi-part file.
 //!
-//! The `exr` crate reads the header and undoes the compression. The steps between them, that is, which block
-//! lies where in the file and where its rows belong in the image, are done here, since the crate's own code allocates by
-//! what the file states before checking that the bytes exist. See [`blocks`].
+//! The `exr` crate reads the header and undoes the compression. This module does the steps between them: it locates
+//! each block in the file and places its rows in the image. The crate's own code for this allocates the sizes that the
+//! file states before it checks that the bytes exist. See [`blocks`].
 
 mod blocks;
 mod channels;
@@ -26,22 +26,22 @@ use crate::metadata::insert;
 use crate::{Decoded, FileInfo, ReadError, ReadOptions, ValueRange};
 
 const FORMAT: &str = "EXR";
-/// The compressions numbered 10 and above came after those that are read here.
+/// Compressions numbered 10 and above are newer than those read here.
 const FIRST_UNKNOWN_COMPRESSION: u8 = 10;
 /// The key that marks a file as written by roughcast.
 const LAYOUT_KEY: &str = "roughcast.layout";
 const SAVE_AS_ZIP: &str = "save it with ZIP compression";
 
-/// Reads level 0 of an EXR: the pixels of its display window, of the channels that [`channels::select`] chooses.
+/// Reads level 0 of an EXR: the pixels of its display window, with the channels chosen by [`channels::select`].
 ///
-/// Halves stay halves unless a channel beside them is a
-/// float. Unsigned integers are refused, for they name objects, and a float would round them. Text attributes become
-/// metadata. `FileInfo::levels` of a rip map counts the levels along its longer side.
+/// Halves stay halves unless another chosen channel is a float. Unsigned integers are refused: they are object
+/// identifiers, and a float would round them. Text attributes become metadata. `FileInfo::levels` of a rip map counts
+/// the levels along its longer side.
 pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<Decoded, ReadError> {
     let mut input = Cursor::new(bytes);
     let meta = MetaData::read_from_buffered(&mut input, false).map_err(|e| header_fault(bytes, e))?;
     let tables_start = input.position();
-    // The layers of a baked texture belong together, whatever their names.
+    // All layers of a baked texture are read, whatever their names.
     let is_baked = meta.headers.iter().any(|header| text_pairs(header).contains_key(LAYOUT_KEY));
     let selection = channels::select(&meta, options, is_baked)?;
     let header = &meta.headers[selection.part];
@@ -100,7 +100,7 @@ fn level_count(header: &Header) -> usize {
     }
 }
 
-/// The attributes that hold text, under the names that they have in the file.
+/// The text attributes, under their names in the file.
 fn text_pairs(header: &Header) -> BTreeMap<String, String> {
     let own = &header.own_attributes;
     let standard: [(&str, &Option<Text>); 8] = [
@@ -127,13 +127,13 @@ fn text_pairs(header: &Header) -> BTreeMap<String, String> {
     pairs
 }
 
-/// The crate returns each byte as the character of that number; the files contain UTF-8.
+/// The crate returns each byte as the character with that code; the files contain UTF-8.
 fn text(value: &Text) -> String {
     String::from_utf8_lossy(value.as_slice()).into_owned()
 }
 
-/// Why the header could not be read. The crate skips an attribute that it does not understand and then misses it: for a
-/// compression that is too new it only reports that there is none.
+/// Why the header could not be read. The crate skips an attribute that it does not understand and then reports it as
+/// missing: for a compression that is too new, it only says that there is none.
 fn header_fault(bytes: &[u8], error: exr::error::Error) -> ReadError {
     const COMPRESSION_ATTRIBUTE: &[u8] = b"compression\0compression\0\x01\0\0\0";
     let end = bytes.windows(COMPRESSION_ATTRIBUTE.len()).position(|window| window == COMPRESSION_ATTRIBUTE);
@@ -150,7 +150,7 @@ fn fault(error: exr::error::Error) -> ReadError {
     use exr::error::Error;
     match error {
         Error::NotSupported(what) => unsupported(FORMAT, what, SAVE_AS_ZIP),
-        // The crate's words for anything past the last byte.
+        // The crate's message for reads past the end of the file.
         Error::Invalid(what) if what.contains("reference to missing bytes") => {
             malformed(FORMAT, "it ends too early, or refers to bytes past its end")
         }

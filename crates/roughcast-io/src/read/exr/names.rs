@@ -1,8 +1,8 @@
-//! What the names of an EXR's channels mean: which of them are components of a vector, a height, or neither.
+//! The meaning of an EXR's channel names: components of a vector, a height, or neither.
 //!
-//! A name may begin with that of a layer: `ViewLayer.Normal.X` is channel `X` of the layer `ViewLayer.Normal`. Case does not
-//! count. The words are those of renderers and painters: OpenImageIO (which also knows `red`), Houdini (`height`, `mask`),
-//! Blender (`Depth.Z`), Arnold and others (`N.x`, `Nx`).
+//! A name may begin with the name of a layer: `ViewLayer.Normal.X` is channel `X` of the layer `ViewLayer.Normal`. Case
+//! is ignored. The names are those used by renderers and painting programs: OpenImageIO (which also knows `red`),
+//! Houdini (`height`, `mask`), Blender (`Depth.Z`), Arnold and others (`N.x`, `Nx`).
 
 /// Names of the first, second and third component of a vector or colour, set by set; earlier sets win.
 const VECTORS: [[&str; 3]; 5] = [
@@ -13,35 +13,35 @@ const VECTORS: [[&str; 3]; 5] = [
     ["normalX", "normalY", "normalZ"],
 ];
 
-/// Names of the components of a normal without its z, beside the first two of each of [`VECTORS`].
+/// Names of the components of a normal without z, in addition to the first two of each of [`VECTORS`].
 const PAIRS: [[&str; 2]; 1] = [["U", "V"]];
 
 /// Names of a height.
 const HEIGHTS: [&str; 9] =
     ["height", "displacement", "disp", "elevation", "bump", "heightmap", "depth", "Z", "Y"];
 
-/// Of these, names that also mean a luminance, a depth of the scene or a third component: a height only where no other channel
-/// beside them could be one.
+/// Height names that can also mean luminance, scene depth or a third component. Such a channel is a height only if no
+/// other channel could be one.
 const WEAK_HEIGHTS: [&str; 3] = ["depth", "Z", "Y"];
 
-/// Names of coverage, which is not part of any map.
+/// Names of coverage channels, which are not part of any map.
 const ALPHAS: [&str; 9] = ["A", "alpha", "opacity", "coverage", "RA", "GA", "BA", "AR", "AG"];
 
-/// Words in the names of selections and identifiers, which are neither heights nor components.
+/// Words in the names of masks and identifiers, which are neither heights nor components.
 const ASIDE: [&str; 8] = ["mask", "matte", "crypto", "id", "index", "debris", "water", "sediment"];
 
-/// The channels of one layer that make an image, by their places in the list of names.
+/// The channels of one layer that form an image, by index in the list of names.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Choice {
     /// These, under these names.
     Clear(Vec<(usize, String)>),
-    /// None: only coverage, masks and identifiers.
+    /// None: the layer has only coverage, masks and identifiers.
     Nothing,
-    /// Several, and the names are ambiguous.
+    /// The names are ambiguous: there are several candidates.
     Open,
 }
 
-/// Chooses among the names of one layer, without the layer's own.
+/// Chooses among the channel names of one layer, given without the layer's name.
 pub(super) fn choose(names: &[&str]) -> Choice {
     let place = |wanted: &str| {
         let exact = names.iter().position(|name| *name == wanted);
@@ -49,7 +49,7 @@ pub(super) fn choose(names: &[&str]) -> Choice {
     };
     for (set, vector) in VECTORS.iter().enumerate() {
         if let Some(places) = all_of(vector, place) {
-            // OpenImageIO names them R, G and B too.
+            // OpenImageIO also renames these to R, G and B.
             let called: &[&str; 3] = if set == 1 { &VECTORS[0] } else { vector };
             let mut chosen: Vec<_> =
                 places.into_iter().zip(called.iter().map(|&name| name.to_owned())).collect();
@@ -64,7 +64,7 @@ pub(super) fn choose(names: &[&str]) -> Choice {
     let heights: Vec<usize> = HEIGHTS.iter().filter_map(|name| place(name)).collect();
     let pairs = VECTORS.iter().map(|[a, b, _]| [*a, *b]).chain(PAIRS);
     let pairs: Vec<[usize; 2]> = pairs.filter_map(|[a, b]| Some([place(a)?, place(b)?])).collect();
-    // A Y beside an X is not a luminance.
+    // A Y that accompanies an X is not a luminance.
     let heights: Vec<usize> =
         heights.into_iter().filter(|height| !pairs.iter().any(|pair| pair.contains(height))).collect();
     let keep = |places: &[usize]| Choice::Clear(places.iter().map(|&i| (i, names[i].to_owned())).collect());
@@ -86,7 +86,7 @@ pub(super) fn choose(names: &[&str]) -> Choice {
     }
 }
 
-/// Grey, alone or with its coverage.
+/// Grey, with or without coverage.
 fn luminance(names: &[&str], place: impl Fn(&str) -> Option<usize>) -> Option<Choice> {
     let grey = place("Y")?;
     let alone = names.len() == 1;
@@ -110,7 +110,7 @@ fn is_aside(name: &str) -> bool {
             || lower.ends_with(&format!("_{word}"))
             || (word.len() > 3 && lower.starts_with(*word))
     };
-    // `objectId` and `instanceID`: an identifier's name ends in these letters with a capital.
+    // `objectId` and `instanceID`: identifier names end in "id" with a capital I.
     let is_id = name.ends_with("Id") || name.ends_with("ID");
     ALPHAS.iter().any(|alpha| alpha.eq_ignore_ascii_case(name)) || ASIDE.iter().any(is_word) || is_id
 }

@@ -1,4 +1,4 @@
-//! The display window of an EXR, which is the texture, and the data window, which has the pixels in the file.
+//! The display window of an EXR, which is the texture, and the data window, which covers the pixels in the file.
 
 use exr::math::Vec2;
 use exr::meta::attribute::IntegerBounds;
@@ -16,7 +16,7 @@ pub(super) struct Windows {
 
 impl Windows {
     /// # Errors
-    /// [`ReadError::Unsupported`] if the two have no pixel in common, [`ReadError::TooLarge`].
+    /// [`ReadError::Unsupported`] if the windows do not overlap, [`ReadError::TooLarge`].
     pub(super) fn of(header: &Header, limits: &Limits) -> Result<Self, ReadError> {
         let data = IntegerBounds::new(header.own_attributes.layer_position, header.layer_size);
         let display = header.shared_attributes.display_window;
@@ -60,12 +60,12 @@ impl Windows {
         (self.display.size.width(), self.display.size.height())
     }
 
-    /// Pixels in a row of the data, and rows.
+    /// Width and height of the data.
     pub(super) fn data_size(&self) -> (usize, usize) {
         (self.data.size.width(), self.data.size.height())
     }
 
-    /// What was cut or is missing, in words; `None` if the two are one.
+    /// A description of what was cropped or is missing; `None` if the windows are equal.
     pub(super) fn warning(&self) -> Option<String> {
         let [left, right, from, to] = self.columns();
         let [top, bottom, first, last] = self.rows();
@@ -81,8 +81,8 @@ impl Windows {
         Some(format!("its pixels cover {data}, and the texture is the display window, {display}: {what}"))
     }
 
-    /// The pixels of the display window, each of `channels` samples, from those of the data window; missing ones are 0, as
-    /// in OpenImageIO.
+    /// Converts the pixels of the data window, each of `channels` samples, to those of the display window. Missing
+    /// pixels are 0, as in OpenImageIO.
     pub(super) fn placed<T: Copy + bytemuck::Zeroable>(
         &self,
         pixels: Vec<T>,

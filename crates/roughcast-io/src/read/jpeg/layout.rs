@@ -1,13 +1,14 @@
-//! A JPEG's headers, read before anything is decoded: sizes, sampling factors, scans.
+//! The headers of a JPEG, read before decoding: sizes, sampling factors, scans.
 
 use super::{FORMAT, SAVE_PLAIN};
 use crate::ReadError;
 use crate::read::memory::{malformed, unsupported};
 
-/// Scans of one image. A progressive file has about ten; each costs a pass over the whole image, however few bytes it has.
+/// Maximum number of scans. A progressive file has about ten; each costs a pass over the whole image, however few bytes
+/// it has.
 const MAX_SCANS: usize = 500;
 
-/// Samples along the side of a block of the cosine transform.
+/// Side of a cosine-transform block in samples.
 const BLOCK: u32 = 8;
 
 /// The frame and the scans of an image.
@@ -16,9 +17,9 @@ pub(super) struct Layout {
     pub(super) width: u16,
     pub(super) height: u16,
     components: Vec<Component>,
-    /// The components of each scan, by their place in the frame.
+    /// The components of each scan, by index in the frame.
     scans: Vec<Vec<usize>>,
-    /// From Adobe's segment: whether colours are stored as YCbCr.
+    /// Whether colours are stored as YCbCr, according to Adobe's segment.
     transform: Option<bool>,
 }
 
@@ -34,8 +35,8 @@ impl Layout {
     /// Reads all segments.
     ///
     /// # Errors
-    /// [`ReadError::Malformed`] if there is no frame or no scan, a segment is cut or the image is not ended,
-    /// [`ReadError::Unsupported`] for coding processes that are not supported.
+    /// [`ReadError::Malformed`] if there is no frame or no scan, a segment is truncated, or the end of the image is
+    /// missing; [`ReadError::Unsupported`] for coding processes that are not supported.
     pub(super) fn of(bytes: &[u8]) -> Result<Self, ReadError> {
         let mut layout = Self::default();
         let mut segments = Segments { bytes, at: 2, in_scan: false };
@@ -104,9 +105,9 @@ impl Layout {
         Ok(())
     }
 
-    /// Refuses files that the decoder would misread: a scan of one component whose sampling factor lies between one and the
-    /// largest of the image, where the component has fewer blocks than its share of the whole units of all components. The
-    /// decoder expects the larger number.
+    /// Refuses files that the decoder would misread. These have a scan of one component whose sampling factor lies
+    /// between one and the largest of the image, and the component has fewer blocks than its share of the interleaved
+    /// units (MCUs). The decoder expects the larger number.
     pub(super) fn check(&self) -> Result<(), ReadError> {
         let most =
             |factor: fn(&Component) -> u8| u32::from(self.components.iter().map(factor).max().unwrap_or(1));
@@ -151,7 +152,7 @@ struct Segments<'a> {
 }
 
 impl<'a> Segments<'a> {
-    /// The next marker with the content of its segment, or an error where the file ends before the end of the image.
+    /// The next marker with the content of its segment, or an error if the file ends before the end of the image.
     fn next(&mut self) -> Result<(u8, &'a [u8]), ReadError> {
         let too_early = || malformed(FORMAT, "the file ends too early");
         loop {

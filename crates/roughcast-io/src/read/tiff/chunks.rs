@@ -1,4 +1,4 @@
-//! Strips and tiles: where they are, and their decoding into rows of samples.
+//! Strips and tiles: locating them, and decoding them into rows of samples.
 
 use rayon::prelude::*;
 
@@ -18,10 +18,10 @@ pub(super) struct Chunks<'a> {
     height: usize,
     /// Pixels in a row of a strip or tile.
     chunk_width: usize,
-    /// Rows of a strip or tile; for the last strip there may be fewer in the file.
+    /// Rows of a strip or tile; the last strip may have fewer in the file.
     chunk_height: usize,
     is_tiled: bool,
-    /// 1 if the samples of a pixel are interleaved, otherwise one plane for each.
+    /// Number of planes: 1 if the samples of a pixel are interleaved, otherwise one per sample.
     planes: usize,
     offsets: Values<'a>,
     byte_counts: Option<Values<'a>>,
@@ -31,7 +31,7 @@ pub(super) struct Chunks<'a> {
     is_bit_reversed: bool,
 }
 
-/// Buffers that are reused for each chunk.
+/// Buffers reused for each chunk.
 #[derive(Default)]
 struct Scratch {
     bit_reversed: Vec<u8>,
@@ -65,7 +65,7 @@ impl<'a> Chunks<'a> {
             2 => layout.samples,
             other => return Err(malformed(FORMAT, format_args!("there is no planar configuration {other}"))),
         };
-        // Tiles are decoded whole, and may be far larger than the image: they count against the limit too.
+        // Tiles are decoded whole and may be far larger than the image, so they count against the limit too.
         let padded = |side: usize, chunk: u64| (side as u64).div_ceil(chunk).saturating_mul(chunk);
         let unread = (layout.samples / planes).div_ceil(layout.channels.len()) as u64;
         check_size(
@@ -75,7 +75,7 @@ impl<'a> Chunks<'a> {
             limits,
         )?;
 
-        // Some writers use the tags of strips for tiles, and some the other way round.
+        // Some writers use the strip tags for tiles, others the tile tags for strips.
         let either = |a: u16, b: u16| Ok::<_, ReadError>(directory.values(a)?.or(directory.values(b)?));
         let (offsets, byte_counts) = if is_tiled {
             (
@@ -141,7 +141,7 @@ impl<'a> Chunks<'a> {
         self.across() * self.down() * self.planes
     }
 
-    /// Number of strips or tiles that a writer left out, as GDAL does for those without data.
+    /// Number of strips or tiles that the writer left out, as GDAL does for those without data.
     pub fn left_out(&self) -> usize {
         (0..self.count()).filter(|&index| self.is_left_out(index)).count()
     }
@@ -151,7 +151,8 @@ impl<'a> Chunks<'a> {
             && self.byte_counts.is_some_and(|c| c.unsigned(index) == Some(0))
     }
 
-    /// All samples that are read, interleaved. `convert` makes a sample from its bits; `nothing` fills what was left out.
+    /// Decodes the selected samples, interleaved. `convert` turns bits into a sample; `nothing` fills strips or tiles
+    /// that were left out.
     pub fn decode<T>(
         &self,
         layout: &Layout,
@@ -162,7 +163,7 @@ impl<'a> Chunks<'a> {
         T: Copy + Send + Sync + bytemuck::Zeroable,
     {
         let row_len = self.width * layout.channels.len();
-        // If the caller's limit is far above any memory, the product may not fit; nor would the image.
+        // The product may overflow if the caller's limit far exceeds the memory; then the image would not fit either.
         let mut samples = zeros::<T>(row_len.saturating_mul(self.height))?;
         let bands = samples.par_chunks_mut(row_len * self.chunk_height).enumerate();
         let fault = bands
@@ -173,7 +174,7 @@ impl<'a> Chunks<'a> {
         fault.unwrap_or(Ok(())).map(|()| samples)
     }
 
-    /// Decodes the strip, or the row of tiles, of every plane into its rows of the image.
+    /// Decodes a strip, or a row of tiles, of every plane into its rows of the image.
     fn decode_band<T: Copy>(
         &self,
         layout: &Layout,
@@ -187,7 +188,7 @@ impl<'a> Chunks<'a> {
         let samples = layout.samples / self.planes;
         let row_len = self.width * channels;
         for plane in 0..self.planes {
-            // Where in a row of this plane each channel of the image is.
+            // The position of each channel of the image in a pixel of this plane.
             let sources: Vec<(usize, usize)> = (layout.channels.iter().enumerate())
                 .filter(|(_, channel)| self.planes == 1 || channel.sample == plane)
                 .map(|(index, channel)| (index, if self.planes == 1 { channel.sample } else { 0 }))
@@ -233,7 +234,7 @@ impl<'a> Chunks<'a> {
         Ok(())
     }
 
-    /// Unpacks a strip or tile into the buffer; the number of bytes of one row.
+    /// Unpacks a strip or tile into the buffer and returns the number of bytes per row.
     fn unpack(
         &self,
         index: usize,
@@ -249,7 +250,7 @@ impl<'a> Chunks<'a> {
         let offset = self.offsets.unsigned(index).ok_or_else(ends_too_early)?;
         let length = match self.byte_counts {
             Some(counts) => counts.unsigned(index).ok_or_else(ends_too_early)?,
-            // Required, but the first writers left it out.
+            // Required, but early writers left it out.
             None => u64::MAX,
         };
         let mut packed = self.file.slice_up_to(offset, length);
@@ -264,7 +265,7 @@ impl<'a> Chunks<'a> {
     }
 }
 
-/// Rows that a strip or tile must have in the file: tiles are always whole, the last strip ends with the image.
+/// Rows that a strip or tile must have in the file: tiles are always whole; the last strip ends with the image.
 fn rows_of(visible: usize, chunks: &Chunks<'_>) -> usize {
     if chunks.is_tiled { chunks.chunk_height } else { visible }
 }

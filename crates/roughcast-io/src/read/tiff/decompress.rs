@@ -1,4 +1,4 @@
-//! From the bytes of a strip or tile to its rows, by the decompressors of other crates.
+//! Decompresses strips and tiles into rows, with decompressors from other crates.
 
 use weezl::BitOrder;
 use weezl::decode::Configuration;
@@ -25,13 +25,13 @@ pub(super) enum Compression {
 }
 
 impl Compression {
-    /// The compression of this number, or why it is not supported.
+    /// The compression with this number, or why it is not supported.
     pub fn of(number: u64) -> Result<Self, ReadError> {
         let name = match number {
             1 => return Ok(Self::None),
             4 => return Ok(Self::CcittGroup4),
             5 => return Ok(Self::Lzw),
-            // 32946 is the number that deflate had before it got 8.
+            // 32946 is deflate's old number, from before it was assigned 8.
             8 | 32946 => return Ok(Self::Deflate),
             32773 => return Ok(Self::PackBits),
             50000 => return Ok(Self::Zstd),
@@ -57,7 +57,7 @@ impl Compression {
         Err(unsupported(FORMAT, name, SAVE_ANOTHER_WAY))
     }
 
-    /// Whether libtiff applies predictors to it. If not, the tag has no meaning.
+    /// Whether libtiff applies predictors to it. If not, the predictor tag is ignored.
     pub fn has_predictor(self) -> bool {
         matches!(self, Self::Lzw | Self::Deflate | Self::Zstd)
     }
@@ -68,7 +68,7 @@ impl Compression {
 pub(super) struct Shape {
     /// Pixels in a row.
     pub width: usize,
-    /// Rows that must be there.
+    /// Required rows.
     pub rows: usize,
     /// Samples of a pixel.
     pub samples: usize,
@@ -78,8 +78,8 @@ pub(super) struct Shape {
 
 /// Unpacks a strip or tile.
 ///
-/// `unpacked` holds at least `shape.rows` rows. It may hold more, up to those of a whole strip: writers that fill up the last
-/// strip are not at fault.
+/// `unpacked` holds at least `shape.rows` rows. It may hold more, up to a whole strip, because writers may pad the last
+/// strip.
 pub(super) fn decompress(
     compression: Compression,
     packed: &[u8],
@@ -105,8 +105,8 @@ fn copy(packed: &[u8], unpacked: &mut [u8]) -> usize {
     length
 }
 
-/// LZW, from the most significant bit with codes that grow early, as in TIFF 6.0; or, as in the first writers,
-/// from the least significant bit with codes that grow late. The first code, which clears the table, distinguishes them.
+/// LZW, either most significant bit first with early code growth, as in TIFF 6.0, or least significant bit first with
+/// late code growth, as in early writers. The first code, which clears the table, distinguishes them.
 fn unpack_lzw(packed: &[u8], unpacked: &mut [u8]) -> Result<usize, ReadError> {
     let is_old = matches!(packed, [0, second, ..] if second & 1 == 1);
     let configuration = if is_old {
@@ -114,7 +114,7 @@ fn unpack_lzw(packed: &[u8], unpacked: &mut [u8]) -> Result<usize, ReadError> {
     } else {
         Configuration::with_tiff_size_switch(BitOrder::Msb, 8)
     };
-    // What follows after the last pixel, the end code included, does not matter.
+    // Anything after the last pixel, including the end code, is ignored.
     let mut decoder = configuration.with_yield_on_full_buffer(true).build();
     let (mut from, mut to) = (0, 0);
     while to < unpacked.len() {
@@ -199,7 +199,7 @@ fn unpack_group4(packed: &[u8], unpacked: &mut [u8], shape: Shape) -> Result<usi
     Ok(shape.rows * shape.row_bytes)
 }
 
-/// A WebP file of its own for each strip or tile, RGB or RGBA of 8 bits.
+/// WebP: each strip or tile is a separate WebP file, 8-bit RGB or RGBA.
 fn unpack_webp(packed: &[u8], unpacked: &mut [u8], shape: Shape) -> Result<usize, ReadError> {
     let rows = unpacked.len() / shape.row_bytes;
     let limits = Limits { max_pixels: (shape.width * rows) as u64 };
@@ -212,7 +212,7 @@ fn unpack_webp(packed: &[u8], unpacked: &mut [u8], shape: Shape) -> Result<usize
     }
     match (picture.channels(), shape.samples) {
         (stored, wanted) if stored == wanted => Ok(copy(samples, unpacked)),
-        // WebP leaves out an alpha that is opaque everywhere.
+        // WebP omits an alpha channel that is opaque everywhere.
         (3, 4) => {
             for (pixel, color) in unpacked.chunks_exact_mut(4).zip(samples.chunks_exact(3)) {
                 pixel[..3].copy_from_slice(color);
@@ -232,7 +232,7 @@ mod tests {
         Shape { width: bytes, rows: 1, samples: 1, row_bytes: bytes }
     }
 
-    /// The example of Apple's Technical Note TN1023.
+    /// The example from Apple's Technical Note TN1023.
     #[test]
     fn pack_bits_unpacks_the_example_of_its_description() {
         let packed = b"\xfe\xaa\x02\x80\x00\x2a\xfd\xaa\x03\x80\x00\x2a\x22\xf7\xaa";
@@ -248,7 +248,7 @@ mod tests {
         }
     }
 
-    /// The example of TIFF 6.0, section 13: 7 7 7 8 8 7 7 6 6, in codes of 9 bits.
+    /// The example from TIFF 6.0, section 13: 7 7 7 8 8 7 7 6 6, in 9-bit codes.
     #[test]
     fn lzw_unpacks_the_example_of_the_specification() {
         let codes = [256u16, 7, 258, 8, 8, 258, 6, 6, 257];

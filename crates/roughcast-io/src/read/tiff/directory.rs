@@ -1,7 +1,8 @@
 //! The directories of a TIFF: tags and their values, as views of the file's bytes.
 //!
-//! TIFF 6.0, section 2; BigTIFF (<https://www.awaresystems.be/imaging/tiff/bigtiff.html>). Nothing is allocated for values, so an
-//! entry that claims billions of them costs nothing: its values do not lie within the file, and reading them is an error.
+//! TIFF 6.0, section 2; BigTIFF (<https://www.awaresystems.be/imaging/tiff/bigtiff.html>). Nothing is allocated for
+//! values, so an entry that claims billions of values costs nothing: they lie outside the file, and reading them is an
+//! error.
 
 use std::collections::BTreeMap;
 
@@ -37,13 +38,13 @@ pub(super) mod tag {
     pub const GDAL_NODATA: u16 = 42113;
 }
 
-/// Directories that are followed. Files with more exist (one image for each moment of a recording), but hold no map.
+/// Maximum number of directories read. Files with more exist (one image per frame of a recording), but contain no maps.
 const MAX_DIRECTORIES: usize = 1024;
 
-/// The most entries read in all directories together, so that many directories that share their bytes cost little time.
+/// Maximum number of entries read over all directories, so that many directories that share bytes cost little time.
 const MAX_ENTRIES: u64 = 1 << 20;
 
-/// The bytes of a file, and how numbers are stored in it.
+/// The bytes of a file, with its byte order and offset size.
 #[derive(Clone, Copy)]
 pub(super) struct File<'a> {
     pub bytes: &'a [u8],
@@ -98,7 +99,7 @@ impl<'a> File<'a> {
                     entries += count;
                     next = following;
                 }
-                // The wanted image may be complete.
+                // The requested image may still be complete.
                 Err(_) if !directories.is_empty() => break,
                 Err(error) => return Err(error),
             }
@@ -106,7 +107,7 @@ impl<'a> File<'a> {
         Ok(directories)
     }
 
-    /// The directory at an offset, the number of its entries, and the offset of the next directory.
+    /// The directory at an offset, its number of entries, and the offset of the next directory.
     fn directory(self, start: u64) -> Result<(Directory<'a>, u64, u64), ReadError> {
         let (count_bytes, number_bytes) = if self.is_big { (8, 8) } else { (2, 4) };
         let count = self.number(start, count_bytes)?;
@@ -121,7 +122,7 @@ impl<'a> File<'a> {
             let place = at + 4 + number_bytes;
             let fits = count.saturating_mul(bytes_of_type(field_type)) <= number_bytes;
             let start = if fits { place } else { self.number(place, number_bytes)? };
-            // Of two entries for a tag, libtiff takes the first.
+            // If a tag has two entries, libtiff uses the first.
             entries.entry(tag as u16).or_insert(Entry { field_type, count, start });
         }
         // Some writers leave out the zero after the last directory.
@@ -129,7 +130,7 @@ impl<'a> File<'a> {
         Ok((Directory { file: self, entries }, count, next))
     }
 
-    /// The unsigned number of this many bytes at an offset.
+    /// The unsigned integer of this many bytes at an offset.
     fn number(self, start: u64, length: u64) -> Result<u64, ReadError> {
         self.slice(start, length).map(|bytes| number_of(bytes, self.is_big_endian)).ok_or_else(ends_too_early)
     }
@@ -139,7 +140,7 @@ impl<'a> File<'a> {
         self.bytes.get(start..start.checked_add(usize::try_from(length).ok()?)?)
     }
 
-    /// The bytes from an offset on, as many as exist up to `length`.
+    /// Up to `length` bytes from an offset on, fewer if the file ends earlier.
     pub fn slice_up_to(self, start: u64, length: u64) -> &'a [u8] {
         let from = usize::try_from(start).ok().and_then(|start| self.bytes.get(start..)).unwrap_or_default();
         &from[..from.len().min(usize::try_from(length).unwrap_or(usize::MAX))]
@@ -172,7 +173,7 @@ impl<'a> Directory<'a> {
         Ok(self.unsigned(tag)?.unwrap_or(default))
     }
 
-    /// The text of a tag, up to its zero byte. `None` also where it lies outside of the file.
+    /// The text of a tag, up to its zero byte. `None` if the tag is absent or the text lies outside the file.
     pub fn text(&self, tag: u16) -> Option<String> {
         let bytes = self.values(tag).ok()??.bytes;
         let text = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
@@ -209,7 +210,7 @@ impl Values<'_> {
     }
 }
 
-/// Bytes of a value. Unknown types count as bytes, the shortest values.
+/// Bytes per value. Unknown types count as bytes, the shortest type.
 fn bytes_of_type(field_type: u64) -> u64 {
     match field_type {
         3 | 8 => 2,
@@ -219,7 +220,7 @@ fn bytes_of_type(field_type: u64) -> u64 {
     }
 }
 
-/// The unsigned number in at most 8 bytes.
+/// The unsigned integer in at most 8 bytes.
 fn number_of(bytes: &[u8], is_big_endian: bool) -> u64 {
     let append = |number: u64, byte: &u8| number << 8 | u64::from(*byte);
     if is_big_endian { bytes.iter().fold(0, append) } else { bytes.iter().rev().fold(0, append) }
@@ -233,7 +234,7 @@ pub(super) fn ends_too_early() -> ReadError {
 mod tests {
     use super::*;
 
-    /// A file of one directory with one entry: a text of this many characters.
+    /// A file with one directory and one entry: a text of this many characters.
     fn with_text(characters: u32, big_endian: bool) -> Vec<u8> {
         let two = |n: u16| if big_endian { n.to_be_bytes() } else { n.to_le_bytes() };
         let four = |n: u32| if big_endian { n.to_be_bytes() } else { n.to_le_bytes() };

@@ -8,7 +8,7 @@ const GT_MODEL_TYPE: u64 = 1024;
 /// The key of the unit of projected coordinates.
 const PROJ_LINEAR_UNITS: u64 = 3076;
 
-/// The width of a pixel that the file states; `None` if there is none, or none that can be used.
+/// The pixel width stated in the file; `None` if it is missing or unusable.
 pub(super) fn pixel_size(directory: &Directory<'_>) -> Option<PixelSize> {
     let width = width_of(directory)?;
     if !(width.is_finite() && width > 0.0) {
@@ -33,15 +33,16 @@ fn width_of(directory: &Directory<'_>) -> Option<f64> {
     if let Some(scale) = directory.values(tag::MODEL_PIXEL_SCALE).ok()? {
         return scale.double(0);
     }
-    // A 4x4 matrix, row by row: the first column is what a step to the next pixel means.
+    // A 4x4 matrix in row-major order: the first column is the step to the next pixel.
     let matrix = directory.values(tag::MODEL_TRANSFORMATION).ok()??;
     Some(matrix.double(0)?.hypot(matrix.double(4)?))
 }
 
-/// The value of a key that is stored in the directory of keys itself.
+/// The value of a key that is stored in the key directory itself.
 fn key(directory: &Directory<'_>, wanted: u64) -> Option<u64> {
     let keys = directory.values(tag::GEO_KEY_DIRECTORY).ok()??;
-    // Four numbers each: key, place of the value (0 for "here"), count, value. The first four are a header.
+    // Four numbers per key: key, location of the value (0 for "here"), count, value. The first four numbers are a
+    // header.
     let entries = (1..keys.len() / 4).map(|entry| [0, 1, 3].map(|field| keys.unsigned(entry * 4 + field)));
     entries.into_iter().find_map(|entry| match entry {
         [Some(key), Some(0), value] if key == wanted => value,

@@ -1,14 +1,14 @@
-//! The samples of a pixel: their type, and which of them are read under which names.
+//! The samples of a pixel: their type, the selection to read, and their names.
 
 use super::directory::{Directory, tag};
 use super::{FORMAT, SAVE_PLAIN};
 use crate::ReadError;
 use crate::read::memory::{malformed, unsupported};
 
-/// Recordings of many wavelengths have more samples per pixel, but are not maps.
+/// Maximum number of samples per pixel. Multispectral images have more, but are not maps.
 const MAX_SAMPLES: u64 = 1024;
 
-/// The type of all samples as they are stored.
+/// The stored type of all samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Numbers {
     Unsigned,
@@ -30,7 +30,7 @@ pub(super) enum Colours {
 /// A sample that is read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Channel {
-    /// Which sample of the pixel it is.
+    /// Index of the sample in the pixel.
     pub sample: usize,
     pub name: String,
     /// Whether the file marks it as alpha.
@@ -42,7 +42,7 @@ pub(super) struct Channel {
 pub(super) struct Layout {
     pub numbers: Numbers,
     pub bits: u32,
-    /// Samples of a pixel in the file, whether they are read or not.
+    /// Samples per pixel in the file, whether they are read or not.
     pub samples: usize,
     pub colours: Colours,
     /// The samples that are read. For a palette this is the index.
@@ -54,7 +54,7 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// The layout of a directory's image, with the channels of these names; without names, the unambiguous ones.
+    /// The layout of a directory's image with the named channels, or with the unambiguous ones if no names are given.
     pub fn of(directory: &Directory<'_>, wanted: &[String]) -> Result<Self, ReadError> {
         let samples = directory.unsigned_or(tag::SAMPLES_PER_PIXEL, 1)?;
         if samples == 0 {
@@ -79,7 +79,7 @@ impl Layout {
         Ok(layout)
     }
 
-    /// The layout of a mask of 1 or 8 bits; `None` for any other.
+    /// The layout of a 1-bit or 8-bit mask; `None` for any other bit depth.
     pub fn of_mask(directory: &Directory<'_>) -> Result<Option<Self>, ReadError> {
         const MASK: u64 = 4;
         let is_mask = directory.unsigned(tag::PHOTOMETRIC_INTERPRETATION)? == Some(MASK)
@@ -99,10 +99,11 @@ impl Layout {
         }))
     }
 
-    /// Names of all samples: those of the colours first. Further samples, whose meaning the file does not state,
-    /// are named by their number, as in OpenImageIO.
+    /// Names of all samples, colours first. Further samples whose meaning the file does not state are named by their
+    /// number, as in OpenImageIO.
     fn names(&self, alphas: &[Alpha]) -> Vec<String> {
-        // Several samples, none of them marked as alpha, are vectors, or colours of a writer that knows only grey.
+        // Several samples, none marked as alpha, are vectors, or colours from a writer that declares everything as
+        // grey.
         let is_stated = alphas.iter().any(|alpha| *alpha != Alpha::No);
         let colours: &[&str] = match self.colours {
             Colours::Rgb => &["R", "G", "B"],
@@ -133,7 +134,7 @@ impl Layout {
         };
         if !wanted.is_empty() {
             let find = |name: &String| names.iter().position(|known| known.eq_ignore_ascii_case(name));
-            // A channel chosen by name is read for its values, even an alpha.
+            // A channel chosen by name, even alpha, is treated as data.
             let called = |sample: usize| {
                 let name = if names[sample] == "A" { "alpha" } else { &names[sample] };
                 Channel { sample, name: name.to_owned(), is_alpha: false }
@@ -155,7 +156,8 @@ impl Layout {
         }
         self.channels = (0..colours).chain(alpha.or(fourth)).map(channel).collect();
         if let Some(last) = self.channels.get_mut(3) {
-            // A fourth sample without a stated meaning is treated as alpha: it counts only if the pixels show that it matters.
+            // A fourth sample without a stated meaning is treated as alpha, which is used only if its values show that
+            // it matters.
             last.name = "A".to_owned();
         }
         self.is_premultiplied = alpha.is_some_and(|sample| alphas[sample] == Alpha::Associated);
@@ -173,8 +175,8 @@ impl Layout {
         Ok(())
     }
 
-    /// Whether the bits of all samples follow each other, the most significant first. So do integers of 24 bits in
-    /// OpenImageIO and tifffile, although libtiff swaps their bytes as if the byte order of the file applied to them.
+    /// Whether the samples form one bit stream, most significant bit first. OpenImageIO and tifffile treat 24-bit
+    /// integers this way too, although libtiff swaps their bytes according to the byte order of the file.
     pub fn is_bit_stream(&self) -> bool {
         match self.numbers {
             Numbers::Float => false,
@@ -209,7 +211,7 @@ fn no_such_channel(name: &str, names: &[String]) -> ReadError {
     ReadError::NoSuchChannel { format: FORMAT, wanted: name.to_owned(), contents: list_of(names) }
 }
 
-/// Names in one line of bounded length: those of many samples are numbered.
+/// Names in one line of bounded length: a long list is abbreviated.
 fn list_of(names: &[String]) -> String {
     const MOST: usize = 16;
     match names {
@@ -218,7 +220,7 @@ fn list_of(names: &[String]) -> String {
     }
 }
 
-/// What a sample after the colours is.
+/// The meaning of a sample after the colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Alpha {
     No,
@@ -227,12 +229,12 @@ enum Alpha {
     Unassociated,
 }
 
-/// For each sample of a pixel, whether it is an alpha.
+/// Whether each sample of a pixel is alpha.
 fn alphas_of(directory: &Directory<'_>, samples: usize, colours: Colours) -> Result<Vec<Alpha>, ReadError> {
     let mut alphas = vec![Alpha::No; samples];
     let Some(extra) = directory.values(tag::EXTRA_SAMPLES)? else { return Ok(alphas) };
     let base = if colours == Colours::Rgb { 3 } else { 1 };
-    // The entries are those of the last samples.
+    // The entries describe the last samples.
     let first = samples.saturating_sub(extra.len()).max(base);
     for (index, alpha) in alphas.iter_mut().skip(first).enumerate() {
         *alpha = match extra.unsigned(index) {
@@ -295,7 +297,7 @@ fn colours_of(directory: &Directory<'_>, samples: usize) -> Result<Colours, Read
         }
         Some(2) => Ok(Colours::Rgb),
         Some(3) => Ok(Colours::Palette),
-        // The tag is required. Without it libtiff, too, goes by the number of samples.
+        // The tag is required. If it is missing, libtiff also infers the value from the number of samples.
         None if samples >= 3 => Ok(Colours::Rgb),
         Some(1) | None => Ok(Colours::Grey),
         Some(4) => refuse("a transparency mask"),

@@ -1,11 +1,11 @@
 //! TIFF and BigTIFF: strips and tiles, interleaved and planar, integers and floats.
 //!
-//! This module reads tags and the arrangement of pixels; other crates unpack the pixels (`weezl`, `libdeflater`, `zstd`,
-//! `fax`, and the reader of WebP). The `tiff` crate (0.11) rejects valid LZW tiles and tiles with the tags of strips as
-//! broken files, panics on planar tiles, and undoes predictors wrongly if there are extra samples.
+//! This module reads tags and the arrangement of pixels; other crates unpack the pixels (`weezl`, `libdeflater`,
+//! `zstd`, `fax`, and the reader of WebP). The `tiff` crate (0.11) rejects valid LZW tiles and tiles with the tags of
+//! strips as broken files, panics on planar tiles, and undoes predictors wrongly if there are extra samples.
 //!
-//! Follows TIFF 6.0 (<https://www.itu.int/itudoc/itu-t/com16/tiff-fx/docs/tiff6.pdf>). Where files in use deviate from it,
-//! or it leaves something undefined, libtiff decides.
+//! Follows TIFF 6.0 (<https://www.itu.int/itudoc/itu-t/com16/tiff-fx/docs/tiff6.pdf>). Where real files deviate from
+//! it, or it leaves something undefined, this module follows libtiff.
 
 mod chunks;
 mod decompress;
@@ -31,19 +31,20 @@ use samples::Stored;
 const FORMAT: &str = "TIFF";
 const SAVE_PLAIN: &str = "save it as grey or RGB of 8 or 16 bits or of floats";
 
-/// Reads an image of a TIFF: the first of full size, or that of the number that [`ReadOptions::layer`] gives, from 1.
+/// Reads an image of a TIFF: the first full-size one, or the one selected by [`ReadOptions::layer`], numbered from 1.
 ///
-/// - Unsigned integers of 1, 2, 4 and 8 bits give 8 bits, those of up to 16 give 16 bits, both of full range.
-/// - Unsigned integers of more bits give floats: of 0 ..= 1 for colours, and for grey if the largest needs one of the
-///   highest 8 bits; otherwise the numbers themselves, heights in some unit.
-/// - Signed integers of one channel give the numbers themselves as floats, heights in some unit. With more channels they are
-///   signed normalised, -1 ..= 1.
-/// - Floats of 16 bits give half floats, those of 24, 32 and 64 bits floats.
-/// - Where 0 is white (photometric interpretation 0), unsigned integers are inverted. libtiff does so for its RGBA images;
-///   OpenImageIO for up to 8 bits; tifffile does not.
+/// - Unsigned integers of 1, 2, 4 and 8 bits become 8 bits, those of up to 16 bits become 16 bits, both scaled to the
+///   full range.
+/// - Unsigned integers of more bits become floats: 0 ..= 1 for colours, and for grey if the largest value needs one of
+///   the highest 8 bits; otherwise the values are kept, as heights in some unit.
+/// - Signed integers of one channel become floats with the same values, heights in some unit. With more channels they
+///   are signed normalised, -1 ..= 1.
+/// - 16-bit floats become half floats; 24-, 32- and 64-bit floats become floats.
+/// - Where 0 is white (photometric interpretation 0), unsigned integers are inverted. libtiff does so for its RGBA
+///   images; OpenImageIO for up to 8 bits; tifffile does not.
 /// - Grey with a second sample is grey and alpha only if the file marks that sample as alpha.
-/// - Texels that have the value of GDAL's tag for "no data", and those outside of its mask, are NaN.
-/// - Palettes give RGB. Orientation is ignored, as are gamma and colour profiles.
+/// - Texels with the value of GDAL's "no data" tag, and texels outside GDAL's mask, become NaN.
+/// - Palettes become RGB. Orientation, gamma and colour profiles are ignored.
 pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<Decoded, ReadError> {
     let file = File::new(bytes)?;
     let directories = file.directories()?;
@@ -78,7 +79,7 @@ pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<Decoded, ReadE
     };
     let decoded = Decoded { image, info };
     match layout.colours {
-        // Its channels are those of its colours, which are known only now.
+        // Its channels are those of its colours, known only at this point.
         Colours::Palette => chosen(decoded, &ReadOptions { layer: None, ..options.clone() }),
         _ => Ok(decoded),
     }
@@ -92,7 +93,7 @@ fn subfile_type(directory: &Directory<'_>) -> u64 {
     directory.unsigned(tag::NEW_SUBFILE_TYPE).ok().flatten().unwrap_or(0)
 }
 
-/// The mask of the only image of a file, if there is one: 0 for each pixel without data.
+/// The mask, if any, of a file with one image: 0 for each pixel without data.
 fn read_mask(
     file: File<'_>,
     directories: &[Directory<'_>],
@@ -113,7 +114,7 @@ fn read_mask(
     chunks.decode(&layout, 0, |word| word as u8).map(Some)
 }
 
-/// The directory of the wanted image, with a warning if there are others.
+/// The directory of the requested image, with a warning if there are others.
 fn choose<'d, 'a>(
     directories: &'d [Directory<'a>],
     layer: Option<&str>,

@@ -1,4 +1,4 @@
-//! Texels without data: GDAL's tag 42113, a number as text, and its masks, images beside the one that they belong to
+//! Texels without data: GDAL's tag 42113, a number as text, and its masks, which are separate images in the same file
 //! (<https://gdal.org/drivers/raster/gtiff.html>, "Nodata value" and "Internal nodata masks").
 
 use half::f16;
@@ -10,16 +10,16 @@ use super::samples::Stored;
 use crate::ReadError;
 use crate::read::memory::zeros;
 
-/// Relative difference up to which a float is the one written in the tag. Writers shorten the digits (`-3.40282e+38`); GDAL
-/// allows for 10 steps of a float, each 2^-23.
+/// Maximum relative difference at which a float matches the value in the tag. Writers shorten the digits
+/// (`-3.40282e+38`); GDAL allows 10 float steps of 2^-23 each.
 const SAME: f32 = 10.0 / (1 << 23) as f32;
 
-/// How a file marks texels without data.
+/// A file's marking of texels without data.
 pub(super) struct Nodata {
-    /// The value that marks it, as text and as stored, if the samples can have it.
+    /// The marker value, as text and as stored, if the sample type can represent it.
     text: String,
     word: Option<u64>,
-    /// For each texel 0 where it has no data.
+    /// The mask: 0 for each texel without data.
     mask: Option<Vec<u8>>,
 }
 
@@ -30,13 +30,13 @@ impl Nodata {
         Self { text, word, mask }
     }
 
-    /// The value as stored; `None` if there is none, or none that the samples can have.
+    /// The marker value as stored; `None` if there is none or the sample type cannot represent it.
     pub fn word(&self) -> Option<u64> {
         self.word
     }
 
-    /// Makes texels without data NaN. The samples become floats if there are any. `value` is the marker's value among
-    /// the samples.
+    /// Sets texels without data to NaN. If there are any, the samples become floats. `value` is the marker's decoded
+    /// sample value.
     pub fn apply(&self, stored: &mut Stored, value: f32, layout: &Layout) -> Result<(), ReadError> {
         if self.word.is_none() && self.mask.is_none() {
             return Ok(());
@@ -87,7 +87,7 @@ impl Nodata {
     }
 }
 
-/// A number as the samples store it; `None` if they cannot.
+/// The stored bits of a number; `None` if the sample type cannot represent it.
 fn word_of(value: f64, layout: &Layout) -> Option<u64> {
     let bits = layout.bits;
     let is_integer = value.fract() == 0.0;

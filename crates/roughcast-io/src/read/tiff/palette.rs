@@ -9,10 +9,10 @@ use super::{FORMAT, SAVE_PLAIN};
 use crate::ReadError;
 use crate::read::memory::{malformed, unsupported};
 
-/// The factor for a colour of 8 bits: 257 maps the largest to the largest; many writers shift by 8 bits instead.
+/// The factor for an 8-bit colour: 257 maps maximum to maximum; many writers shift by 8 bits instead.
 const EIGHT_BITS: [u16; 2] = [257, 256];
 
-/// Reads the colours of an image of indices: 8 bits where that is exact, else 16.
+/// Converts an image of indices to colours: 8 bits if that is exact, otherwise 16.
 pub(super) fn read(
     directory: &Directory<'_>,
     chunks: &Chunks<'_>,
@@ -22,11 +22,11 @@ pub(super) fn read(
         return Err(unsupported(FORMAT, format_args!("a palette with {}", layout.words()), SAVE_PLAIN));
     }
     let mut table = table_of(directory, 1 << layout.bits)?;
-    // Some writers stored 8 bits; like libtiff, we recognise them by their small values.
+    // Some writers stored 8-bit colours; as in libtiff, small values identify them.
     if table.iter().flatten().all(|&value| value <= 255) {
         table.iter_mut().flatten().for_each(|value| *value <<= 8);
     }
-    // Every word of this many bits has its entry.
+    // Every index of this many bits has an entry.
     let are_multiples = |factor: &u16| table.iter().flatten().all(|value| value.is_multiple_of(*factor));
     if EIGHT_BITS.iter().any(are_multiples) {
         let table: Vec<[u8; 3]> = table.iter().map(|color| color.map(|value| (value >> 8) as u8)).collect();

@@ -1,13 +1,14 @@
-//! Rows to little-endian, and predictors undone: TIFF 6.0, section 14, and Adobe's Photoshop TIFF Technical Note 3.
+//! Converts rows to little-endian and undoes predictors: TIFF 6.0, section 14, and Adobe's Photoshop TIFF Technical
+//! Note 3.
 
-/// What the writer did to the rows before it compressed them.
+/// The transform that the writer applied to the rows before compression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Predictor {
     /// Nothing.
     None,
-    /// Each sample minus the one of the pixel before it.
+    /// Each sample minus that of the previous pixel.
     Horizontal,
-    /// Floats, their bytes sorted by significance over the whole row, then each byte minus the one before it.
+    /// Floats with their bytes grouped by significance over the whole row, then each byte minus the previous one.
     FloatingPoint,
 }
 
@@ -15,14 +16,14 @@ pub(super) enum Predictor {
 #[derive(Clone, Copy)]
 pub(super) struct RowLayout {
     pub bits: u32,
-    /// Whether the bits of all samples follow each other, the most significant first, whatever the byte order of the file.
+    /// Whether the samples form one bit stream, most significant bit first, whatever the byte order of the file.
     pub is_bit_stream: bool,
     /// Samples of a pixel.
     pub samples: usize,
     pub is_big_endian: bool,
 }
 
-/// Undoes the predictor, after which samples of whole bytes are little-endian. `scratch` is any buffer.
+/// Undoes the predictor. Afterwards samples of whole bytes are little-endian. `scratch` is any buffer.
 pub(super) fn undo(predictor: Predictor, row: &mut [u8], layout: RowLayout, scratch: &mut Vec<u8>) {
     match predictor {
         Predictor::None => to_little_endian(row, layout),
@@ -73,7 +74,7 @@ fn to_little_endian(row: &mut [u8], layout: RowLayout) {
     }
 }
 
-/// Each sample of `N` bytes becomes its sum with the one `stride` samples before it.
+/// Adds to each sample of `N` bytes the sample `stride` samples before it.
 fn sum_up<const N: usize>(row: &mut [u8], stride: usize, add: impl Fn([u8; N], [u8; N]) -> [u8; N]) {
     let (samples, _) = row.as_chunks_mut::<N>();
     for index in stride..samples.len() {

@@ -1,4 +1,4 @@
-//! Converts stored samples to those of an image, and decides what their numbers mean.
+//! Converts stored samples to image samples, and decides what the numbers mean.
 
 use half::f16;
 use roughcast::Samples;
@@ -18,7 +18,7 @@ pub(super) struct Stored {
     pub warnings: Vec<String>,
 }
 
-/// Decodes the samples of an image. `mask` is 0 for each texel without data.
+/// Decodes the samples of an image. `mask` is 0 for texels without data.
 pub(super) fn read(
     directory: &Directory<'_>,
     chunks: &Chunks<'_>,
@@ -52,13 +52,13 @@ pub(super) fn read(
 /// What the numbers of an image mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Meaning {
-    /// Unsigned integers of which the largest is 1.
+    /// Unsigned integers whose maximum stands for 1.
     Normalised,
-    /// Signed integers of which the largest is 1.
+    /// Signed integers whose maximum stands for 1.
     SignedNormalised,
     /// The numbers themselves.
     Plain,
-    /// Unsigned integers that are either.
+    /// Unsigned integers that may be normalised or plain.
     Undecided,
 }
 
@@ -83,7 +83,7 @@ impl Meaning {
     }
 }
 
-/// The warning for an image where 0 is white. All programs agree on 8 bits.
+/// The warning for an image where 0 is white. For 8 bits all programs agree.
 fn inversion_warning(layout: &Layout, meaning: Meaning) -> Option<&'static str> {
     match meaning {
         _ if layout.colours != Colours::GreyInverted => None,
@@ -97,7 +97,8 @@ fn inversion_warning(layout: &Layout, meaning: Meaning) -> Option<&'static str> 
     }
 }
 
-/// Decodes the samples. `nothing` is the stored value of texels without data; its decoded value is returned with the samples.
+/// Decodes the samples. `nothing` is the stored value of texels without data; its decoded value is returned with the
+/// samples.
 fn decode(
     chunks: &Chunks<'_>,
     layout: &Layout,
@@ -119,13 +120,13 @@ fn decode(
     }
     Ok(match (layout.numbers, meaning) {
         (Numbers::Unsigned, Meaning::Normalised) => match bits {
-            // Exact: 255, 85, 17 and 1.
+            // The factors are exact: 255, 85, 17 and 1.
             1 | 2 | 4 | 8 => decoded!(Samples::U8, |word| (upright(word) * (255 / largest)) as u8),
             ..=16 => decoded!(Samples::U16, |word| ((upright(word) * 65535 + largest / 2) / largest) as u16),
             _ => decoded!(Samples::F32, |word| (upright(word) as f64 / largest as f64) as f32),
         },
         (Numbers::Unsigned, _) => decoded!(Samples::F32, |word| word as f32),
-        // As in graphics APIs, the smallest number is -1 as is the one after it.
+        // As in graphics APIs, the smallest integer and the one above it both stand for -1.
         (Numbers::Signed, Meaning::SignedNormalised) => {
             decoded!(Samples::F32, |word| (signed(word, bits) as f64 / largest_signed).max(-1.0) as f32)
         }
@@ -139,9 +140,10 @@ fn decode(
     })
 }
 
-/// Grey of more than 16 bits: a picture uses the whole range, while heights in any unit leave the highest bits unused.
+/// Normalises grey of more than 16 bits if it uses the whole range, as pictures do; heights in any unit leave the
+/// highest bits unused.
 fn normalise_if_full_range(stored: &mut Stored, bits: u32) {
-    /// Highest bits of which a picture uses one.
+    /// Number of highest bits; a picture uses at least one of them.
     const HIGH_BITS: u32 = 8;
     let Samples::F32(samples) = &mut stored.samples else { return };
     let largest = samples.iter().copied().fold(0.0, f32::max);

@@ -2,8 +2,8 @@
 
 use super::predictor::RowLayout;
 
-/// The first `count` samples of a row, each as the bits in which it is stored. Samples of whole bytes are little-endian; rows
-/// begin at whole bytes.
+/// The first `count` samples of a row, each as its stored bits. Samples of whole bytes are little-endian; rows begin on
+/// byte boundaries.
 pub(super) fn unpack(row: &[u8], layout: RowLayout, count: usize, words: &mut Vec<u64>) {
     words.clear();
     let bits = layout.bits;
@@ -38,7 +38,7 @@ fn whole_bytes<const N: usize>(row: &[u8], count: usize) -> impl Iterator<Item =
     })
 }
 
-/// The value of a float of 24 bits: one of sign, 7 of exponent, 16 of mantissa (Adobe, Photoshop TIFF Technical Note 3).
+/// The value of a 24-bit float: 1 sign bit, 7 exponent bits, 16 mantissa bits (Adobe, Photoshop TIFF Technical Note 3).
 pub(super) fn f32_from_f24(word: u64) -> f32 {
     const BIAS: i32 = 63;
     let sign = if word >> 23 & 1 == 1 { -1.0 } else { 1.0 };
@@ -52,7 +52,7 @@ pub(super) fn f32_from_f24(word: u64) -> f32 {
     }
 }
 
-/// The signed integer in this many bits.
+/// The signed integer stored in this many bits.
 pub(super) fn signed(word: u64, bits: u32) -> i64 {
     let unused = 64 - bits;
     (word << unused) as i64 >> unused

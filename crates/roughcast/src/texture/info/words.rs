@@ -1,4 +1,4 @@
-//! The metadata as DDS keeps it: the eleven reserved words of its header.
+//! The metadata as stored in DDS: the eleven reserved words of its header.
 
 use super::{
     BASE, BRDF, Base, Brdf, InfoError, LAYOUT, Layout, NORMAL_RANGE, NormalRange, PART, Part,
@@ -10,11 +10,11 @@ use crate::Named;
 /// First of the eleven reserved words of a DDS header: "RGHC" in the file.
 pub const DDS_MAGIC: u32 = u32::from_le_bytes(*b"RGHC");
 const DDS_VERSION: u32 = 2;
-/// The version before: without the tenth word, and floats always hold signed normals.
+/// The previous version: without the tenth word, and floats always hold signed normals.
 const DDS_VERSION_WITHOUT_CHOICES: u32 = 1;
 
 impl TextureInfo {
-    /// The eleven words that a DDS header keeps for its writer.
+    /// The eleven words of a DDS header that are reserved for the program that writes it.
     pub fn to_words(&self) -> [u32; 11] {
         let mut words = [0; 11];
         words[0] = DDS_MAGIC;
@@ -32,10 +32,10 @@ impl TextureInfo {
         words
     }
 
-    /// Reads [`TextureInfo::to_words`] back.
+    /// Reads the result of [`TextureInfo::to_words`].
     ///
     /// # Errors
-    /// [`InfoError`] if the words are not ours or make no sense.
+    /// [`InfoError`] if the words were not written by this library or are invalid.
     pub fn from_words(words: &[u32; 11]) -> Result<Self, InfoError> {
         if words[0] != DDS_MAGIC {
             return Err(InfoError::Missing(LAYOUT));
@@ -64,12 +64,12 @@ impl TextureInfo {
     }
 }
 
-/// The tenth word of a DDS file of an earlier version, as it would be today.
+/// The tenth word that a DDS file of an earlier version would have today.
 fn choices_before(part: Part) -> u32 {
     bits_of(NormalRange::Signed) << 8 | bits_of(before_there_was_a_choice(part)) << 16
 }
 
-/// An enum whose values have numbers in files. A number stays with its value for good: files hold it.
+/// An enum whose values have numbers in files. The number of a value never changes, since files contain it.
 trait Numbered: Named {
     fn number(self) -> u8;
 }
@@ -91,7 +91,7 @@ impl Numbered for Layout {
     }
 }
 
-/// Numbers for all values of an enum. A value without one does not compile.
+/// Assigns numbers to all values of an enum. A value without one is a compile error.
 macro_rules! numbered {
     ($type:ident { $($value:ident = $number:literal),+ $(,)? }) => {
         impl Numbered for $type {
@@ -130,7 +130,7 @@ mod tests {
         numbers
     }
 
-    /// Files hold these numbers: a line may be added, none may change.
+    /// Files contain these numbers: lines may be added, but existing ones must not change.
     #[test]
     fn the_numbers_in_files_are_pinned() {
         let layouts = [

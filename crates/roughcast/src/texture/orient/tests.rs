@@ -1,4 +1,4 @@
-//! Tests of signs that agree.
+//! Tests of agreeing signs.
 
 use super::*;
 use crate::levels::level_sizes;
@@ -6,7 +6,7 @@ use crate::levels::level_sizes;
 const SIDE: usize = 64;
 const SIGNED: Affine = Affine::IDENTITY;
 
-/// Levels of axes in floats, each with a sign of its own, as different as they can be.
+/// Levels of axes in floats, each with its own sign, chosen to vary as much as possible.
 fn field(axis: impl Fn(f64, f64) -> Option<f64>) -> Texture {
     let mut random = 1_u32;
     let levels = level_sizes(SIDE, SIDE).into_iter().map(|(width, height)| {
@@ -28,7 +28,7 @@ fn direction(image: &Image, x: usize, y: usize) -> [f64; 2] {
     [0, 1].map(|channel| f64::from(image.get(x % image.width(), y % image.height(), channel)))
 }
 
-/// The shortest sum of two neighbouring unit directions, over the pairs that `counts` picks.
+/// The shortest sum of two neighbouring unit directions, over the pairs that `counts` selects.
 fn shortest(texture: &Texture, counts: impl Fn(f64, f64, f64) -> bool) -> f64 {
     let mut shortest = f64::INFINITY;
     for image in &texture.levels {
@@ -47,14 +47,15 @@ fn shortest(texture: &Texture, counts: impl Fn(f64, f64, f64) -> bool) -> f64 {
     shortest
 }
 
-/// Half the sum of two unit vectors a sixth of a turn apart, the most that neighbours of these tests are.
+/// Half the length of the sum of two unit vectors a sixth of a turn apart, the maximum between neighbours in these
+/// tests.
 const LEAST: f64 = 0.866;
 
 #[test]
 fn circles_agree_although_no_reference_axis_works() {
     let mut texture = field(|u, v| Some((v - 0.5).atan2(u - 0.5)));
-    // Neighbours at less than two texels from the middle turn by more than the sixth of a turn; beyond the edge of the
-    // tile the circles end.
+    // Neighbours less than two texels from the centre differ by more than a sixth of a turn; the circles end beyond
+    // the edge of the tile.
     let counts = |u: f64, v: f64, texel: f64| (u - 0.5).hypot(v - 0.5) > 2.0 * texel && u.max(v) < 1.0;
     assert!(shortest(&texture, counts) < 0.1, "random signs cancel somewhere");
     orient(&mut texture, Wrap::Repeat, SIGNED);
@@ -64,7 +65,7 @@ fn circles_agree_although_no_reference_axis_works() {
 #[test]
 fn waves_agree_across_the_edge_of_the_tile() {
     let mut texture = field(|u, _| Some(2.0 * (std::f64::consts::TAU * u).sin()));
-    // The wave's axes turn by 4 pi a tile at most: a sixth of a turn a texel from 16 texels on.
+    // The wave's axes rotate by at most 4 pi per tile: a sixth of a turn per texel from 16 texels on.
     let counts = |_: f64, _: f64, texel: f64| texel <= 1.0 / 16.0;
     assert!(shortest(&texture, counts) < 0.1);
     orient(&mut texture, Wrap::Repeat, SIGNED);
@@ -91,7 +92,7 @@ fn levels_agree_with_the_next_coarser_one() {
 
 #[test]
 fn texels_without_strength_follow_the_coarser_level() {
-    // Only the left half has a direction, which is straight up.
+    // Only the left half has a direction, which points straight up.
     let up = std::f64::consts::FRAC_PI_2;
     let mut texture = field(|u, _| (u < 0.5).then_some(up));
     // The last level averages both halves.

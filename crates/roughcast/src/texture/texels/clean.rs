@@ -1,7 +1,7 @@
 //! CLEAN's filtered texel as a distribution: one variance for all directions, from the trace of the moments.
 //!
-//! Source: Olano, "Shiny and CLEAN", 2011. The variance along an axis is half of `tr Σ = m - |B|²`, so that isotropic bumps
-//! give LEAN's lobe. A trace below zero counts as none, as in the paper.
+//! Source: Olano, "Shiny and CLEAN", 2011. The variance along an axis is half of `tr Σ = m - |B|²`, so that isotropic
+//! bumps give LEAN's lobe. A negative trace counts as zero, as in the paper.
 
 use super::{Filtered, Input, TexelReader};
 use crate::distribution::Distribution;
@@ -20,7 +20,7 @@ pub(in crate::texture) const MOMENTS: TexelReader = TexelReader {
     read: |texels, packing, _| clean_moments(texels[0], packing),
 };
 
-/// The distribution that a filtered texel of CLEAN's texture holds.
+/// The distribution for a filtered texel of CLEAN's texture.
 #[inline]
 pub fn clean_moments(clean: [f32; 4], packing: &Packing) -> Distribution {
     let mean = Slope { x: unpack(clean[0], packing.slope), y: unpack(clean[1], packing.slope) };

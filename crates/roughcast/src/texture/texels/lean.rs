@@ -32,7 +32,7 @@ pub(in crate::texture) const MOMENTS: TexelReader = TexelReader {
     read: |texels, packing, _| lean_moments(texels[0], texels[1], packing),
 };
 
-/// The distribution that filtered texels of LEAN's two textures hold, with the covariance as it comes out of the subtraction.
+/// The distribution for filtered texels of LEAN's two textures, with the covariance as computed by the subtraction.
 #[inline]
 pub fn lean_moments(lean1: [f32; 4], lean2: [f32; 4], packing: &Packing) -> Distribution {
     let mean = Slope { x: unpack(lean2[0], packing.slope), y: unpack(lean2[1], packing.slope) };

@@ -1,7 +1,9 @@
-//! Decoders: filtered texels, as a sampler returns them, to a distribution of slopes. One layout per file, with its WGSL twin beside it.
+//! Decoders from filtered texels, as a sampler returns them, to a distribution of slopes. One layout per file, with
+//! its WGSL twin next to it.
 //!
-//! These functions only decode. [`pixel_distribution`](crate::shading::pixel_distribution) then takes off what the texture filter covers
-//! beyond the pixel, and [`Shading::surface_of`](crate::shading::Shading::surface_of) turns the result into a surface.
+//! These functions only decode. Afterwards, [`pixel_distribution`](crate::shading::pixel_distribution) removes the
+//! variance that the texture filter covers beyond the pixel, and
+//! [`Shading::surface_of`](crate::shading::Shading::surface_of) converts the result to a surface.
 
 pub(super) mod clean;
 pub(super) mod lean;
@@ -23,7 +25,7 @@ use super::{Packing, Part};
 use crate::distribution::Distribution;
 use crate::shading::{FootprintRatio, Gaussians, PixelPart, ShadingOptions, reduce_to_pixel};
 
-/// A texture of a layout: which of its files, and which layer of that.
+/// A texture of a layout, identified by its file and its layer in that file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Input {
     /// The file.
@@ -32,36 +34,36 @@ pub struct Input {
     pub layer: &'static str,
 }
 
-/// What a texture filter averages, which tells how much of the variance under it is the pixel's.
+/// What a texture filter averages, which determines how much of the variance under it belongs to the pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Filtered {
     /// Raw moments: interpolation between texels adds the variance between them.
     Moments,
-    /// Variances: interpolation adds none.
+    /// Variances: interpolation adds no variance.
     Variances,
-    /// Something else, which the footprint correction does not apply to.
+    /// Other quantities, to which the footprint correction does not apply.
     Other,
 }
 
 /// How filtered texels of a layout are read.
 #[derive(Clone, Copy, Debug)]
 pub struct TexelReader {
-    /// The WGSL module of detail that reads the same texels: see [`crate::wgsl`].
+    /// The WGSL detail module that reads the same texels: see [`crate::wgsl`].
     pub module: &'static str,
     /// The textures, in the order of the texels.
     pub inputs: &'static [Input],
-    /// Which of them has the mean slope in its first two channels; the footprint correction needs its derivatives.
+    /// The texture that has the mean slope in its first two channels; the footprint correction needs its derivatives.
     pub mean_input: Option<usize>,
-    /// What the filter has averaged.
+    /// The quantities that the filter has averaged.
     pub filtered: Filtered,
-    /// How many Gaussians the distributions have.
+    /// The number of Gaussians in the distributions.
     pub gaussians: Gaussians,
     read: fn(&[[f32; 4]], &Packing, &ShadingOptions) -> Distribution,
 }
 
 impl TexelReader {
-    /// The distribution under the texture filter, from one filtered texel for each of the inputs.
+    /// The distribution under the texture filter, from one filtered texel for each input.
     ///
     /// # Panics
     /// If there are fewer texels than inputs.
@@ -70,7 +72,7 @@ impl TexelReader {
         (self.read)(texels, packing, options)
     }
 
-    /// The part of a ratio that applies to what this reader's textures hold; `None` if the footprint correction does not apply.
+    /// The part of a ratio that applies to this reader's textures; `None` if the footprint correction does not apply.
     #[inline]
     pub fn pixel_part(&self, ratio: &FootprintRatio) -> Option<PixelPart> {
         match self.filtered {
@@ -80,7 +82,8 @@ impl TexelReader {
         }
     }
 
-    /// The distribution under the pixel: what [`TexelReader::read`] gives, less what the texture filter covers beyond the pixel.
+    /// The distribution under the pixel: the result of [`TexelReader::read`] without the variance that the texture
+    /// filter covers beyond the pixel.
     #[inline]
     pub fn read_pixel(
         &self,

@@ -1,7 +1,7 @@
 //! The filtered texels of a physically based material as a distribution: `α² = 2σ²` along each axis.
 //!
-//! The direction and the strength of the anisotropy are those of glTF's KHR_materials_anisotropy: across the direction the width
-//! is the roughness texture's, along it `mix(α, 1, strength²)`.
+//! The direction and the strength of the anisotropy follow glTF's KHR_materials_anisotropy: the width across the
+//! direction comes from the roughness texture, and the width along it is `mix(α, 1, strength²)`.
 
 use super::normal::normal_moments;
 use super::{Filtered, Input, TexelReader};
@@ -42,14 +42,14 @@ pub(in crate::texture) const ANISOTROPIC_MOMENTS: TexelReader = TexelReader {
     ..MOMENTS
 };
 
-/// Stored exponents below this count as it: its α of about 45 is rougher than anything that is stored.
+/// Stored exponents are clamped to at least this: its α of about 45 is rougher than any stored value.
 pub const LEAST_STORED_POWER: f32 = 1e-3;
 
-/// The anisotropy texel of a material that has none, for any packing: its strength is zero.
+/// The anisotropy texel for a material without anisotropy, for any packing: its strength is zero.
 pub const ISOTROPIC: [f32; 4] = [1.0, 0.5, 0.0, 1.0];
 
-/// The unit normal that the normal texture holds. Where no z is stored (two-channel textures give 0 for it), it follows
-/// from x and y.
+/// The unit normal from the normal texture. If no z is stored (two-channel textures return 0 for it), it is
+/// reconstructed from x and y.
 #[inline]
 pub fn pbr_normal(normal: [f32; 4], packing: &Packing) -> [f32; 3] {
     let [x, y, z] = [0, 1, 2].map(|i| unpack(normal[i], packing.unit));
@@ -57,8 +57,9 @@ pub fn pbr_normal(normal: [f32; 4], packing: &Packing) -> [f32; 3] {
     unit_normal([x, y, z])
 }
 
-/// The distribution that filtered texels of a material hold: the normal, the roughness and, for anisotropic maps, direction and
-/// strength of the anisotropy. Without these pass [`ISOTROPIC`]. Of a packed roughness texture pass the channel with the roughness.
+/// The distribution for filtered texels of a material: the normal, the roughness and, for anisotropic maps, the
+/// direction and strength of the anisotropy. Pass [`ISOTROPIC`] if there is none. For a packed roughness texture,
+/// pass the channel that holds the roughness.
 #[inline]
 pub fn pbr_moments(
     normal: [f32; 4],
@@ -73,13 +74,13 @@ pub fn pbr_moments(
     let bump = Normal::from(pbr_normal(normal, packing));
     let variance = variance_from_stored(roughness, packing.roughness_stored).max(0.0);
     let across = (2.0 * variance).sqrt();
-    // Widths above 1 are left alone, as the baker counts them as 1.
+    // Widths above 1 are not changed, since the baker treats them as 1.
     let wider = (1.0 - across).max(0.0) * anisotropy[2] * anisotropy[2];
     // Half the difference of the squared widths.
     let added = wider * (across + 0.5 * wider);
     let direction = [unpack(anisotropy[0], packing.unit), unpack(anisotropy[1], packing.unit)];
     let squared = direction[0] * direction[0] + direction[1] * direction[1];
-    // The x axis where filtering has left no direction.
+    // Use the x axis if filtering has left no direction.
     let along = if squared > LEAST_COSINE {
         let inverse = 1.0 / squared.sqrt();
         Slope { x: direction[0] * inverse, y: direction[1] * inverse }

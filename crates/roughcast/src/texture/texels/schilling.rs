@@ -1,4 +1,5 @@
-//! The filtered texels of Schilling's layouts as distributions: a factor D of the covariance, or its larger standard deviation.
+//! Decoders of Schilling's filtered texels to distributions: a factor D of the covariance, or its larger standard
+//! deviation.
 //!
 //! Source: Schilling, "Antialiasing of Bump-Maps", 1997, "The roughness pyramid".
 
@@ -14,7 +15,7 @@ use crate::texture::{Factor, Packing, Part};
 const SCHILLING1: Input = Input { part: Part::Whole, layer: "schilling1" };
 const SCHILLING2: Input = Input { part: Part::Whole, layer: "schilling2" };
 
-/// The normal is stored as in LEAN's first texture.
+/// The normal is stored in the same way as in LEAN's first texture.
 pub(in crate::texture) const NORMAL: TexelReader = TexelReader {
     module: "lean-normal-detail",
     inputs: &[SCHILLING1],
@@ -24,7 +25,7 @@ pub(in crate::texture) const NORMAL: TexelReader = TexelReader {
     read: |texels, packing, _| normal_moments(bump_normal(texels[0], packing)),
 };
 
-/// Interpolated standard deviations are closest to what interpolated variances are: none is added between texels.
+/// Interpolated standard deviations behave most like interpolated variances: no variance is added between texels.
 pub(in crate::texture) const MOMENTS: TexelReader = TexelReader {
     module: "schilling-detail",
     inputs: &[SCHILLING1, SCHILLING2],
@@ -43,7 +44,7 @@ pub(in crate::texture) const ISOTROPIC_MOMENTS: TexelReader = TexelReader {
     read: |texels, packing, _| schilling_isotropic_moments(texels[0], packing),
 };
 
-/// The distribution that filtered texels of the two textures hold: `K = D Dᵀ`.
+/// The distribution for filtered texels of the two textures: `K = D Dᵀ`.
 #[inline]
 pub fn schilling_moments(schilling1: [f32; 4], schilling2: [f32; 4], packing: &Packing) -> Distribution {
     let mean = Slope { x: unpack(schilling2[0], packing.slope), y: unpack(schilling2[1], packing.slope) };
@@ -56,7 +57,7 @@ pub fn schilling_moments(schilling1: [f32; 4], schilling2: [f32; 4], packing: &P
     Distribution::new(normal, mean, factor.covariance()).with_base(packing.base)
 }
 
-/// The distribution that a filtered texel of the isotropic texture holds.
+/// The distribution for a filtered texel of the isotropic texture.
 #[inline]
 pub fn schilling_isotropic_moments(texel: [f32; 4], packing: &Packing) -> Distribution {
     let mean = Slope { x: unpack(texel[0], packing.slope), y: unpack(texel[1], packing.slope) };

@@ -1,4 +1,5 @@
-// The filtered texels of Schilling's layouts as distributions: a factor D of the covariance, or its larger standard deviation.
+// Decoders of Schilling's filtered texels to distributions: a factor D of the covariance, or its larger standard
+// deviation.
 
 // K = D D^T with D = [d1 d2; 0 d3].
 fn schilling_moments(schilling1: vec4f, schilling2: vec4f, packing: Packing) -> Distribution {

@@ -1,8 +1,8 @@
 // Schilling's two textures as a source of bumps.
 //
-// The host supplies the uniforms `packing` and `options` and, for each texture i from 0 on, texeli(at), the filtered texel, and finesti(at),
-// that of the finest level;
-// and pixel_ratio(mean, at), the footprint correction for a filtered mean slope.
+// The host supplies the uniforms `packing` and `options`; for each texture i, counted from 0, texeli(at), the
+// filtered texel, and finesti(at), the texel of the finest level; and pixel_ratio(mean, at), the footprint correction
+// for a filtered mean slope.
 
 fn detail_slope(at: DetailPoint) -> vec2f {
     return schilling_moments(finest0(at), finest1(at), packing).first.mean;

@@ -1,7 +1,8 @@
-//! Toksvig's filtered texel as a distribution: the variance that the gloss factor leaves of an exponent.
+//! Toksvig's filtered texel as a distribution: the variance by which the gloss factor reduces an exponent.
 //!
-//! Source: Toksvig, "Mipmapping normal maps", 2005, as the LEAN paper compares with it. The texture holds the factor for the
-//! exponent that it was baked for, so `s' = factor * s` for that s and no other; as a variance `1 / s' - 1 / s`.
+//! Source: Toksvig, "Mipmapping normal maps", 2005, in the form that the LEAN paper compares with. The texture holds
+//! the factor for the exponent that it was baked for, so `s' = factor * s` applies only to that s; the variance is `1
+//! / s' - 1 / s`.
 
 use super::{Filtered, Input, TexelReader};
 use crate::distribution::Distribution;
@@ -20,17 +21,17 @@ pub(in crate::texture) const MOMENTS: TexelReader = TexelReader {
     read: |texels, packing, options| toksvig_moments(texels[0], packing, options),
 };
 
-/// Factors below this count as it.
+/// Factors are clamped to at least this.
 const LEAST_GLOSS: f32 = 1e-6;
 
-/// The averaged normal that Toksvig's texture holds, not renormalised.
+/// The averaged normal stored in Toksvig's texture, not renormalised.
 #[inline]
 pub fn toksvig_normal(toksvig: [f32; 4], packing: &Packing) -> [f32; 3] {
     [0, 1, 2].map(|i| unpack(toksvig[i], packing.unit))
 }
 
-/// The distribution that a filtered texel of Toksvig's texture holds, given the exponent for which it was baked. The base roughness
-/// is not in it.
+/// The distribution for a filtered texel of Toksvig's texture, given the exponent for which it was baked. It does not
+/// include the base roughness.
 #[inline]
 pub fn toksvig_moments(toksvig: [f32; 4], packing: &Packing, options: &ShadingOptions) -> Distribution {
     let normal = toksvig_normal(toksvig, packing);

@@ -1,6 +1,6 @@
-// Toksvig's filtered texel as a distribution: the variance that his factor leaves of an exponent.
+// Toksvig's filtered texel as a distribution: the variance by which the gloss factor reduces an exponent.
 
-// Factors below this count as it.
+// Factors are clamped to at least this.
 const LEAST_GLOSS: f32 = 1e-6;
 
 // The averaged normal, not renormalised: for diffuse light.
@@ -8,7 +8,7 @@ fn toksvig_normal(toksvig: vec4f, packing: Packing) -> vec3f {
     return toksvig.xyz * packing.unit.x + packing.unit.y;
 }
 
-// The factor f makes f s of the exponent s for which it was baked: the variance is 1 / (f s) - 1 / s.
+// The factor f reduces the exponent s for which it was baked to f s: the variance is 1 / (f s) - 1 / s.
 fn toksvig_moments(toksvig: vec4f, packing: Packing, options: ShadingOptions) -> Distribution {
     let normal = toksvig_normal(toksvig, packing);
     let gloss = clamp(toksvig.w, LEAST_GLOSS, 1.0);

@@ -1,6 +1,7 @@
-//! The filtered texel of the variance texture as a distribution: nothing is subtracted, so eight bits go far.
+//! The filtered texel of the variance texture as a distribution. Nothing is subtracted, so eight bits are often
+//! enough.
 //!
-//! Source: the way out that Olano, "Shiny and CLEAN", 2011, names for eight-bit textures.
+//! Source: the alternative that Olano, "Shiny and CLEAN", 2011, suggests for eight-bit textures.
 
 use super::{Filtered, Input, TexelReader};
 use crate::distribution::Distribution;
@@ -19,7 +20,7 @@ pub(in crate::texture) const MOMENTS: TexelReader = TexelReader {
     read: |texels, packing, _| variance_moments(texels[0], packing),
 };
 
-/// The distribution that a filtered texel of the variance texture holds.
+/// The distribution for a filtered texel of the variance texture.
 #[inline]
 pub fn variance_moments(variance: [f32; 4], packing: &Packing) -> Distribution {
     let mean = Slope { x: unpack(variance[0], packing.slope), y: unpack(variance[1], packing.slope) };
