@@ -39,10 +39,10 @@ fn main() {
     let size = std::env::args().skip(1).find_map(|a| a.parse().ok()).unwrap_or(4096);
     let map = waves(size);
     let threads = rayon::current_num_threads();
-    // Both layers have four 16-bit channels, and all further levels together a third of level 0.
+    // Both layers have four 16-bit channels, and all further levels together are a third of level 0.
     let bytes_in = size * size * CHANNELS * 2;
     let bytes_out = size * size * 2 * 4 * 2 * 4 / 3;
-    // A copy reads as much as it writes: half of the traffic each way.
+    // A copy reads as much as it writes, so half of the traffic goes each way.
     let copied = (bytes_in + bytes_out) / 2;
     let from = vec![1_u8; copied];
     let mut to = vec![0_u8; copied];

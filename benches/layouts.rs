@@ -7,7 +7,7 @@ use roughcast::{
     Bake, BakeOptions, BaseRoughness, Image, Kind, PyramidFilter, SampleType, Samples, SourceOptions,
 };
 
-/// Texels each way; small enough that a whole run takes seconds.
+/// Width and height in texels; small enough that a whole run takes seconds.
 const SIDE: usize = 1024;
 
 fn main() {
@@ -31,7 +31,7 @@ fn heights() -> SourceOptions {
 
 fn options(layout: Layout) -> BakeOptions {
     let bits = match layout.default_sample_type() {
-        // Single floats would mostly measure the memory.
+        // Single floats would mainly measure memory bandwidth.
         SampleType::F32 => SampleType::F16,
         suited => suited,
     };
@@ -65,7 +65,7 @@ fn filter(bencher: Bencher, filter: &PyramidFilter) {
     });
 }
 
-/// Sizes that do not halve evenly use the general code.
+/// Sizes that do not halve evenly use the general code path.
 #[divan::bench]
 fn odd_size(bencher: Bencher) {
     let map = hills(SIDE + 1, SIDE + 1);

@@ -1,7 +1,7 @@
-"""Proves that dependencies between the crates run one way, as ARCHITECTURE.md draws them.
+"""Checks that the crates depend on each other in one direction only, as drawn in ARCHITECTURE.md.
 
-Reads `cargo metadata`. An arrow that is not in the tables below, a crate that is not in them, and a dependency of the
-library on anything but a few small crates are faults.
+Reads `cargo metadata`. Faults are dependencies and crates that are not in the tables below, and dependencies of the
+library on anything but a few small crates.
 """
 
 import sys
@@ -21,24 +21,24 @@ ALLOWED = {
     "roughcast-testdata": set(),
 }
 
-# The same for tests only. All may use fixtures; those of crates above the library may also read real files. The library's may not: cargo
-# would build it twice, with incompatible types.
+# The same for tests only. All tests may use fixtures; those of crates above the library may also read real files. The
+# library's own tests may not, because cargo would build the library twice, with incompatible types.
 ALLOWED_IN_TESTS = {
     "roughcast-scene": {"roughcast-io"},
     "roughcast-gpu": {"roughcast-io"},
     "roughcast-py": {"roughcast-io"},
 }
 
-# Users of the description of a scene must not get the CPU renderer with it: a page in a browser, or a reader of meshes, has no use
-# for it. The crate whose default features are left out, and by whom.
+# Crate -> crates that must use it without its default features. Users of the scene description must not get the CPU
+# renderer with it, because a browser page or a mesh reader does not need it.
 WITHOUT_FEATURES = {
     "roughcast-scene": {"roughcast-io", "roughcast-gpu"},
 }
 
 FIXTURES = "roughcast-testdata"
 
-# Crates of others that the library may use (tests are free). It is arithmetic on images in memory, and whoever takes it
-# into an engine takes these along; the optional ones only where a feature asks for them.
+# Third-party crates that the library may use (tests are unrestricted). The library is arithmetic on images in memory,
+# and an engine that includes it includes these too; the optional ones only if a feature asks for them.
 LIBRARY = "roughcast"
 LIBRARY_MAY_USE = {"half", "thiserror"}
 LIBRARY_MAY_OFFER = {"multiversion", "rayon", "serde"}

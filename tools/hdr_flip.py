@@ -4,15 +4,15 @@
     python3 -m venv .venv/flip && .venv/flip/bin/pip install flip-evaluator==1.7
     .venv/flip/bin/python tools/hdr_flip.py
 
-The pictures are those that the test makes: every value is a fraction of two powers of two, so that it is the same in
-single floats here and there.
+The pictures are those of the test: every value is a fraction of two powers of two, so that single floats represent it
+equally in both places.
 """
 
 import flip_evaluator
 import numpy
 
 WIDTH, HEIGHT = 48, 40
-# Pixels whose error the test knows.
+# Pixels whose expected error is in the test.
 PIXELS = [(0, 0), (47, 39), (12, 8), (23, 20), (24, 20), (31, 7), (40, 30), (5, 33)]
 
 

@@ -1,5 +1,5 @@
-"""Checks the tracked files: none too large, the test data within its bounds, lock files that only name public registries, no unfinished code, and no
-paths of somebody's machine."""
+"""Checks that no tracked file is too large, that the test data is within its bounds, that lock files name only public
+registries, and that there is no unfinished code and no path from somebody's machine."""
 
 import json
 import re
@@ -19,7 +19,7 @@ NPM_LOCK_FILES = {"package-lock.json", "npm-shrinkwrap.json"}
 CARGO_CONFIG = re.compile(r"(^|/)\.cargo/config(\.toml)?$")
 
 SOURCE_SUFFIXES = {".glsl", ".html", ".js", ".mjs", ".py", ".rs", ".sh", ".toml", ".ts", ".wgsl", ""}
-# The classes of one character keep these lines from being found themselves.
+# The one-character classes keep these lines from matching themselves.
 UNFINISHED = re.compile(r"\b(todo|unimplemented)[!]\(|\bFIX[M]E\b|#\[ignor[e]")
 HOME_PATH = re.compile(r"(?<![\w.])/(home|Users|root)/[\w.]|\b[A-Z]:\\+Users\\")
 URL = re.compile(r"\b[a-z+]+://[^\s\"'<>]+")

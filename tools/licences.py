@@ -1,6 +1,7 @@
 """Checks that every crate and every npm package in the lock files has a licence that the project accepts.
 
-Reads `cargo metadata`: all dependencies, also those of tests and of build scripts, on all platforms; and npm's lock files.
+Reads `cargo metadata`, with all dependencies on all platforms, including those of tests and build scripts, and npm's
+lock files.
 A licence is an SPDX expression; it is satisfied if the licences on the list below satisfy it.
 """
 
@@ -70,7 +71,7 @@ class Parser:
         satisfied = self.all_of()
         while self.peek() == "OR":
             self.take()
-            # Parsed first: `or` would leave the rest unread.
+            # Parsed first, because `or` would leave the rest unread.
             other = self.all_of()
             satisfied = satisfied or other
         return satisfied

@@ -1,7 +1,8 @@
-"""Proves that the modules of the library use each other in one direction, as ARCHITECTURE.md draws them.
+"""Checks that the modules of the library use each other in one direction only, as drawn in ARCHITECTURE.md.
 
-Reads the sources: a module is a file or a folder right below `crates/roughcast/src`, and it uses another one by its path
-(`crate::pyramid::...`) or by a name that the crate's root exports (`crate::Image`). Unit tests may use anything.
+Reads the sources: a module is a file or a folder directly below `crates/roughcast/src`, and it uses another module by
+its path (`crate::pyramid::...`) or by a name that the crate's root exports (`crate::Image`). Unit tests may use
+anything.
 """
 
 import re
@@ -11,7 +12,7 @@ from workspace import REPOSITORY, report, tracked_files
 
 SOURCES = REPOSITORY / "crates/roughcast/src"
 
-# Modules that use each other: the types of one idea, in two files.
+# Modules that may use each other, since they hold the types of one concept in two files.
 ONE_IDEA = {frozenset({"moments", "slope"})}
 
 

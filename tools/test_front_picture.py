@@ -42,7 +42,7 @@ def file_of(columns, channels, packed):
 
 class Exr(unittest.TestCase):
     def test_reads_stored_and_zipped_tiles(self):
-        # Alike enough to become shorter than 80 bytes.
+        # Equal values, which compress to less than 80 bytes.
         values = [1.5] * 20
         names = [bytes([65 + index]) for index in range(len(values))]
         stored = struct.pack("<20f", *range(20))

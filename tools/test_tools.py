@@ -1,4 +1,4 @@
-"""Shows that each tool accepts what is right and rejects what is wrong."""
+"""Tests that each tool accepts valid input and rejects faults."""
 
 import contextlib
 import io

@@ -1,4 +1,4 @@
-//! The files that hostile ones are derived from.
+//! The files from which hostile ones are derived.
 
 use std::fs;
 use std::io;
@@ -14,8 +14,8 @@ pub fn repository() -> PathBuf {
 /// Larger files make runs slow without making them more interesting.
 const MAX_BYTES: u64 = 64 * 1024;
 
-/// The files of a target: those in `corpus/`, at least one, and the broken ones that concern it. Sorted by path, so that
-/// a seed gives the same runs everywhere.
+/// The files of a target: those in `corpus/`, at least one, and the broken ones that apply to it. They are sorted by
+/// path, so that a seed gives the same runs everywhere.
 ///
 /// # Errors
 /// If a folder cannot be read, or `corpus/` has nothing for the target.

@@ -1,4 +1,4 @@
-//! Hostile bytes for the readers: each target takes any bytes, and must not panic or need much time or memory.
+//! Hostile bytes for the readers: each target takes any bytes, and must not panic or use excessive time or memory.
 //!
 //! `cargo run -p roughcast-fuzz --bin short -- --seconds 30` runs all of them on a stable compiler. For a long search
 //! guided by coverage there is cargo-fuzz: `cargo fuzz run ktx2 --features libfuzzer`.
@@ -18,9 +18,9 @@ use roughcast_io::{Decoded, Limits, Payload, ReadError, ReadOptions, Supercompre
 
 /// Code that is tested with hostile bytes.
 pub struct Target {
-    /// Its name, also of its folder in `corpus/`.
+    /// Its name, which is also the name of its folder in `corpus/`.
     pub name: &'static str,
-    /// Which of the broken files of other projects apply to it.
+    /// Extensions of the broken files from other projects that apply to it.
     pub extensions: &'static [&'static str],
     /// Runs it once; panics if a guarantee is violated.
     pub run: fn(&[u8]),
@@ -42,10 +42,10 @@ pub const TARGETS: &[Target] = &[
 const IMAGES: &[&str] =
     &["png", "jpg", "jpeg", "tga", "bmp", "webp", "tif", "tiff", "hdr", "exr", "ktx2", "dds", "gltf"];
 
-/// Small, so that a file which may claim a large texture shows up as a slow run at worst.
+/// A small limit, so that a file that claims a large texture shows up as a slow run at worst.
 const LIMITS: Limits = Limits { max_pixels: 1 << 18 };
 
-/// Both readers of KTX2. What reads as textures must survive a round trip.
+/// Tests both readers of KTX2. Anything read as textures must survive a round trip.
 pub fn ktx2(data: &[u8]) {
     check_image(roughcast_io::ktx2::read_image(data, &LIMITS));
     if let Ok(textures) = roughcast_io::ktx2::read_textures(data, &LIMITS) {
@@ -53,7 +53,7 @@ pub fn ktx2(data: &[u8]) {
     }
 }
 
-/// Both readers of DDS. What reads as textures must survive a round trip.
+/// Tests both readers of DDS. Anything read as textures must survive a round trip.
 pub fn dds(data: &[u8]) {
     check_image(roughcast_io::dds::read_image(data, &LIMITS));
     if let Ok(textures) = roughcast_io::dds::read_textures(data, &LIMITS) {
@@ -61,7 +61,7 @@ pub fn dds(data: &[u8]) {
     }
 }
 
-/// The reader of baked EXR files. What it reads must survive a round trip.
+/// Tests the reader of baked EXR files. Anything it reads must survive a round trip.
 pub fn exr_textures(data: &[u8]) {
     match roughcast_io::exr::read_textures(data, &LIMITS) {
         Ok(textures) => {
@@ -79,14 +79,16 @@ fn exr_file(textures: &TextureArray) -> Vec<u8> {
     file.into_inner()
 }
 
-/// The reader of all images: PNG, JPEG, BMP, WebP, TIFF, HDR, EXR, KTX2 and DDS by their first bytes, TGA by extension.
+/// Tests the reader of all images: PNG, JPEG, BMP, WebP, TIFF, HDR, EXR, KTX2 and DDS by their first bytes, TGA by
+/// extension.
 pub fn image(data: &[u8]) {
     for extension in [None, Some("tga")] {
         check_image(roughcast_io::read_image(data, extension, &LIMITS.into()));
     }
 }
 
-/// TIFF, whose tags and arrangement of pixels are parsed here: whole, and with another image or other channels chosen.
+/// Tests TIFF, whose tags and pixel arrangement are parsed here: the whole file, and with another image or other
+/// channels chosen.
 pub fn tiff(data: &[u8]) {
     let read = |layer: Option<&str>, channels: &[&str]| {
         let layer = layer.map(str::to_owned);
@@ -103,8 +105,8 @@ pub fn tiff(data: &[u8]) {
     check_image(read(None, &["channel4", "Y"]));
 }
 
-/// The meaning of texels, as pairs of text (lines of `key=value`) and as the words of a DDS header. What is valid reads
-/// back the same.
+/// Tests the meaning of texels, as pairs of text (lines of `key=value`) and as the words of a DDS header. Valid
+/// metadata reads back the same.
 pub fn info(data: &[u8]) {
     let text = String::from_utf8_lossy(data);
     let pair = |(key, value): (&str, &str)| (key.to_owned(), value.to_owned());
@@ -115,7 +117,7 @@ pub fn info(data: &[u8]) {
     }
     let both = [TextureInfo::from_pairs(&pairs), TextureInfo::from_words(&words)];
     for info in both.into_iter().flatten() {
-        // NaN, which marks a varying base, is not equal to itself: the words are compared.
+        // NaN, which marks a varying base, is not equal to itself, so the words are compared.
         let same = |again: Result<TextureInfo, _>| again.map(|again| words_of(&again)) == Ok(words_of(&info));
         assert!(same(TextureInfo::from_pairs(&info.to_pairs())), "{info:?} in pairs");
         assert!(same(TextureInfo::from_words(&info.to_words())), "{info:?} in words");
@@ -123,13 +125,13 @@ pub fn info(data: &[u8]) {
     }
 }
 
-/// The words of a meaning, with one NaN for all.
+/// The words of a meaning, with every NaN replaced by the same one.
 fn words_of(info: &TextureInfo) -> [u32; 11] {
     let nan = info.base_variance.is_nan();
     TextureInfo { base_variance: if nan { f32::NAN } else { info.base_variance }, ..*info }.to_words()
 }
 
-/// From any baked file to moments: for any texels, the covariance is valid.
+/// Tests decoding of any baked file to moments: for any texels, the covariance is valid.
 pub fn decode(data: &[u8]) {
     let read = [
         roughcast_io::ktx2::read_textures(data, &LIMITS),
@@ -137,7 +139,7 @@ pub fn decode(data: &[u8]) {
         roughcast_io::exr::read_textures(data, &LIMITS),
     ];
     for textures in read.into_iter().flatten() {
-        // For a layout of several files the same texels replace the others, whatever their metadata says.
+        // For a layout of several files, the same texels replace the others regardless of their metadata.
         for part in Part::ALL {
             let other =
                 TextureArray { info: TextureInfo { part: *part, ..textures.info }, ..textures.clone() };
@@ -149,13 +151,13 @@ pub fn decode(data: &[u8]) {
     }
 }
 
-/// No variance is negative. Non-finite texels are exempt.
+/// Checks that no variance is negative. Non-finite texels are exempt.
 fn check_moments(moments: &Moments) {
     let covariance = moments.covariance();
     assert!(!(covariance.xx < 0.0 || covariance.yy < 0.0), "{moments:?}");
 }
 
-/// The FourCCs of the block codes; BC7 has none of its own.
+/// The FourCCs of the block codes; BC7 has no FourCC of its own.
 const BLOCK_CODES: [(&[u8; 4], usize); 8] = [
     (b"DXT1", 8),
     (b"DXT3", 16),
@@ -167,8 +169,8 @@ const BLOCK_CODES: [(&[u8; 4], usize); 8] = [
     (b"DX10", 16),
 ];
 
-/// Any bytes are blocks, so decoding must succeed: the first byte selects the code, the next two the size, the rest are
-/// blocks, repeated as often as needed.
+/// Tests block decoding, which must succeed for any bytes: the first byte selects the code, the next two the size, the
+/// rest are blocks, repeated as often as needed.
 pub fn bc(data: &[u8]) {
     let [code, width, height, blocks @ ..] = data else { return };
     if blocks.is_empty() {
@@ -206,10 +208,10 @@ fn assert_finite(decoded: &Decoded) {
     );
 }
 
-/// Limit of messages, which must be one clear line. Some quote a name from the file.
+/// Maximum length of an error message, which must be one clear line. Some quote a name from the file.
 const LONGEST_ERROR: usize = 1000;
 
-/// The information of an image matches its pixels; an error is one line.
+/// Checks that the information of an image matches its pixels, and that an error is one line.
 fn check_image(result: Result<Decoded, ReadError>) {
     match result {
         Ok(Decoded { image, info }) => {
@@ -222,14 +224,14 @@ fn check_image(result: Result<Decoded, ReadError>) {
     }
 }
 
-/// An error is one line, or becomes one: the program removes control characters.
+/// Checks that an error is one line, or becomes one: the program removes control characters.
 fn check_error(error: &ReadError) {
     let text = error.to_string();
     assert!(!text.is_empty() && text.len() < LONGEST_ERROR, "{text}");
 }
 
-/// Writes textures, reads them back and writes them again: both files must be the same. (Texels cannot be compared
-/// themselves, since NaN is not equal to itself.)
+/// Writes textures, reads them back and writes them again: both files must be identical. (The texels themselves cannot
+/// be compared, since NaN is not equal to itself.)
 fn check_rewritten(textures: &TextureArray) {
     let ktx2 = |array: &TextureArray| {
         let mut file = Vec::new();
@@ -246,6 +248,6 @@ fn check_rewritten(textures: &TextureArray) {
     let of_ktx2 = roughcast_io::ktx2::read_textures(&ktx2_file, &LIMITS).expect("it was written");
     let of_dds = roughcast_io::dds::read_textures(&dds_file, &LIMITS).expect("it was written");
     assert!(ktx2(&of_ktx2) == ktx2_file && dds(&of_dds) == dds_file, "a second writing differs");
-    // In the other direction the bits of a NaN in the metadata may differ, which KTX2 writes as text.
+    // In the other direction the bits of a NaN in the metadata may differ, because KTX2 writes it as text.
     assert!(ktx2(&of_dds) == ktx2_file, "DDS and KTX2 hold different texels");
 }

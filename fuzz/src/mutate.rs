@@ -1,6 +1,6 @@
 //! Small changes that turn a valid file into a hostile one.
 
-/// Random numbers, the same on every machine (Marsaglia's xorshift).
+/// A random number generator with the same sequence on every machine (Marsaglia's xorshift).
 pub struct Random(u64);
 
 impl Random {
@@ -80,13 +80,13 @@ fn change(file: &mut Vec<u8>, corpus: &[Vec<u8>], random: &mut Random) {
     }
 }
 
-/// Half of the changes go to the header.
+/// A random position; half of the changes go to the header.
 fn position(length: usize, random: &mut Random) -> usize {
     let reach = if random.number().is_multiple_of(2) { length.min(HEADER_BYTES) } else { length };
     random.below(reach)
 }
 
-/// Overwrites 1, 2, 4 or 8 bytes by an interesting number, or by one near to the existing number.
+/// Overwrites 1, 2, 4 or 8 bytes with an interesting number, or with one close to the existing number.
 fn put_number(file: &mut [u8], at: usize, random: &mut Random) {
     let width = (1 << random.below(4)).min(file.len() - at);
     let place = &mut file[at..at + width];

@@ -1,11 +1,11 @@
-// Debian's Chromium without a window, with the page loaded. WebGL 2 runs on SwiftShader, in software.
+// Runs Debian's Chromium without a window and loads the page. WebGL 2 runs in software, on SwiftShader.
 
 import { existsSync } from 'node:fs';
 import { chromium } from 'playwright-core';
 
 const EXECUTABLE = process.env.CHROMIUM ?? '/usr/bin/chromium';
 
-// Chromium's warning that reading pixels back stalls.
+// Chromium's warning that reading back pixels stalls.
 const EXPECTED = /GPU stall due to ReadPixels/;
 
 /**

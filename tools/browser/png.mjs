@@ -1,4 +1,4 @@
-// Writes pictures to look at: 8-bit PNG.
+// Writes pictures for visual inspection, as 8-bit PNG.
 
 import { writeFileSync } from 'node:fs';
 import { crc32, deflateSync } from 'node:zlib';

@@ -1,10 +1,11 @@
-// The scene that both render: three.js from a job, the program from arguments.
+// The scene that both renderers draw: three.js from a job, the program from arguments.
 
 /** The two views: how often the map repeats over the square. A pixel is 0.2 texels wide and 0.4 long, or 11 and 22. */
 export const VIEWS = { near: { repeats: 0.5 }, far: { repeats: 25 } };
 
-// Low over the ground, turned only about the x axis: then the footprint of a pixel is a rectangle along the rows and columns of the
-// map except for the perspective, and this renderer and the hardware compute nearly the same size for it.
+// The camera is low over the ground and turned only about the x axis. Apart from the perspective, the footprint of a
+// pixel is then a rectangle along the rows and columns of the map, and this renderer and the hardware compute nearly
+// the same size for it.
 const VIEW = { eye: [0, 0.95, 1.645], target: [0, 0, 0], fov: 20, width: 192, height: 192 };
 // Off-centre, so that a mirrored picture would differ.
 const TOWARDS_LIGHT = [0.35, 0.6, -0.75];

@@ -1,4 +1,5 @@
-// Baked textures in three.js, in headless Chromium, against `roughcast render` of the same files. CONTRIBUTING.md explains how to run it.
+// Compares baked textures in three.js, in headless Chromium, with `roughcast render` of the same files. CONTRIBUTING.md
+// explains how to run it.
 
 import assert from 'node:assert/strict';
 import { mkdirSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
@@ -15,11 +16,11 @@ import { agrees, BLOCK, BLOCKS, CLEAN, isWrong, LEAN, PBR, ROUGHNESS, SPECULAR_P
 
 const here = (path) => new URL(path, import.meta.url).pathname;
 const MAP = here('../../testdata/crops/rock020_normal_256.jpg');
-// Pictures to look at, three in a file: three.js, ours, and their difference times DIFFERENCE.
+// Pictures for visual inspection, three per file: three.js, ours, and their difference times DIFFERENCE.
 const PICTURES = here('../../target/browser');
 const DIFFERENCE = 10;
 
-// A picture with less contrast than this shows nothing.
+// A picture with less contrast than this is not a meaningful test.
 const LEAST_CONTRAST = 0.2;
 
 const VIEWS = ['near', 'far'];
@@ -72,7 +73,7 @@ function drawing(subject, view, changes = {}) {
   return job(view, albedo, { ...changes, material, ...shader, textures: urls });
 }
 
-// ShadingOptions by number, as in the export.
+// ShadingOptions as numbers, as in the export.
 const DEFAULT_OPTIONS = { form: 0, base_frame: 0, repair: 0, masking: 0, footprint: 0, unused: [0, 0] };
 
 function shaderInputs(model, others) {
@@ -113,7 +114,7 @@ for (const [name, changes] of Object.entries({ 'tangents in the geometry': { tan
   });
 }
 
-// Common mistakes of pages, each in a view that shows it.
+// Common mistakes in web pages, each in a view that reveals it.
 const WRONG = [
   ['pbr without roughness', PBR, 'far', { textures: { normal: PBR.textures.normal } }],
   ['pbr with roughness in red alone', PBR, 'far', { textures: { ...PBR.textures, roughness: 'red.roughness.ktx2' } }],
@@ -124,7 +125,7 @@ const WRONG = [
   ...Object.entries({ pbr: PBR, 'pbr in blocks': BLOCKS, lean: LEAN, clean: CLEAN }).map(([name, subject]) => [
     `${name} with level 0 alone`, subject, 'far', { sampling: 'level 0 alone' },
   ]),
-  // KTX2Loader sets nearest filters on everything but blocks.
+  // KTX2Loader sets nearest filters on all textures except block-compressed ones.
   ...Object.entries({ pbr: PBR, lean: LEAN, clean: CLEAN }).map(([name, subject]) => [
     `${name} with the loader's filters`, subject, 'near', { sampling: 'as loaded' },
   ]),
@@ -142,7 +143,7 @@ test('neither three.js nor the browser complains', () => assert.deepEqual(page.c
 test('means of blocks are means', () => {
   const size = { width: 4, height: 2 };
   const pixels = Float32Array.from({ length: 4 * 8 }, (_, i) => (i % 4) + 10 * (Math.floor(i / 4) % 4) + 100 * Math.floor(i / 16));
-  // Of the columns 0 and 1 or 2 and 3, and of both rows; then the channels.
+  // Each mean is over columns 0 and 1 or columns 2 and 3, and over both rows; the channels of a block are consecutive.
   assert.deepEqual([...blockMeans(pixels, size, 2)], [55, 56, 57, 58, 75, 76, 77, 78]);
   assert.throws(() => blockMeans(pixels, size, 3));
 });

@@ -1,4 +1,5 @@
-// WebGL 2 without three.js, in headless Chromium: the example of examples/webgl2, and the shader snippets of docs/layouts.md against the exports.
+// Tests WebGL 2 without three.js, in headless Chromium: the example of examples/webgl2, and the shader snippets of
+// docs/layouts.md against the exports.
 
 import assert from 'node:assert/strict';
 import { cpSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
@@ -17,7 +18,7 @@ let browser;
 before(async () => {
   cpSync(here('../../examples/webgl2/index.html'), join(folder, 'index.html'));
   cpSync(here('../../examples/rock_normal.png'), join(folder, 'rock_normal.png'));
-  // The commands of its README, in another folder.
+  // Runs the commands of the example's README in another folder.
   const commands = readFileSync(here('../../examples/webgl2/README.md'), 'utf8').match(/^roughcast .*$/gm);
   assert.equal(commands.length, 2);
   for (const command of commands) {
@@ -49,12 +50,12 @@ test('the WebGL 2 example draws a highlight', async () => {
     return { brightest: red.reduce((a, b) => Math.max(a, b)), mean: red.reduce((a, b) => a + b) / red.length, errors: gl.getError() };
   });
   assert.equal(errors, 0);
-  // A highlight, and not the whole picture.
+  // There is a highlight, and it does not fill the picture.
   assert(brightest > 180 && mean > 5 && mean < 0.8 * brightest, `brightest ${brightest}, mean ${mean}`);
   assert.deepEqual(complaints(), []);
 });
 
-// A float of the snippet's test for each pixel: the results of the manual's code and of the exported functions.
+// Side of the test picture in pixels. Each pixel has the results of the manual's code and of the exported functions.
 const SIDE = 32;
 
 /** The chapter's GLSL blocks: those before the layouts, and the one of a layout's section. */
@@ -64,7 +65,7 @@ function snippets(chapter) {
   return { common: blocks(chapter.split('\n## lean\n')[0]).join('\n'), of: (layout) => blocks(section(layout))[0] };
 }
 
-// How each layout's snippet gets its texels, and the same with the exports.
+// How each layout's snippet gets its texels, and how the exports get the moments from the same texels.
 const LAYOUTS = {
   lean: {
     texels: 'vec4 t1 = lean1, t2 = lean2;',
@@ -83,7 +84,7 @@ const LAYOUTS = {
 function shader(chapter, layout, library) {
   const { common, of } = snippets(chapter);
   const { texels, moments } = LAYOUTS[layout];
-  // The test samples by itself.
+  // The test provides the texels, so it drops the lines that sample textures.
   const code = of(layout).split('\n').filter((line) => !line.includes('texture(')).join('\n');
   return `#version 300 es
 precision highp float;
@@ -119,7 +120,7 @@ void main() {
   rc_Packing packing = rc_Packing(vec2(2.0 * sc, -sc), vec2(sc * sc, 0.0), vec2(2.0 * sc * sc, -sc * sc), vec2(2.0 * sc * sc, 0.0),
     vec2(vs, 0.0), vec2(2.0 * vs, -vs), vec2(2.0, -1.0), RC_MAPS_WITHOUT_BASE, RC_STORED_PERCEPTUAL);
   float exported = rc_gaussian_lobe(rc_gaussian_surface(${moments}, options), v, l, options);
-  // White, so that Fresnel's term is one.
+  // White, so that the Fresnel term is one.
   float wanted = rc_specular_radiance(exported, vec3(1.0), v, l, vec3(1.0), options).x;
   ${texels}
   ${code}
@@ -171,7 +172,8 @@ function drawPixels([fragment, side]) {
   return [...pixels];
 }
 
-// Single floats: the moments lose up to four digits of the covariance, which the lobe's flank amplifies tenfold.
+// Tolerance for single floats: the moments lose up to four digits of the covariance, and the lobe's flank amplifies the
+// error tenfold.
 const SAME = 0.01;
 const LAYOUTS_CHAPTER = readFileSync(here('../../docs/layouts.md'), 'utf8');
 

@@ -1,10 +1,11 @@
-"""Makes docs/front.png, the picture of the first page: mip-mapped normals, roughcast and ground truth, side by side.
+"""Makes docs/front.png, the picture on the first page: mip-mapped normals, roughcast and ground truth, side by side.
 
     cargo build --release && python3 tools/front_picture
 
-ROUGHCAST names another program, `--rays 16` makes a quick draft, `-o FILE` writes elsewhere. A floor that runs to the horizon and four spheres are
-rendered with each method at twice the size; then coverage puts the spheres over the floor and both over a sky, and 2 x 2 samples make
-a pixel. Printed is the root mean square difference from the ground truth, in codes of 0 to 255.
+ROUGHCAST names another program, `--rays 16` makes a quick draft, `-o FILE` writes elsewhere. A floor that extends to
+the horizon and four spheres are rendered with each method at twice the size. The spheres are then composited over the
+floor and both over a sky, by coverage, and 2 x 2 samples make a pixel. The tool prints the root mean square difference
+from the ground truth, in codes of 0 to 255.
 """
 
 import argparse
@@ -49,7 +50,7 @@ EXPOSURE = 0.85
 ZENITH, DUSK, HORIZON = (0.06, 0.13, 0.36), (0.75, 0.32, 0.10), 0.16
 # Size of the letters, in pixels.
 UNIT, BASELINE = 2.5, 38
-# Codes are rounded to multiples of this, which is invisible: without it the file is larger than 900 kB.
+# Codes are rounded to multiples of this, which is invisible. Without the rounding, the file is larger than 900 kB.
 STEP = 2
 
 

@@ -12,7 +12,7 @@ def arc(x, y, across, up, begin, end):
 
 BOWL = arc(2, 2.5, 2, 2.5, 0, 360)
 SHOULDER = [*arc(2, 3, 2, 2, 180, 0), (4, 0)]
-# For each letter its width and its strokes. The baseline is at 0, small letters are 5 high, tall ones 8.
+# The width and the strokes of each letter. The baseline is at 0, small letters are 5 high, tall ones 8.
 LETTERS = {
     " ": (2, []),
     "-": (2.6, [[(0.2, 2.6), (2.4, 2.6)]]),
@@ -33,7 +33,7 @@ LETTERS = {
     "t": (2.2, [[(0.8, 7), (0.8, 1.4), *arc(2, 1.4, 1.2, 1.4, 180, 275)], [(-0.3, 5), (2.2, 5)]]),
     "u": (4, [[(0, 5), *arc(2, 2, 2, 2, 180, 360)], [(4, 5), (4, 0)]]),
 }
-# Between two letters, and half the width of the pen.
+# The gap between two letters, and half the width of the pen.
 GAP, PEN = 1.7, 0.48
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-# The largest error of rounding a value to the integers 0 ..= full, in steps of 1 / full; the excess is float64's own.
+# The largest error of rounding a value to the integers 0 ..= full, in steps of 1 / full; the excess allows for float64.
 HALF_STEP = 0.5 + 1e-6
 
 
@@ -29,7 +29,7 @@ class Reference:
     tolerance: float = 0.0
     mean_tolerance: float | None = None
     channels: tuple | None = None
-    # The meaning of the numbers that the reader must report: Unorm, Snorm or Float.
+    # The value range that the reader must report: Unorm, Snorm or Float.
     range: str = "Unorm"
     # How many of the last channels a reader may leave out, since their meaning is unknown.
     optional: int = 0
@@ -89,7 +89,7 @@ class Family:
         return int(np.prod([len(values) for values in self.axes.values()], dtype=object))
 
 
-# Random completions of a pair of values that are tried before the pair counts as impossible.
+# How many random completions of a pair of values are tried before the pair counts as impossible.
 TRIES = 25
 
 
@@ -124,7 +124,7 @@ def every(family):
 def at_random(families, seed):
     """Endless random combinations of random families."""
     source = random.Random(seed)
-    # Large families more often, but small ones too.
+    # Chooses large families more often, but small ones too.
     weights = [float(family.size()) ** 0.25 for family in families]
     while True:
         [family] = source.choices(families, weights)

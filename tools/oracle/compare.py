@@ -1,4 +1,4 @@
-"""Equal, refused or different: compares our reader's result for a file with its reference."""
+"""Compares our reader's result for a file with its reference: equal, refused or different."""
 
 from dataclasses import dataclass, replace
 
@@ -30,7 +30,7 @@ class Verdict:
     rule: object = None
 
 
-# Steps from 0 to 1 of unsigned samples.
+# The number of steps from 0 to 1 for unsigned samples.
 FULL = {np.dtype(np.uint8): 255, np.dtype(np.uint16): 65535}
 
 
@@ -103,7 +103,7 @@ def allowance(reference, stored):
         return np.full(reference.values.shape, HALF_STEP / max(reference.full, FULL.get(stored, 0)))
     with np.errstate(over="ignore", invalid="ignore"):
         single = reference.values.astype(np.float32)
-        # The nearest single float, and as many more steps as the reference allows.
+        # The distance to the nearest single float, plus as many steps as the reference allows.
         rounding = np.abs(single.astype(np.float64) - reference.values)
         step = np.spacing(np.abs(single)).astype(np.float64) * reference.float_ulps
     return np.nan_to_num(rounding + step, nan=0.0, posinf=0.0)

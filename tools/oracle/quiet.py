@@ -1,4 +1,4 @@
-"""Silence for C libraries that warn on standard error."""
+"""Silences C libraries that print warnings on standard error."""
 
 import contextlib
 import os

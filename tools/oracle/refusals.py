@@ -1,4 +1,4 @@
-"""What our readers refuse, and why: the comparison allows these refusals and no other, and the manual prints them."""
+"""The files that our readers refuse, and why: the comparison allows only these refusals, and the manual prints them."""
 
 import re
 from dataclasses import dataclass

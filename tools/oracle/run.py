@@ -2,9 +2,9 @@
 
     python tools/oracle [--format NAME]... [--full | --random SECONDS] [--seed N] [--decoder PROGRAM] [--keep FOLDER]
 
-Without options it takes files in which each pair of values of two axes occurs, several times over (half a minute); --full
-takes every combination, up to a bound (many minutes); --random takes random ones until the time is over. A file is equal,
-or refused for a reason that is in the table (refusals.py), or a failure, which is kept.
+Without options it uses files in which each pair of values of two axes occurs, several times over (half a minute);
+--full uses every combination, up to a bound (many minutes); --random uses random ones until the time is up. A file is
+equal, or refused for a reason in the table (refusals.py), or a failure, which is kept.
 """
 
 import argparse
@@ -22,11 +22,11 @@ from tally import Tally
 REPOSITORY = Path(__file__).resolve().parent.parent.parent
 # Files per run of the decoder.
 BATCH = 256
-# How often a short run covers all pairs, each time with other files.
+# How many times a short run covers all pairs, each time with different files.
 ROUNDS = 4
-# The most combinations of one family with --full, chosen at random if there are more.
+# Maximum number of combinations of one family with --full; they are chosen at random if there are more.
 FULL_LIMIT = 4000
-# Consecutive random combinations without anything new after which the run stops.
+# The run stops after this many consecutive random combinations without anything new.
 PATIENCE = 1000
 
 

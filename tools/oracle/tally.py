@@ -1,4 +1,4 @@
-"""The outcomes of all files: counts, and failures in words."""
+"""The outcomes of all files: counts, and descriptions of the failures."""
 
 import re
 from collections import Counter, defaultdict
@@ -6,11 +6,11 @@ from collections import Counter, defaultdict
 from compare import DIFFERENT, EQUAL, REFUSED, UNEXPECTED, judge
 from refusals import REFUSALS
 
-# The most failures per format that are kept as files.
+# Maximum number of failures per format that are kept as files.
 KEPT = 12
-# Values of the axes that are named as suspects.
+# Maximum number of axis values that are listed as suspects.
 SUSPECTS = 20
-# Length of the prefix by which failures count as the same.
+# Failures whose words agree up to this length count as the same.
 SAME_WORDS = 70
 
 

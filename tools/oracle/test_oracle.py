@@ -45,7 +45,7 @@ class Judging(unittest.TestCase):
 
     def test_the_same_pixels_are_equal(self):
         self.assertEqual(self.word(self.bytes_case, outcome_of(self.bytes_case)), EQUAL)
-        # More precision than the file has does no harm.
+        # More precision than the file has is acceptable.
         self.assertEqual(self.word(self.bytes_case, outcome_of(self.bytes_case, np.uint16)), EQUAL)
 
     def test_one_step_of_one_sample_is_different(self):

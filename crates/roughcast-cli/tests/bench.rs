@@ -14,7 +14,7 @@ const NAMES: [&str; 5] = ["blinn-phong", "lean", "lean-generated-512", "lean-gen
 /// Small enough for a test.
 const QUICK: [&str; 6] = ["bench", "gpu", "--size", "64x48", "--frames", "3"];
 
-/// Relative difference of quotients that are computed twice in double floats and printed with all their digits.
+/// Relative difference between quotients that are computed twice in double floats and printed with all their digits.
 const ROUNDING: f64 = 1e-12;
 
 #[track_caller]
@@ -27,7 +27,7 @@ fn number(object: &Value, key: &str) -> f64 {
     object[key].as_f64().unwrap_or_else(|| panic!("{key} of {object}"))
 }
 
-/// Bytes of a square map of 4 x 8 bits, and of two textures of 4 half floats with all levels.
+/// Bytes of a square map of 4 x 8 bits, plus two textures of 4 half floats with all levels.
 fn lean_bytes(side: u64) -> u64 {
     let levels = (0..=side.ilog2()).map(|level| (side >> level).pow(2));
     side * side * 4 + 2 * 8 * levels.sum::<u64>()
@@ -36,7 +36,7 @@ fn lean_bytes(side: u64) -> u64 {
 #[test]
 fn the_report_has_every_method_with_its_cost() {
     let outcome = run(QUICK.iter().chain(&["--json"])).expect_success();
-    // What is on stderr is the drivers' own: EGL complains where there is no desktop.
+    // stderr contains only messages of the drivers: EGL complains where there is no desktop.
     let report = outcome.json();
     assert_keys(&report, &KEYS);
     assert!(
@@ -49,7 +49,7 @@ fn the_report_has_every_method_with_its_cost() {
     for row in rows {
         assert_keys(row, &ROW_KEYS);
         let (time, ratio) = (number(row, "milliseconds"), number(row, "ratio"));
-        // More than a minute would be a wrong unit.
+        // More than a minute would mean a wrong unit.
         assert!(time > 0.0 && time < 60_000.0, "{row}");
         assert!((ratio * number(&rows[0], "milliseconds") / time - 1.0).abs() < ROUNDING, "{row}");
     }
@@ -59,7 +59,7 @@ fn the_report_has_every_method_with_its_cost() {
     assert_eq!(column("generated_bytes"), [0, 0, lean_bytes(512), lean_bytes(2048), 0]);
     let alu = column("alu");
     assert!(alu[1] > alu[0] && alu[1] == alu[2] && alu[1] == alu[3] && alu[4] > 0, "{alu:?}");
-    // In so small a picture making a large map is nearly all of the work.
+    // In such a small picture, generating a large map takes nearly all of the time.
     assert!(number(&rows[3], "milliseconds") > number(&rows[2], "milliseconds"), "{rows:?}");
     assert!(number(&rows[2], "milliseconds") > number(&rows[1], "milliseconds"), "{rows:?}");
 
@@ -78,7 +78,7 @@ fn the_table_has_the_same_rows_and_marks_a_software_driver() {
         assert!(text.contains(&format!("\n{name} ")), "{text}");
     }
     assert!(text.contains("64x48") && text.contains("median of 3 frames"), "{text}");
-    // Lavapipe is what there is where there is no graphics card.
+    // Without a graphics card the driver is Lavapipe.
     assert_eq!(text.contains("llvmpipe"), text.contains("a software driver"), "{text}");
 }
 

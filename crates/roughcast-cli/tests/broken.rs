@@ -1,6 +1,6 @@
-//! Damaged and hostile files: one clear line that names the file, no output, bounded memory and time.
+//! Damaged and hostile files: one clear line that names the file, no output, and bounded memory and time.
 //!
-//! Most of the files in `broken/` once crashed another program. Some are merely odd, and are read; the table
+//! Most of the files in `broken/` once crashed another program. Some are merely odd and can be read; the table
 //! `broken.tsv` says which.
 
 mod common;
@@ -13,20 +13,20 @@ use std::time::{Duration, Instant};
 use common::{Outcome, PROGRAM, check_all, data, expect_every_file_named, names, scratch, text};
 use roughcast_testdata::rows_with_files;
 
-/// Address space in KiB that a run gets. The program, its threads' stacks and its allocator reserve under 1 GiB of it.
+/// Address space in KiB for a run. The program, its threads' stacks and its allocator reserve under 1 GiB of it.
 const MEMORY_KIB: u64 = 2 * 1024 * 1024;
 
-/// Refusals take milliseconds; a busy machine may take a thousand times longer.
+/// Rejections take milliseconds; a busy machine may take a thousand times longer.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// The table's expectation for a file.
 #[derive(Debug, PartialEq)]
 enum Expected {
-    /// Odd, but whole: it is baked.
+    /// Odd but complete: it is baked.
     Baked,
-    /// Readable, but neither kind of map for certain.
+    /// Readable, but not certainly either kind of map.
     Doubtful,
-    /// Refused by every subcommand, with these words.
+    /// Rejected by every subcommand, with these words.
     Refused(&'static str),
 }
 

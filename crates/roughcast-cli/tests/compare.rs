@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 use common::{Outcome, bare_mesh, data, names, run, scratch, text};
 use serde_json::Value;
 
-/// Small pictures, few samples: seconds, and still enough for LEAN to win.
+/// Small pictures and few samples: takes seconds, and is enough for LEAN to win.
 const QUICK: [&str; 4] = ["--size", "64x48", "--samples", "16"];
 const METHODS: [&str; 9] =
     ["phong", "blinn-phong", "beckmann", "off-centre", "lean", "clean", "toksvig", "variance", "ggx"];
-/// Off-centre is that of LEAN, CLEAN and variance, too; Blinn-Phong that of Toksvig.
+/// Number of base lobes: LEAN, CLEAN and variance share off-centre's, and Toksvig shares Blinn-Phong's.
 const BASE_LOBES: usize = 5;
 /// The keys of a row, in their order.
 const KEYS: [&str; 9] = ["map", "scene", "view", "method", "filter", "rmse", "flip", "energy", "flicker"];
@@ -36,7 +36,7 @@ fn rows(folder: &Path) -> Vec<Value> {
     serde_json::from_str(&text).expect("a list of rows")
 }
 
-/// The number of the row that has these values.
+/// The number in the row that has these values.
 #[track_caller]
 fn number(rows: &[Value], [map, view, method, filter]: [&str; 4], key: &str) -> f64 {
     let fits = |row: &&Value| {
@@ -50,7 +50,7 @@ fn number(rows: &[Value], [map, view, method, filter]: [&str; 4], key: &str) -> 
 #[test]
 fn every_method_filter_and_view_has_its_row_and_lean_wins_from_afar() {
     let folder = scratch();
-    // A folder below one that is not there, either.
+    // A folder whose parent does not exist either.
     let report = folder.path().join("deep/report");
     let outcome = compare(&report, &["--frames", "3"]).expect_success();
     assert!(outcome.stderr.is_empty(), "{}", outcome.stderr);
@@ -85,7 +85,7 @@ fn every_method_filter_and_view_has_its_row_and_lean_wins_from_afar() {
     let of = |method: &str, key: &str| number(&rows, ["rock_normal.png", "far", method, "anisotropic"], key);
     assert!(of("lean", "rmse") < 0.5 * of("blinn-phong", "rmse"), "LEAN is not the better from afar");
     assert!(of("lean", "flip") < of("blinn-phong", "flip"));
-    // Mip-mapped normals turn rough stone into a mirror; LEAN keeps the light where it is.
+    // Mip-mapped normals turn rough stone into a mirror; LEAN preserves the light.
     assert!(of("lean", "energy").abs() < of("blinn-phong", "energy").abs());
 }
 
@@ -121,9 +121,9 @@ fn the_page_needs_no_other_file_and_has_every_picture() {
     }
     let [png, jpeg] =
         ["png", "jpeg"].map(|kind| page.matches(&format!("src=\"data:image/{kind};base64,")).count());
-    // The scale; two distributions of each map; then for each view the errors of every method.
+    // The scale; two distributions for each map; and the errors of every method for each view.
     assert_eq!(png, 1 + 2 * 3 + (1 + LIMIT_VIEWS) * METHODS.len());
-    // For each view the ground truths and a picture of every method; for the given map also two animations.
+    // For each view the ground truths and a picture of every method; for the given map two animations as well.
     assert_eq!(jpeg, (1 + LIMIT_VIEWS) * (BASE_LOBES + METHODS.len()) + 2);
     assert_eq!(page.matches("src=").count(), png + jpeg);
     for setting in ["16 bits", "256", "physical", "corrected", "64x48", "16 samples per pixel", "towards "] {
@@ -131,7 +131,8 @@ fn the_page_needs_no_other_file_and_has_every_picture() {
     }
 }
 
-/// Bytes of the page a pixel of all its pictures, 0.53 measured. PNG of RGB takes 1.4; a default report has 17 million pixels and 6 MB.
+/// Maximum bytes of the page per pixel of its pictures; 0.53 measured. PNG of RGB takes 1.4; a default report has 17
+/// million pixels and 6 MB.
 const BYTES_A_PIXEL: f64 = 0.6;
 
 #[test]
@@ -140,8 +141,8 @@ fn a_page_is_small_for_its_pictures() {
     let options = ["--size", "128x96", "--samples", "4", "--views", "mid", "--frames", "4"];
     run(["compare", text(&map()), "-o", text(folder.path())].iter().chain(&options)).expect_success();
     let bytes = std::fs::metadata(folder.path().join("index.html")).expect("the page is there").len();
-    // For the given map the ground truths, every method with both filters and its errors, and three pictures in four frames; for
-    // the others one filter and no frames.
+    // For the given map: the ground truths, every method with both filters and its errors, and three pictures in four
+    // frames. For the others: one filter and no frames.
     let given = BASE_LOBES + 2 * 2 * METHODS.len() + 3 * 4;
     let limits = LIMIT_VIEWS * (BASE_LOBES + 2 * METHODS.len());
     let pixels = ((given + limits) * 128 * 96) as f64;

@@ -1,5 +1,5 @@
-//! Normal maps in every choice of channels that tools write: each has the slopes of the same surface, whether the program is told
-//! or finds out, and is asked about where it cannot.
+//! Normal maps in every channel arrangement that tools write: each has the slopes of the same surface, whether the
+//! program is told the arrangement or detects it, and the program asks where it cannot.
 
 mod common;
 
@@ -27,12 +27,12 @@ fn difference(a: &[MomentLevel], b: &[MomentLevel]) -> f64 {
     (squares.sum::<f64>() / a[0].moments.len() as f64).sqrt()
 }
 
-/// A z that follows from 8 bits of x and y against one of 8 bits of its own.
+/// Difference between a z derived from 8 bits of x and y and a z with 8 bits of its own.
 const EIGHT_BITS: f64 = 0.02;
-/// The slopes with x and y exchanged are off by so much.
+/// Difference of the slopes if x and y are exchanged.
 const EXCHANGED: f64 = 0.2;
 
-/// A picture whose channels are those of a map with x, y, z: 0, 1, 2, and 3 for a value of 255.
+/// A picture whose channels are copied from those of a map: 0, 1, 2 for x, y, z, and 3 for a value of 255.
 fn moved(folder: &Path, name: &str, channels: &[usize]) -> PathBuf {
     let map = read_image_file(&data(PLAIN), &ReadOptions::default()).expect("the map").image;
     let Samples::U8(rgb) = map.samples() else { panic!("8 bits") };
@@ -81,7 +81,7 @@ fn files_of_the_bug_reports_are_read_correctly() {
     assert!(difference(&plain, &a8l8) < EIGHT_BITS);
     for name in ["d_cxv8u8_117", "d_l6v5u5", "d_rxgb"] {
         let map = float_moments(&data(&format!("cases/missing-dds-legacy-normal-formats/{name}.dds")), &[]);
-        // Five bits of u and v, or four colours a block of BC3.
+        // Five bits of u and v, or BC3's four colours per block.
         assert!(difference(&plain, &map) < 0.5 * EXCHANGED, "{name}: {}", difference(&plain, &map));
     }
     // The same map, transcoded from its two Basis Universal files.
@@ -104,12 +104,12 @@ fn the_pixels_determine_the_order_of_ati2() {
     let report = bake(&ati2, &output, &["--json"]).expect_success();
     assert_eq!(report.json()["normal_channels"], "xy");
     assert!(report.stderr.is_empty(), "{}", report.stderr);
-    // A file of the older order.
+    // A file with the older channel order.
     let older = data("formats/dds/bgfx_fieldstone-n.dds");
     let report = bake(&older, &output, &["--json", "--green", "down"]).expect_success();
     assert_eq!(report.json()["normal_channels"], "yx");
     assert!(report.stderr.is_empty(), "{}", report.stderr);
-    // Whoever says the order is believed.
+    // An order given by the user takes precedence.
     let told = bake(&older, &output, &["--json", "--normal-channels", "xy"]).expect_success();
     assert_eq!(told.json()["normal_channels"], "xy");
 }
@@ -117,7 +117,7 @@ fn the_pixels_determine_the_order_of_ati2() {
 #[test]
 fn undetermined_order_reads_x_first_with_a_warning() {
     let folder = scratch();
-    // Blocks of ATI2 without any slope.
+    // Blocks of ATI2 without any slopes.
     let mut flat = std::fs::read(data("cases/dds-ati2-x-first/rock_ati2_plain.dds")).expect("the file");
     flat[128..].chunks_exact_mut(8).for_each(|block| block.copy_from_slice(&[128, 128, 0, 0, 0, 0, 0, 0]));
     let map = folder.path().join("flat.dds");

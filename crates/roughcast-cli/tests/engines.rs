@@ -1,4 +1,5 @@
-//! Files as engines take them: roughness in green, what the web can read, and options that make no sense.
+//! Files in the form that engines expect: roughness in green, formats that the web can read, and options that make no
+//! sense.
 
 mod common;
 
@@ -42,7 +43,7 @@ fn constant_roughness_is_in_green() {
             assert_eq!(told["roughness_layout"], stored.name());
         }
     }
-    // A film renderer takes one channel.
+    // A film renderer expects one channel.
     let folder = scratch();
     bake(&map(), &folder.path().join("film.exr"), &["--as", "pbr", "--roughness", "0.5"]).expect_success();
     assert_eq!(textures(&folder.path().join("film.roughness.exr")).layers[0].channels, ["Y"]);
@@ -53,7 +54,7 @@ fn roughness_is_read_one_way_and_written_another() {
     let folder = scratch();
     let output = folder.path().join("flat.ktx2");
     let flat = ["--as", "pbr", "--normal-scale", "0", "--bits", "float", "--roughness", "0.25"];
-    /// Roots and powers in single floats.
+    /// Error of roots and powers in single floats.
     const ROUNDING: f32 = 1e-6;
     for (options, wanted, stored) in [
         (vec!["--roughness-stored", "alpha"], 0.5, "perceptual"),
@@ -135,7 +136,7 @@ fn compressed_toksvig_of_a_varied_roughness_keeps_its_variance() {
         let moments = &levels[4].moments;
         moments.iter().map(|m| f64::from(m.covariance().xx)).sum::<f64>() / moments.len() as f64
     };
-    // Codes of eight bits average out over the texels of a level.
+    // The rounding to eight bits averages out over the texels of a level.
     let (plain, blocks) = (mean(&plain), mean(&blocks));
     assert!(plain > 1e-3 && (blocks / plain - 1.0).abs() < 0.1, "{plain} {blocks}");
     assert!(report.json()["compression"]["sigma_error_rms"].as_f64().expect("a number") > 0.0);
@@ -143,13 +144,13 @@ fn compressed_toksvig_of_a_varied_roughness_keeps_its_variance() {
     let told = run(["info", text(&gloss), "--json"]).expect_success().json();
     assert!(told["format"].as_str().expect("words").starts_with("BC5"), "factor and length");
     assert_eq!(textures(&gloss).info.base, Base::Baked);
-    // With one exponent the factor is enough.
+    // With a single exponent the factor alone is enough.
     bake(&normals, &output("one.ktx2"), &["--as", "toksvig", "--specular-power", "90", "--compress", "bc"])
         .expect_success();
     let told = run(["info", text(&output("one.gloss.ktx2")), "--json"]).expect_success().json();
     assert!(told["format"].as_str().expect("words").starts_with("BC4"));
     assert!((told["specular_power"].as_f64().expect("a number") - 90.0).abs() < 1e-3);
-    // What is unpacked has no base in it, whatever the factor holds.
+    // Unpacked moments contain no base, whatever the factor contains.
     let moments = output("m.exr");
     run(["unpack", text(&output("one.normal.ktx2")), "-o", text(&moments)]).expect_success();
     assert_eq!(textures(&moments).info.base, Base::None);

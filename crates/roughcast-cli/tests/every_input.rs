@@ -1,5 +1,5 @@
-//! Every material, height map, panorama and format of the test data is baked, or refused for the reason that the table
-//! `every_input.tsv` states.
+//! Every material, height map, panorama and format of the test data is baked, or is rejected for the reason given in
+//! the table `every_input.tsv`.
 
 mod common;
 
@@ -12,18 +12,18 @@ use roughcast_testdata::rows_with_files;
 
 const FOLDERS: [&str; 4] = ["materials", "heights", "formats", "hdri"];
 
-/// Means are compared in f64, but every texel of every level was rounded to f32 on its way: differences of this many
-/// parts of the slopes' mean square, beside the storage's own error, are rounding.
+/// Means are compared in f64, but every texel of every level was rounded to f32 before. Differences up to this fraction
+/// of the slopes' mean square, in addition to the storage error, are rounding.
 const ROUNDING: f64 = 1e-5;
 
 /// The table's expectation for a file.
 #[derive(Debug)]
 enum Expected {
-    /// Baked as this kind of map, decided from the pixels.
+    /// Baked as this kind of map, which the pixels determine.
     Kind(&'static str),
-    /// Neither kind for certain: refused, with the flag that decides.
+    /// Not certainly either kind: rejected with a hint at the flag that decides.
     Doubtful,
-    /// Refused with a line that has these words.
+    /// Rejected with a line that contains these words.
     Refused(&'static str),
 }
 
@@ -97,13 +97,13 @@ fn baked_as(kind: &str, outcome: &Outcome, output: &Path) -> Result<(), String> 
     conserved(&levels, &report)
 }
 
-/// The means of slopes and of their squares are those of level 0 on every level.
+/// Checks that the means of slopes and of their squares on every level equal those of level 0.
 fn conserved(levels: &[MomentLevel], report: &serde_json::Value) -> Result<(), String> {
     let number = |key: &str| report[key].as_f64().expect("the report has this number");
     let (slope_error, variance_error) = (number("slope_error"), number("variance_error"));
     let (rms, steepest) = (number("rms_slope"), number("steepest_slope"));
     let whole = means(&levels[0]);
-    // Both levels are off by the storage's error; the trace of M is 2 V + |B|^2.
+    // Both levels are off by the storage error; the trace of M is 2 V + |B|^2.
     let slope_tolerance = 2.0 * slope_error + ROUNDING * rms.max(1e-3);
     let square_error = 2.0 * variance_error + 4.0 * steepest * slope_error;
     let square_tolerance = 2.0 * square_error + ROUNDING * (rms * rms).max(1e-6);

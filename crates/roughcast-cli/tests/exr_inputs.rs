@@ -1,4 +1,4 @@
-//! EXR files of other programs, as `bake`, `info` and `--roughness-channel` take them, and `.tx` as an output.
+//! EXR files from other programs, as read by `bake`, `info` and `--roughness-channel`, and `.tx` as an output.
 
 mod common;
 
@@ -44,7 +44,8 @@ fn normals_under_any_name_have_the_slopes_of_the_surface() {
     }
 }
 
-/// Of the Sobel gradient of the heights at the default scale, in NumPy and f64 from the pixels that OpenImageIO reads.
+/// RMS slope of the Sobel gradient of the heights at the default scale, computed with NumPy in f64 from the pixels that
+/// OpenImageIO reads.
 const RMS_OF_HEIGHTS: f64 = 0.063_251_94;
 
 #[test]
@@ -72,7 +73,7 @@ fn several_layers_are_refused_with_the_options_that_choose() {
     assert!(line.contains("no layer or channel 'Albedo'"), "{line}");
     run(["info", text(&blender)]).expect_refusal(1, &blender);
     run(["info", text(&blender), "--layer", "Normal"]).expect_success();
-    // A picture has channels, but no layers.
+    // A picture has channels but no layers.
     let plain = data(PLAIN);
     let line = bake(&plain, &output, &["--layer", "N"]).expect_refusal(1, &plain);
     assert!(line.contains("R, G, B"), "{line}");
@@ -104,7 +105,7 @@ fn a_roughness_channel_is_found_by_name() {
         let baked = common::moments(&output);
         let bare = float_moments(&plain, &[]);
         let added = baked[0].moments[0].covariance().xx - bare[0].moments[0].covariance().xx;
-        // Slope variance of a perceptual roughness: r^4 / 2. The scale of 16 bits is that of the maximum slope.
+        // Slope variance of a perceptual roughness: r^4 / 2. The scale for 16 bits is that of the maximum slope.
         let expected = stored.powi(4) / 2.0;
         assert!((added - expected).abs() < 1e-3, "{name}: {added}, not {expected}");
     }

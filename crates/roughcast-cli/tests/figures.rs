@@ -1,4 +1,4 @@
-//! `figures`: every claim is made, judged by its numbers, and holds.
+//! `figures`: every claim is made, is judged by its numbers, and holds.
 
 mod common;
 
@@ -7,7 +7,8 @@ use serde_json::Value;
 
 const FIGURES: [&str; 5] = ["lean-2", "lean-4", "lean-5", "lean-13", "lean-14"];
 
-/// A number as a page shows it: four digits, zeros before them, and an exponent or a sixth digit of a whole number.
+/// Maximum digits of a number on a page: four digits, leading zeros, and an exponent or a sixth digit of a whole
+/// number.
 const MOST_DIGITS: usize = 8;
 
 #[test]

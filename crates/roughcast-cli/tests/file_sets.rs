@@ -1,4 +1,4 @@
-//! Layers, parts and levels in files of their own, and the sidecar that describes them.
+//! Layers, parts and levels in separate files, and the sidecar that describes them.
 
 mod common;
 
@@ -32,7 +32,7 @@ fn layers_in_files_of_their_own_decode_as_the_array_does() {
         let (whole, split) = (scratch(), scratch());
         let words: Vec<&str> = format!("--as {options}").leak().split(' ').collect();
         let output = |folder: &Path| folder.join("map.v2").with_extension(format!("v2.{container}"));
-        // PNG has no arrays: the array to compare with has the same bits in another container.
+        // PNG has no arrays, so the reference array has the same bits in another container.
         let reference = whole.path().join("map.ktx2");
         let array = if *container == "png" { reference } else { output(whole.path()) };
         bake(&map(), &array, &words).expect_success();
@@ -61,7 +61,7 @@ fn layers_in_files_of_their_own_decode_as_the_array_does() {
                 return Err(told.stderr);
             }
         }
-        // Without its other layer a file is described, but not decoded.
+        // Without its other layer a file can be described but not decoded.
         std::fs::remove_file(&files[1]).expect("it was written");
         let line = run(["unpack", text(&files[0]), "-o", text(&whole.path().join("m.exr"))])
             .expect_refusal(1, &files[0]);

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use common::{Outcome, bake, data, names, run, scratch, text, textures};
 
-/// A folder of maps of several kinds, some with equal names, one broken and one that is not a map.
+/// A folder of maps of several kinds: some have equal names, one is broken and one is not a map.
 fn maps(folder: &Path) -> PathBuf {
     let maps = folder.join("maps");
     fs::create_dir(&maps).expect("space");
@@ -44,7 +44,7 @@ fn bad_files_are_reported_and_the_others_baked() {
     let skipped: Vec<&str> = outcome.stderr.lines().filter(|line| line.starts_with("skipped: ")).collect();
     assert!(skipped.len() == 1 && skipped[0].contains(text(&maps.join("wall.jpg"))), "{skipped:?}");
     assert!(outcome.stderr.ends_with("4 of 5 maps baked, 1 other pictures skipped\n"), "{}", outcome.stderr);
-    // Two inputs are called ocean, and the name that tells one of them apart is taken as well.
+    // Two inputs are called ocean, and the name that would distinguish one of them is also taken.
     assert_eq!(names(&baked), ["bumps.ktx2", "ocean_exr.ktx2", "ocean_png.ktx2", "ocean_png_.ktx2"]);
     let sizes = names(&baked).iter().map(|name| textures(&baked.join(name)).size()).collect::<Vec<_>>();
     assert_eq!(sizes[2], (64, 64), "names are given in the order of the inputs");

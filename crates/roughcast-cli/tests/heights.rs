@@ -1,4 +1,4 @@
-//! Height maps in metres and with texels without data: warnings that help, and no cliffs.
+//! Height maps in metres and with missing data: helpful warnings, and no cliffs.
 
 mod common;
 
@@ -51,14 +51,14 @@ fn a_geotiff_gets_the_exact_scale() {
     let words =
         "Its pixels are 30 metres wide: use --height-scale 0.0009009 if the heights are in the same unit";
     assert!(warnings.iter().any(|warning| warning.ends_with(words)), "{warnings:?}");
-    // Degrees are no length.
+    // Degrees are not a length.
     let warnings = warnings_of(&data("generated/tiff/heights_geographic.tif"), &[]);
     let words = "Use --height-scale 1/(37 x P), with P the width of a pixel in the unit of the heights; its pixels are \
                  0.0002778 degrees wide, which is not a length";
     assert!(warnings.iter().any(|warning| warning.ends_with(words)), "{warnings:?}");
 }
 
-/// The scale that is advised makes slopes those of the ground: heights and pixels in the same unit.
+/// The recommended scale reproduces the slopes of the ground: heights and pixels are in the same unit.
 #[test]
 fn the_advised_scale_gives_the_slopes_of_the_ground() {
     const PIXEL: f64 = 25.0;
@@ -71,14 +71,14 @@ fn the_advised_scale_gives_the_slopes_of_the_ground() {
     let planes = vec![Plane { name: "height", values: heights }];
     write_exr((SIZE, SIZE), planes, std::io::BufWriter::new(file)).expect("space");
     let scale = format!("{}", 1.0 / (PIXEL * SIZE as f64));
-    // With the edge repeated the first and the last column rise half as much.
+    // With a repeated edge, the first and the last column rise half as much.
     let inner = (SIZE - 2) as f64 + 2.0 * 0.25;
     let expected = RISE / PIXEL * (inner / SIZE as f64).sqrt();
     let got = rms_slope(&path, &["--height-scale", &scale, "--wrap", "clamp"]);
     assert!((got / expected - 1.0).abs() < ROUNDING, "{got}, not {expected}");
 }
 
-/// What f32 arithmetic on heights of some hundred adds.
+/// Error of f32 arithmetic on heights of some hundred.
 const ROUNDING: f64 = 1e-4;
 
 #[test]
@@ -101,7 +101,7 @@ fn nodata_texels_are_flat_and_counted() {
     assert!(rms < rms_of_whole && rms > 0.95 * rms_of_whole, "{rms} of {rms_of_whole}");
     let folder = scratch();
     let report = bake(&holed, &folder.path().join("out.ktx2"), &["--json"]).expect_success().json();
-    // The square of 4x4 and the ring around it, whose gradients reach into it.
+    // The square of 4x4 and the ring around it, whose gradients extend into it.
     assert_eq!(report["non_finite"], 36, "{report}");
 }
 

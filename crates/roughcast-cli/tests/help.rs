@@ -1,4 +1,4 @@
-//! The help: every subcommand has one that fits 80 columns and names what there is.
+//! The help: every subcommand has a help text that fits 80 columns and lists all of its choices.
 
 mod common;
 

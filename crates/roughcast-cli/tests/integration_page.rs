@@ -1,4 +1,4 @@
-//! docs/integration.md: the radiances in its table are those of the commands that it names.
+//! docs/integration.md: the radiances in its table are those that its commands produce.
 
 mod common;
 
@@ -8,7 +8,7 @@ use common::{run, scratch, text};
 use roughcast::Samples;
 use roughcast_io::{ReadOptions, read_image_file};
 
-/// The table has five digits after the point, and the compiler may contract sums of f32 in another way elsewhere.
+/// The table has five decimal places, and a compiler elsewhere may contract sums of f32 differently.
 const TOLERANCE: f32 = 2e-4;
 
 /// A row of the table.
@@ -40,7 +40,7 @@ fn pixels(page: &str) -> Vec<Pixel> {
     page.lines().filter(|line| line.starts_with('|')).filter_map(numbers).collect()
 }
 
-/// Red of every pixel of a picture by the page's commands.
+/// Red channel of every pixel of a picture made with the page's commands.
 fn rendered(page: &str, footprint: &str) -> (usize, Vec<f32>) {
     let folder = scratch();
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -64,7 +64,7 @@ fn rendered(page: &str, footprint: &str) -> (usize, Vec<f32>) {
     (image.width(), red)
 }
 
-/// The pixels of the table that are not what is rendered, as rows that would be.
+/// The listed pixels that differ from the rendered ones, as corrected rows of the table.
 fn wrong(page: &str, listed: &[Pixel]) -> Vec<String> {
     let [published, corrected] = ["published", "corrected"].map(|footprint| rendered(page, footprint));
     let at = |(width, red): &(usize, Vec<f32>), pixel: &Pixel| red[pixel.row * width + pixel.column];

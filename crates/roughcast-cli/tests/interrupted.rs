@@ -1,4 +1,4 @@
-//! Runs that are killed or fail leave the old output or none, never half of one.
+//! Runs that are killed or fail leave the old output or none, never half an output.
 #![cfg(unix)]
 
 mod common;
@@ -15,7 +15,7 @@ use roughcast_io::png_levels;
 /// Large enough that writing takes a while on any machine.
 const SIDE: usize = 2048;
 
-/// How often a kill is tried until it meets a run that is writing.
+/// Maximum number of kills until one hits a run that is writing.
 const ATTEMPTS: usize = 20;
 
 const OLD: &[u8] = b"an older output";
@@ -35,7 +35,7 @@ fn big_map(folder: &Path) -> PathBuf {
     path
 }
 
-/// Starts a bake over an older output.
+/// Starts a bake that will replace an older output.
 fn start(map: &Path, output: &Path) -> Child {
     fs::write(output, OLD).expect("space");
     command(["bake", text(map), "-o", text(output), "--kind", "height"])
@@ -45,7 +45,7 @@ fn start(map: &Path, output: &Path) -> Child {
         .expect("the program starts")
 }
 
-/// Whether a process has a file open that it writes to and that has bytes already: one without a name, or a hidden one.
+/// Whether a process has a file open for writing, without a name or hidden, that already contains bytes.
 fn is_writing(child: &Child, folder: &Path) -> bool {
     let descriptors = fs::read_dir(format!("/proc/{}/fd", child.id()));
     descriptors.into_iter().flatten().flatten().any(|entry| {
@@ -55,7 +55,7 @@ fn is_writing(child: &Child, folder: &Path) -> bool {
     })
 }
 
-/// Kills the run as soon as the file that it writes has bytes; `false` if it was done before.
+/// Kills the run as soon as the file being written contains bytes; returns `false` if the run had already ended.
 fn killed_while_writing(mut child: Child, folder: &Path) -> bool {
     loop {
         if is_writing(&child, folder) {
@@ -136,7 +136,7 @@ fn a_failed_run_leaves_the_old_output_as_it_was() {
 fn a_layout_of_several_files_is_written_whole_or_not_at_all() {
     let folder = scratch();
     let map = data("materials/surfgrad_ocean16/normals_64crop_16bit_derived.png");
-    // The second part cannot take its place, since a folder has it.
+    // The second part cannot be moved into place because a folder has its name.
     fs::create_dir(folder.path().join("m.roughness.ktx2")).expect("space");
     fs::write(folder.path().join("m.normal.ktx2"), OLD).expect("space");
     let line = bake(&map, &folder.path().join("m.ktx2"), &["--as", "pbr"])

@@ -1,4 +1,4 @@
-//! Every layout in every container: written, read back and unpacked within the stated bounds, or refused with advice.
+//! Every layout in every container: written, read back and unpacked within the stated bounds, or rejected with advice.
 
 mod common;
 
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use common::{bake, check_all, data, difference, moments, names, run, scratch, text, textures, unpacked};
 use roughcast::texture::{Layout, MomentLevel, Part};
 
-/// The reference is float, whose own rounding comes on top of the stated bounds.
+/// The reference is in floats, whose own rounding adds to the stated bounds.
 const FLOAT_ROUNDING: f32 = 2e-6;
 
 fn map() -> PathBuf {
@@ -21,7 +21,7 @@ fn reference(folder: &Path) -> Vec<MomentLevel> {
     moments(&output)
 }
 
-/// The words of the refusal, for what a container cannot hold.
+/// The error message for a combination that a container cannot hold.
 fn refusal(layout: Layout, container: &str, bits: &str) -> Option<&'static str> {
     let wide = matches!(layout, Layout::Moments | Layout::BumpSlopes);
     let float = matches!(bits, "half" | "float");
@@ -77,23 +77,23 @@ fn check_unpacked(
     let levels = unpacked(first, folder);
     let bound = |key: &str| report[key].as_f64().expect("a number") as f32 + FLOAT_ROUNDING;
     let (slope, variance) = (bound("slope_error"), bound("variance_error"));
-    // Toksvig averages normals instead of slopes: only level 0, where nothing is averaged, has the same slopes.
+    // Toksvig averages normals instead of slopes, so only level 0, which averages nothing, has the same slopes.
     let compared = if layout == Layout::Toksvig { 1 } else { levels.len() };
     let found = difference(&levels[..compared], &reference[..compared]);
     if found.slope > slope {
         return Err(format!("slopes are off by {}, more than {slope}", found.slope));
     }
     let off = match layout {
-        // One variance for both axes, the mean of them.
+        // One variance for both axes: their mean.
         Layout::Clean | Layout::Pbr => found.trace,
-        // One standard deviation for every direction, the largest.
+        // One standard deviation for every direction: the largest.
         Layout::SchillingIsotropic => larger_eigenvalue_difference(&levels, reference),
         _ => found.variance,
     };
     if off > variance { Err(format!("variances are off by {off}, more than {variance}")) } else { Ok(()) }
 }
 
-/// The isotropic layout gives back a variance for every direction: the larger eigenvalue of the covariance.
+/// The isotropic layout returns one variance for every direction: the larger eigenvalue of the covariance.
 fn larger_eigenvalue_difference(levels: &[MomentLevel], reference: &[MomentLevel]) -> f32 {
     let texels = levels.iter().zip(reference).flat_map(|(a, b)| a.moments.iter().zip(&b.moments));
     let differences = texels.map(|(ours, theirs)| {
@@ -105,7 +105,7 @@ fn larger_eigenvalue_difference(levels: &[MomentLevel], reference: &[MomentLevel
     differences.fold(0.0, f32::max)
 }
 
-/// `NAME.L0.png` for one texture, `NAME.TEXTURE.L0.png` or `NAME.PART.L0.png` for several; every level is there.
+/// `NAME.L0.png` for one texture, `NAME.TEXTURE.L0.png` or `NAME.PART.L0.png` for several, with every level present.
 fn check_png(folder: &Path, layout: Layout) -> Result<(), String> {
     let stems: &[&str] = match layout {
         Layout::Lean => &["map.lean1", "map.lean2"],
@@ -177,7 +177,7 @@ fn files_describe_their_contents() {
         assert_eq!(told["levels"], 7, "{name}");
         let rows = told["slopes"].as_array().expect("a row for each level");
         assert_eq!(rows.len(), 7, "{name}");
-        // With the base in, level 0 has its variance: within the storage's error.
+        // With a baked base, level 0 has the base's variance, within the storage error.
         let stated = report["variance_error"].as_f64().expect("a number");
         let level_0 = rows[0]["variance"][0].as_f64().expect("a number");
         let wanted = if base == "baked" { 0.01 } else { 0.0 };

@@ -1,5 +1,5 @@
-//! Folders of whole materials, as libraries, engines and painters name them: the maps of bumps are baked, everything else is
-//! skipped with one line.
+//! Folders of complete materials, named as libraries, engines and painting programs name them: the bump maps are baked,
+//! everything else is skipped with one line.
 
 mod common;
 
@@ -30,7 +30,7 @@ fn write(path: &Path, channels: usize, samples: Vec<u8>) {
         .expect("space");
 }
 
-/// The normal map with green turned over.
+/// The normal map with inverted green.
 fn green_down(path: &Path) {
     let mut map = read_image_file(&data(NORMALS), &ReadOptions::default()).expect("the map").image;
     let SamplesMut::U8(samples) = map.samples_mut() else { panic!("8 bits") };
@@ -39,7 +39,7 @@ fn green_down(path: &Path) {
         .expect("space");
 }
 
-/// A folder of files whose content suits their names.
+/// A folder of files whose contents match their names.
 fn folder(at: &Path, files: &[&str]) -> PathBuf {
     let folder = at.join("material");
     fs::create_dir(&folder).expect("space");
@@ -221,7 +221,8 @@ fn a_single_file_with_the_name_of_another_kind_gets_a_warning() {
     assert!(!warned("Rock_Height.png", &[]));
 }
 
-/// A map whose red channel JPEG has destroyed: its curl does not tell, the height map beside it does.
+/// A map whose red channel JPEG has destroyed. Its curl does not reveal the direction of green; the height map next to
+/// it does.
 #[test]
 fn a_height_map_beside_it_determines_the_direction_of_green() {
     let scratch = scratch();

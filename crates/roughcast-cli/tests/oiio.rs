@@ -1,9 +1,9 @@
-//! Our bump slopes against those that OpenImageIO's `maketx --bumpslopes` wrote.
+//! Compares our bump slopes with those that OpenImageIO's `maketx --bumpslopes` wrote.
 //!
-//! Three files: `bump.exr`, a height map; `bumpslope-central.exr`, half floats, made of its top left 64x64 texels by central
-//! differences of clamped texels; `bumpslope.exr`, floats, 64 times Sobel's slopes of
-//! clamped texels: heights in units of the map's width. The height that each was made of is its own channel b0_h,
-//! which the program reads as the height.
+//! Three files: `bump.exr`, a height map; `bumpslope-central.exr`, half floats, made from its top left 64x64 texels by
+//! central differences of clamped texels; `bumpslope.exr`, floats, 64 times Sobel's slopes of clamped texels, that is,
+//! heights in units of the map's width. The height that each was made from is its own channel b0_h, which the program
+//! reads as the height.
 
 mod common;
 
@@ -16,11 +16,12 @@ use roughcast_io::{ReadOptions, read_image_file};
 
 const CHANNELS: [&str; 6] = ["b0_h", "b1_dhds", "b2_dhdt", "b3_dhds2", "b4_dhdt2", "b5_dh2dsdt"];
 
-/// Both round to half floats, which have eleven bits; different orders of summing may round to neighbours.
+/// Both round to half floats, which have eleven bits; different summation orders may round to neighbouring values.
 const HALF_STEP: f32 = 1.0 / 1024.0;
-/// Differences of heights up to 1 in f32, summed in another order.
+/// Error of differences of heights up to 1 in f32, summed in another order.
 const FLOAT_SLOPE: f32 = 4e-6;
-/// Squares of such slopes, up to 113: twice the slope's error times the maximum slope, 10.6, and f32 steps of 113.
+/// Error of squares of such slopes, up to 113: twice the slope's error times the maximum slope, 10.6, and f32 steps of
+/// 113.
 const FLOAT_SQUARE: f32 = 1e-4;
 
 fn reference(name: &str) -> PathBuf {
@@ -37,7 +38,7 @@ fn baked(input: &Path, options: &[&str]) -> roughcast::texture::Texture {
     array.layers.remove(0)
 }
 
-/// Largest difference of a channel, and the largest value there is.
+/// Largest difference of a channel, and its largest value.
 fn compare(ours: &Image, theirs: &Image, channel: usize) -> (f32, f32) {
     assert_eq!((ours.width(), ours.height()), (theirs.width(), theirs.height()));
     let texels = (0..ours.height()).flat_map(|y| (0..ours.width()).map(move |x| (x, y)));
@@ -109,7 +110,7 @@ fn further_levels_are_means_of_four_texels() {
     }
 }
 
-/// Means of 2x2 texels of six channels.
+/// Averages of 2x2 texels with six channels.
 fn halved(texels: &[f64], side: usize) -> Vec<f64> {
     let at = |x: usize, y: usize, channel: usize| texels[(y * side + x) * CHANNELS.len() + channel];
     let mut means = Vec::new();
@@ -133,7 +134,7 @@ fn a_normal_map_has_no_height() {
     }
 }
 
-/// Channels of foreign EXR files, which the program's own readers of textures refuse.
+/// Channels of EXR files from other programs, which the program's own texture readers reject.
 mod exr_file {
     use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Options of `bake` whose effect is seen in its files: block compression, filters, the conventions of normal maps.
+//! Options of `bake` whose effect shows in its files: block compression, filters, the conventions of normal maps.
 
 mod common;
 
@@ -15,7 +15,7 @@ fn map() -> PathBuf {
 
 const FLOAT_MOMENTS: [&str; 4] = ["--as", "moments", "--bits", "float"];
 
-/// The map's moments in floats, read with these options.
+/// The map's moments in floats, baked with these options.
 fn float_moments(map: &Path, options: &[&str]) -> Vec<MomentLevel> {
     let folder = scratch();
     let output = folder.path().join("moments.exr");
@@ -23,7 +23,7 @@ fn float_moments(map: &Path, options: &[&str]) -> Vec<MomentLevel> {
     moments(&output)
 }
 
-/// Blocks were cut from the 8-bit texels, and both EXR files hold floats: only the report's rounding is left.
+/// Blocks are made from the 8-bit texels, and both EXR files hold floats, so only the report's rounding remains.
 const SIGMA_ROUNDING: f64 = 1e-5;
 
 /// σ = sqrt(tr Σ / 2) of each texel of each level.
@@ -60,7 +60,7 @@ fn the_report_states_the_cost_of_block_compression() {
             let stated = report["compression"]["sigma_error_max"].as_f64().expect("a number");
             assert!(stated > 0.0, "{layout}: blocks are lossy");
             if layout == "toksvig" {
-                // Its plain form holds the normal in three channels; blocks would not compress it.
+                // Toksvig's uncompressed form stores the normal in three channels, a form that blocks do not compress.
                 continue;
             }
             let plain_first =
@@ -91,8 +91,8 @@ fn packed_occlusion_roughness_and_metalness_become_bc7() {
     let told = run(["info", text(&orm), "--json"]).expect_success().json();
     assert!(told["format"].as_str().expect("a text").starts_with("BC7_UNORM"), "{}", told["format"]);
 
-    // Occlusion and metalness are averaged, nothing else: their means are those of the picture.
-    /// BC7's error of single texels averages out; a channel in the wrong place is off by a tenth and more.
+    // Occlusion and metalness are only averaged, so their means equal those of the picture.
+    /// BC7's error of single texels averages out; a channel in the wrong place is off by a tenth or more.
     const MEAN: f64 = 0.01;
     let source = read_image_file(&packed, &ReadOptions::default()).expect("the picture").image;
     let mean = |image: &Image, channel: usize| {
@@ -154,14 +154,14 @@ fn filters_with_negative_lobes_are_refused_with_the_reason() {
     }
 }
 
-/// Writes a picture of one of the test's own.
+/// Writes a picture that the test has made.
 fn write_png(path: &Path, image: &Image) {
     let mut bytes = Vec::new();
     png_levels::write_level(image, &Default::default(), &mut bytes).expect("PNG holds it");
     std::fs::write(path, bytes).expect("space");
 }
 
-/// The map's pixels with each pixel changed, in 16 bits.
+/// The map with every pixel changed, in 16 bits.
 fn changed(map: &Path, channels: usize, change: impl Fn([u16; 3]) -> Vec<u16>) -> Image {
     let image = read_image_file(map, &ReadOptions::default()).expect("the map").image;
     let Samples::U16(samples) = image.samples() else { panic!("the map has 16 bits") };
@@ -194,7 +194,7 @@ fn conventions_of_normal_maps_give_the_same_moments() {
     assert!(difference(&read, &reference).slope <= 2.0 * CODE, "{:?}", difference(&read, &reference));
 }
 
-/// The half floats of the derived map have eleven bits over 0 to 1, doubled and divided by z as the codes are.
+/// The half floats of the derived map have eleven bits over 0 to 1, doubled and divided by z like the codes.
 const HALF_CODE: f32 = 2.0 / 2048.0 * 2.1;
 
 #[test]
@@ -205,7 +205,7 @@ fn floats_have_either_range_and_pictures_one() {
         .map(|options| float_moments(&floats, &[&["--kind", "normal"], &options[..]].concat()));
     assert_eq!(difference(&guessed, &unorm).slope, 0.0, "none of its values is below 0");
     assert!(difference(&guessed[..1], &float_moments(&picture, &[])[..1]).slope < HALF_CODE);
-    // All components lie between 0 and 1: taken as they are, all slopes go up and to the right.
+    // All components lie between 0 and 1: read as signed values, they make all slopes point up and to the right.
     assert!(signed[0].moments.iter().all(|m| m.mean.x > 0.0 && m.mean.y > 0.0));
     let folder = scratch();
     let refused = bake(&picture, &folder.path().join("out.ktx2"), &["--range", "signed"]);
@@ -231,12 +231,13 @@ fn a_map_with_green_down_gets_a_warning() {
     assert!(aware.json()["green_correlation"].as_f64().expect("a number") > 0.3);
 }
 
-/// Near the horizon a code of BC5 is a large slope: what is steeper than 63 degrees is cut in both versions.
+/// Near the horizon one code of BC5 is a large slope, so slopes steeper than 63 degrees are clamped in both versions.
 const CUT: &str = "2";
-/// Difference of mean slopes and of the roots of mean squares over the whole map: half a code's offset of zero (127 or 128
-/// of 255) on a slope whose derivative by the component averages 1.3.
+/// Tolerance of mean slopes and of the roots of mean squares over the whole map: zero is off by half a code (127 or 128
+/// of 255), and the derivative of the slope by the component averages 1.3.
 const WHOLE_MAP: f32 = 0.004;
-/// Root mean square difference of the slopes of single texels: BC5's codes are a fourteenth of a block's range apart.
+/// Tolerance of the root mean square difference between the slopes of single texels: BC5's codes are a fourteenth of a
+/// block's range apart.
 const TEXELS: f64 = 0.05;
 
 #[test]

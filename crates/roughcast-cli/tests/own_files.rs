@@ -1,5 +1,5 @@
-//! The program's own files beside each other and given back to it: parts of one bake know each other, and a baked file is
-//! no map.
+//! The program's own files next to each other and as inputs: parts of one bake recognise each other, and a baked file
+//! is not a map.
 
 mod common;
 

@@ -1,5 +1,5 @@
-//! Keeps the first page and the manual correct: their commands run and print what is shown, their links work, and they cover every
-//! layout and report key.
+//! Keeps the first page and the manual correct: their commands run and print the output shown, their links work, and
+//! they cover every layout and report key.
 
 mod common;
 
@@ -9,16 +9,16 @@ use std::process::{Command, Output};
 use common::check_all;
 use roughcast::texture::Layout;
 
-/// The line before a block of commands that are run here.
+/// The line before a block of commands that this test runs.
 const MARK: &str = "<!-- tested -->";
 
-/// What a command may start with; the rest are the arguments of the program that was built for this test.
+/// Possible starts of a command; the rest are the arguments of the program built for this test.
 const PROGRAM: [&str; 2] = ["cargo run --release -- ", "roughcast "];
 
-/// A line of shown output that stands for any number of lines.
+/// A line of shown output that represents any number of lines.
 const ELLIPSIS: &str = "…";
 
-/// More lines than these are a manual, not a first page.
+/// A first page with more lines than this would be a manual.
 const FIRST_PAGE_LINES: usize = 150;
 
 fn root() -> PathBuf {
@@ -29,7 +29,7 @@ fn read(document: &str) -> String {
     std::fs::read_to_string(root().join(document)).unwrap_or_else(|fault| panic!("{document}: {fault}"))
 }
 
-/// The Markdown files of a folder of the repository, by their paths from its root.
+/// The Markdown files in a folder of the repository, by their paths from its root.
 fn documents_of(folder: &str) -> Vec<String> {
     let entries = std::fs::read_dir(root().join(folder)).expect("the folder can be listed");
     let names = entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned());
@@ -51,9 +51,9 @@ fn manual() -> Vec<String> {
 struct Block {
     language: String,
     lines: Vec<String>,
-    /// Whether the mark stands on the line before it.
+    /// Whether the mark is on the line before it.
     marked: bool,
-    /// Whether only blank lines stand between it and the block before.
+    /// Whether only blank lines separate it from the previous block.
     follows: bool,
 }
 
@@ -91,7 +91,7 @@ fn prose(document: &str) -> impl Iterator<Item = &str> {
     document.split("\n```").step_by(2).flat_map(str::lines)
 }
 
-/// A folder of its own with the example maps in it, as the commands expect.
+/// A new folder that contains the example maps, as the commands expect.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     if folder.exists() {
@@ -101,7 +101,7 @@ fn folder(name: &str) -> PathBuf {
     std::fs::create_dir_all(&examples).expect("the folder can be made");
     for entry in std::fs::read_dir(root().join("examples")).expect("the repository has examples") {
         let path = entry.expect("the folder can be listed").path();
-        // The maps, and not the folders of whole pages.
+        // Copy the maps, but not the folders of complete pages.
         if path.is_dir() {
             continue;
         }
@@ -123,7 +123,7 @@ fn run(command: &str, folder: &Path) -> Output {
         .expect("the program starts")
 }
 
-/// Whether a document's lines are those of an output, apart from what an ellipsis leaves out.
+/// Checks that a document's lines are those of an output, apart from what an ellipsis omits.
 fn shows(lines: &[String], output: &str) -> Result<(), String> {
     let mut printed = output.lines();
     let mut skipping = false;
@@ -144,7 +144,8 @@ fn shows(lines: &[String], output: &str) -> Result<(), String> {
     }
 }
 
-/// Runs the marked commands of a document in a folder of their own; also the output that it shows behind them must be right.
+/// Runs the marked commands of a document in a new folder; the output that the document shows after them must match as
+/// well.
 fn check_commands(document: &String) -> Result<(), String> {
     let folder = folder(&format!("manual-{}", document.replace('/', "-")));
     let mut printed = String::new();
@@ -208,7 +209,7 @@ fn differing_output_is_detected() {
     }
 }
 
-/// The anchors that GitHub gives a document's headings.
+/// The anchors that GitHub assigns to a document's headings.
 fn anchors(document: &str) -> Vec<String> {
     let headings = prose(document).filter(|line| line.starts_with('#'));
     let anchor = |heading: &str| {

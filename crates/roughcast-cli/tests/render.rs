@@ -25,7 +25,7 @@ fn map() -> PathBuf {
     data("crops/rock020_normal_256.jpg")
 }
 
-/// The pixels of a picture in EXR, red, green and blue.
+/// The pixels of an EXR picture: red, green and blue.
 fn radiance(path: &Path) -> Vec<f32> {
     let decoded = read_image_file(path, &ReadOptions::default()).expect("the picture reads back");
     let Samples::F32(samples) = decoded.image.samples() else { panic!("not single floats") };
@@ -70,8 +70,8 @@ fn every_scene_and_filter_makes_a_picture() {
     assert_eq!(done, 24);
 }
 
-/// The mean radiance of a picture by the graphics card may differ by this part: drivers choose their own taps and weights.
-/// That pictures agree pixel by pixel where filters do is tested in roughcast-gpu.
+/// Relative difference allowed in the mean radiance of a picture by the graphics card: drivers choose their own taps
+/// and weights. roughcast-gpu tests that pictures agree pixel by pixel where the filters do.
 const DRIVERS: f32 = 0.05;
 
 #[test]
@@ -135,7 +135,7 @@ fn invalid_renders_are_refused_in_one_line_and_leave_no_files() {
 fn invalid_command_lines_are_refused() {
     let folder = scratch();
     let output = folder.path().join("picture.png");
-    // One that gives no warnings beside the refusal.
+    // A map that causes no warnings in addition to the error.
     let map = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/rock_normal.png");
     let refused = |arguments: &[&str], words: &str| {
         run(["render", text(&map), "-o", text(&output)].iter().chain(arguments)).expect_usage_error(words);
@@ -180,7 +180,7 @@ fn render_baked(baked: &Path, output: &Path, further: &[&str]) -> Vec<f32> {
 fn a_baked_file_makes_the_picture_of_its_map() {
     let folder = scratch();
     let output = folder.path().join("picture.exr");
-    // 256 is the exponent that `render` takes where none is named.
+    // 256 is the exponent that `render` uses if none is given.
     for (model, layout, options, file) in [
         ("lean", "lean", vec![], "b.ktx2"),
         ("lean", "lean", vec!["--split"], "b.lean2.ktx2"),
@@ -226,7 +226,7 @@ fn a_baked_file_makes_the_picture_of_its_map() {
 fn the_camera_may_look_straight_down_and_up_turns_the_picture() {
     let folder = scratch();
     let output = folder.path().join("picture.exr");
-    // The map's own direction of green, so that nothing is warned of.
+    // The map's own direction of green, so that there are no warnings.
     let light = ["--light", "0.3,1,0.2", "--green", "down"];
     let from = |further: &[&str]| {
         render(&output, &[&["--camera", "0,3,0"][..], &light, further].concat()).expect_success();
@@ -235,12 +235,12 @@ fn the_camera_may_look_straight_down_and_up_turns_the_picture() {
     let (default, far_side_up) = (from(&[]), from(&["--up", "0,0,-1"]));
     assert!(default.iter().any(|value| *value > 0.0) && default == far_side_up);
     let turned = from(&["--up", "0,0,1"]);
-    // Half a turn about the middle of the picture.
+    // Rotate by half a turn about the centre of the picture.
     let mut pixels: Vec<&[f32]> = turned.chunks_exact(turned.len() / (96 * 64)).collect();
     pixels.reverse();
     let (back, mean) = (pixels.concat(), default.iter().sum::<f32>() / default.len() as f32);
     let off = back.iter().zip(&default).map(|(a, b)| (a - b).abs()).sum::<f32>() / default.len() as f32;
-    // The footprints are the same, but their rounding need not be.
+    // The footprints are equal, but their rounding may differ.
     assert!(off < 1e-3 * mean, "{off} of {mean}");
     let refused = |arguments: &[&str], words: &str| {
         render(&output, &[&light[..], arguments].concat()).expect_usage_error(words);

@@ -1,5 +1,5 @@
-//! `roughcast shader`: every export of every model compiles with the compilers of its language, and so do the calls that its
-//! header names and the examples of docs/shaders.md.
+//! `roughcast shader`: every export of every model compiles with the compilers of its language, and so do the calls in
+//! its header and the examples of docs/shaders.md.
 
 mod common;
 
@@ -34,7 +34,7 @@ fn folder() -> PathBuf {
     folder
 }
 
-/// Runs a compiler or validator; where it is not installed, says which Debian package has it.
+/// Runs a compiler or validator; if it is not installed, names the Debian package that contains it.
 fn tool(program: &str, package: &str, arguments: &[&str]) -> Result<(), String> {
     let output = Command::new(program).args(arguments).output();
     let output =
@@ -51,7 +51,7 @@ fn path(file: &Path) -> &str {
     file.to_str().expect("the path of the target folder is plain text")
 }
 
-/// Compiles a whole shader, whose entry point of a pixel is `main` or `shade`.
+/// Compiles a complete shader whose pixel entry point is `main` or `shade`.
 fn compile(code: &str, language: &str, name: &str) -> Result<(), String> {
     let file = folder().join(format!("{name}.{language}"));
     std::fs::write(&file, code).expect("the shader can be written");
@@ -75,14 +75,14 @@ fn validate_wgsl(code: &str) -> Result<(), String> {
     validated.map(drop).map_err(|error| error.emit_to_string(code))
 }
 
-/// A desktop shader as one of OpenGL ES.
+/// Converts a desktop shader to OpenGL ES.
 fn for_es(code: &str) -> String {
     let start = "#version 310 es\nprecision highp float;\nprecision highp sampler2DArray;";
     assert!(code.starts_with("#version 450"));
     code.replacen("#version 450", start, 1)
 }
 
-/// What a WebGL 2 shader starts with.
+/// The first lines of a WebGL 2 shader.
 const WEBGL: &str = "#version 300 es\nprecision highp float;\nprecision highp int;";
 
 /// The code of an export, without comments.
@@ -118,8 +118,8 @@ fn every_export_starts_with_source_conventions_and_calls() {
     }
 }
 
-/// Identifiers to which naga has added: `view_3`, `lean1_`, padding. Its temporaries, `_e7` and in HLSL the struct's name in small
-/// letters, have no name to lose.
+/// Identifiers that naga has extended: `view_3`, `lean1_`, padding. Its temporaries (`_e7` and, in HLSL, the struct's
+/// name in lower case) have no original name to preserve.
 fn mangled(code: &str) -> Vec<&str> {
     let temporaries: Vec<String> = library_names().iter().map(|name| name.to_ascii_lowercase()).collect();
     let is_temporary = |base: &str| temporaries.iter().any(|name| name == base);
@@ -147,12 +147,12 @@ fn names_keep_their_spelling() {
     );
 }
 
-/// Words of the languages in which the calls of a header are put to the test.
+/// Syntax of a language in which the calls of a header are tested.
 struct Dialect {
     language: &'static str,
     vec4: &'static str,
     vec3: &'static str,
-    /// What the pixel's entry point starts with; its body follows.
+    /// The start of the pixel entry point; its body follows.
     entry: &'static str,
     exit: &'static str,
 }
@@ -177,7 +177,7 @@ const DIALECTS: [Dialect; 2] = [
     },
 ];
 
-/// The statements that the header of a model's export names, and the texels that they need.
+/// The statements that the header of a model's export lists, and the texels that they need.
 fn calls(text: &str) -> (Vec<String>, Vec<String>) {
     let header = text.lines().take_while(|line| line.starts_with("//"));
     let mut lines = header.skip_while(|line| !line.contains(", with the texels "));
@@ -189,7 +189,7 @@ fn calls(text: &str) -> (Vec<String>, Vec<String>) {
     (texels, statements.split_terminator(';').map(|statement| statement.trim().to_owned()).collect())
 }
 
-/// A shader that makes the calls of the header.
+/// A shader that makes the calls in the header.
 fn caller(text: &str, dialect: &Dialect) -> String {
     let Dialect { vec4, vec3, entry, exit, .. } = dialect;
     let (texels, statements) = calls(text);
@@ -258,7 +258,7 @@ fn every_export_compiles_on_its_own() {
     }
 }
 
-/// Every global name that can be exported, as WGSL has it.
+/// Every global name that can be exported, as spelled in WGSL.
 fn library_names() -> Vec<&'static str> {
     let exported = MODULES.iter().filter(|module| !matches!(module.role, Role::Bake | Role::Detail));
     let lines = exported.flat_map(|module| module.source.lines());
@@ -269,7 +269,7 @@ fn library_names() -> Vec<&'static str> {
     names.collect()
 }
 
-/// A shader of a host that has macros of the library's names, with two exports in it.
+/// A host's shader that defines macros with the library's names and contains two exports.
 fn as_guests(exports: [&str; 2], language: &str, prefix: &[&str]) -> String {
     // Members of structs belong to the library: no caller defines a macro of their name.
     let is_member = |name: &str| ["covariance", "variance", "lobe"].contains(&name);
@@ -289,7 +289,7 @@ fn as_guests(exports: [&str; 2], language: &str, prefix: &[&str]) -> String {
 fn exports_can_be_pasted_together() {
     assert!(library_names().contains(&"TWO_PI") && library_names().contains(&"gaussian_lobe"));
     for language in ["glsl", "glsl-es300", "hlsl"] {
-        // The second of each pair needs parts that the first has left out, and others that it has.
+        // The second of each pair needs parts that the first has left out, and others that the first contains.
         for exports in [["lean", "clean"], ["clean", "ggx"], ["phong", "lean"], ["lean", "lean"]] {
             let code = as_guests(exports, language, &[]);
             let name = format!("guests-{}-{}", exports[0], exports[1]);

@@ -1,4 +1,4 @@
-//! Sizes that do not fit: a roughness map of another size than the map, and blocks that Direct3D cannot create.
+//! Mismatched sizes: a roughness map of another size than the map, and blocks that Direct3D cannot create.
 
 mod common;
 
@@ -6,13 +6,13 @@ use common::{bake, data, scratch, textures};
 use roughcast::{Image, Samples};
 use roughcast_io::png_levels;
 
-/// The channel that glTF reads roughness from.
+/// The channel in which glTF stores roughness.
 const GREEN: usize = 1;
 
-/// The largest rounding of a roughness stored in 8 bits.
+/// The largest rounding error of a roughness stored in 8 bits.
 const HALF_A_STEP: f64 = 0.5 / 255.0;
 
-/// What f32 arithmetic adds, far below a step of 8 bits.
+/// Error of f32 arithmetic, far below a step of 8 bits.
 const ROUNDING: f64 = 1e-4;
 
 #[test]
@@ -28,7 +28,7 @@ fn a_roughness_map_of_another_size_is_resampled_and_reported() {
     assert!(told.contains("roughness map of 32x24 resampled to 64x48"), "{told}");
 }
 
-/// A flat map, so that what is stored is the resampled roughness alone.
+/// A flat map stores nothing but the resampled roughness.
 #[test]
 fn the_stored_value_is_the_resampled_variance() {
     let folder = scratch();
@@ -37,7 +37,7 @@ fn the_stored_value_is_the_resampled_variance() {
         let file = std::fs::File::create(path).expect("a writable folder");
         png_levels::write_level(image, &Default::default(), file).expect("space");
     };
-    // 16 bits, whose middle is so near 0 that the slopes vanish.
+    // 16 bits, whose middle code is so close to 0 that the slopes vanish.
     let texels = [[32768_u16, 32768, 65535]; 4].concat();
     write(&flat, &Image::new(4, 1, 3, Samples::U16(texels)).expect("a map"));
     let stored = [51_u8, 204];
@@ -49,7 +49,8 @@ fn the_stored_value_is_the_resampled_variance() {
     write(&large, &Image::new(8, 1, 1, Samples::U8(eight)).expect("a map"));
 
     let quarter = |a: f64, b: f64| 0.75 * a + 0.25 * b;
-    // Bilinear between centres, and across the edge of a repeating map; the area average of pairs.
+    // Enlarging is bilinear between centres, also across the edge of a repeating map; reducing averages the area of
+    // pairs.
     let grown = [quarter(low, high), quarter(low, high), quarter(high, low), quarter(high, low)];
     let shrunk = [low, 0.5 * (low + high), high, low];
     for (roughness, expected) in [(&small, grown), (&large, shrunk)] {

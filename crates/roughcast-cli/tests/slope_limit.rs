@@ -1,4 +1,4 @@
-//! `--max-slope auto`, its report, and the limits that can be asked for.
+//! `--max-slope auto`, its report, and the limits that can be requested.
 
 mod common;
 
@@ -10,7 +10,7 @@ use roughcast_io::picture::{Plane, write_exr};
 
 const SIDE: usize = 64;
 
-/// Slopes of up to 1.5, and of 40 for two texels of 4096.
+/// Slopes of up to 1.5, and of 40 in two of 4096 texels.
 fn map_with_steep_texels(folder: &Path) -> PathBuf {
     let normal = |i: usize| match i {
         700 | 2900 => [40.0, 0.0, 1.0],
@@ -34,7 +34,7 @@ fn the_report_states_the_limit_and_its_gain() {
     let with = |options: &[&str]| bake(&input, &output, &[&READ_AS, options].concat()).expect_success();
     let report = with(&["--json"]).json();
     let limit = report["limit"]["max_slope"].as_f64().expect("it was limited");
-    // 1.5, to a bin of the histogram.
+    // 1.5, within one bin of the histogram.
     assert!((1.5..1.525).contains(&limit), "{limit}");
     assert_eq!((&report["max_slope"], &report["limit"]["texels"]), (&limit.into(), &2.into()));
     assert_eq!(report["clamped"], 2);

@@ -1,4 +1,4 @@
-//! Odd inputs, odd outputs and odd surroundings: what is refused, what is counted, and what goes to which stream.
+//! Odd inputs, outputs and environments: what is rejected, what is counted, and what goes to which stream.
 
 mod common;
 
@@ -24,7 +24,7 @@ fn the_same_input_gives_the_same_bytes_for_any_number_of_threads() {
         ("map.exr", &["--as", "bump-slopes", "--bits", "float"]),
         ("map.png", &[]),
     ];
-    // Rows that no number of threads divides, and more than one block of rows.
+    // The number of rows is not divisible by any number of threads, and exceeds one block of rows.
     let input = data("heights/canyon_height.jpg");
     let small = data("materials/pmndrs_normals/0002.webp");
     for (index, (name, options)) in cases.iter().enumerate() {
@@ -47,7 +47,7 @@ fn the_same_input_gives_the_same_bytes_for_any_number_of_threads() {
     }
 }
 
-/// A height map in floats with some NaN texels.
+/// A floating-point height map with some NaN texels.
 fn map_with_nan(folder: &Path) -> PathBuf {
     let height = |index: usize| match index {
         3 => f32::NAN,
@@ -72,7 +72,7 @@ fn non_finite_texels_are_counted_and_flattened_or_refused() {
     assert!(!output.exists());
     let report = bake(&input, &output, &options).expect_success().json();
     let counted = report["non_finite"].as_u64().expect("a number");
-    // Each hole spoils the gradients of the texels around it, too.
+    // Each hole also spoils the gradients of the texels around it.
     assert!((2..=18).contains(&counted), "{counted} of 256");
     let levels = &textures(&output).layers[0].levels;
     for level in levels {
@@ -84,7 +84,7 @@ fn non_finite_texels_are_counted_and_flattened_or_refused() {
 fn broken_normals_are_repaired_and_counted_or_refused() {
     let folder = scratch();
     let (input, output) = (folder.path().join("broken.exr"), folder.path().join("out.exr"));
-    // Straight into the surface, to a side of it, and NaN, among normals of slope 1/4.
+    // Normals straight into the surface, obliquely into it, and NaN, among normals of slope 1/4.
     let broken = [(5, [0.0, 0.0, -1.0]), (100, [0.5, 0.5, -0.1]), (200, [f32::NAN, 0.0, 1.0])];
     let texel =
         |i: usize| broken.iter().find(|(at, _)| *at == i).map_or([0.25, 0.0, 1.0], |(_, normal)| *normal);
@@ -112,7 +112,7 @@ fn too_many_pixels_are_refused_before_they_are_decoded() {
     let line = bake(&map(), &output, &limit).expect_refusal(1, &map());
     assert!(line.contains("64x64") && line.contains("--max-pixels"), "{line}");
     bake(&map(), &output, &["--max-pixels", "4096"]).expect_success();
-    // Of our own files every layer counts: LEAN has two.
+    // In the program's own files every layer counts: LEAN has two.
     for (subcommand, rest) in [("info", vec![]), ("unpack", vec!["-o", "never.exr"])] {
         let arguments = [&[subcommand, text(&output), limit[0], limit[1]][..], &rest].concat();
         let line = run(arguments).expect_refusal(1, &output);
@@ -129,13 +129,13 @@ fn bad_outputs_are_refused_with_advice() {
     assert!(refusal(2, &at("out")).contains(".ktx2, .dds, .exr, .tx or .png"));
     assert!(refusal(2, folder.path()).contains("it is a folder"));
     assert!(refusal(1, &at("missing/out.ktx2")).contains("does not exist: create it"));
-    // Of PNG the first file that would be written is named.
+    // For PNG, the error names the first file that would be written.
     let line = bake(&map(), &at("missing/out.png"), &[]).expect_refusal(1, &at("missing/out.L0.png"));
     assert!(line.contains("create it"), "{line}");
     assert!(names(folder.path()).is_empty());
 }
 
-/// Permissions do not bind the superuser, as whom containers often run: nothing is shown there.
+/// Permissions do not bind the superuser, which containers often run as, so they prove nothing there.
 #[cfg(unix)]
 #[test]
 fn folders_that_cannot_be_written_to_are_named() {
@@ -163,7 +163,7 @@ fn no_output_replaces_an_input() {
     bake(&input, &baked, &["--as", "bump-slopes"]).expect_success();
     run(["unpack", text(&baked), "-o", text(&baked)]).expect_refusal(2, &baked);
     fs::remove_file(&baked).expect("it was written");
-    // A roughness map is an input, too, and another path to it is the same file.
+    // A roughness map is also an input, and another path to it is the same file.
     let rough = folder.path().join("out.roughness.exr");
     fs::copy(data("heights/t3d_mountain1.exr"), &rough).expect("space");
     let around = folder.path().join("..").join(folder.path().file_name().expect("a name")).join("out.exr");

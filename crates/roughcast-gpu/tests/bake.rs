@@ -1,4 +1,4 @@
-//! The GPU's bake against the CPU's.
+//! Compares the GPU's bake with the CPU's.
 
 mod common;
 
@@ -15,11 +15,11 @@ use roughcast_gpu::bake::{BakePath, GpuBaker};
 use roughcast_gpu::{Gpu, GpuError};
 use wgpu::util::DeviceExt;
 
-/// One step of the format: where the CPU's value lies next to the middle between two codes, the
-/// last bit of a float decides, and a GPU may fuse or round that bit in another way.
+/// Allowed difference in steps of the format. Where the CPU's value is close to the midpoint between two codes, the
+/// last bit of a float decides, and a GPU may fuse or round differently.
 const ALLOWED_STEPS: u32 = 1;
 
-/// Largest relative difference of an automatic scale: a root, a square and a sum in f32.
+/// Largest relative difference of an automatic scale, which takes a root, a square and a sum in f32.
 const SCALE_ROUNDING: f32 = 4.0 * f32::EPSILON;
 
 const SIZES: [(usize, usize); 7] = [(1, 1), (1, 7), (64, 64), (256, 128), (100, 60), (127, 33), (513, 511)];
@@ -35,7 +35,7 @@ const REAL_MAPS: &[(&str, Kind)] = &[
 const FORMATS: [SampleType; 3] = [SampleType::F16, SampleType::U16, SampleType::U8];
 const LAYOUTS: [Layout; 2] = [Layout::Lean, Layout::Clean];
 
-/// A bake of the same map on both sides.
+/// A bake of the same map on the CPU and the GPU.
 struct Case<'a> {
     image: &'a Image,
     source: SourceOptions,
@@ -130,7 +130,7 @@ fn every_size_of_heights_matches_the_cpu() {
     }
 }
 
-// The sizes from here on are even twice and then odd: every way to average is met, and shaders stay small.
+// The sizes from here on are even twice and then odd: this covers every way to average, and shaders stay small.
 
 #[test]
 fn every_format_layout_and_path_matches_the_cpu() {
@@ -180,7 +180,7 @@ fn every_way_to_store_normals_matches_the_cpu() {
             }
         }
     }
-    // Factors that are no powers of two round, and a mean of nearly nothing then differs by more steps of a half float than one,
+    // Factors that are not powers of two round. A mean close to zero can then differ by more than one half-float step,
     // though by no more than the rounding of the slopes: 1.75 has one such texel of 16832.
     for (red, normal_scale) in [(Red::Left, 1.0), (Red::Right, 0.5), (Red::Left, 1.25)] {
         for order in NormalChannels::ALL {
@@ -219,7 +219,8 @@ fn bad_texels_are_repaired_and_counted_as_on_the_cpu() {
     Case::new(&image, source, Layout::Lean, SampleType::F16).check(&gpu);
 }
 
-/// A map whose few steep texels make the automatic limit set in: slopes of up to 2, and of 40 every so many texels.
+/// A map whose few steep texels trigger the automatic limit: slopes of up to 2, and a slope of 40 once in `every`
+/// texels.
 fn few_steep(width: usize, height: usize, every: usize) -> Image {
     let slope = |i: usize| match (i % every, i % 7, i % 11) {
         (0, ..) => [40.0, -9.0],

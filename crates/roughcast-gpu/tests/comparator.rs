@@ -1,4 +1,4 @@
-//! The comparator of baked textures fails when it should.
+//! The comparison of baked textures fails when it should.
 
 mod common;
 
@@ -14,7 +14,7 @@ fn baked(bits: SampleType) -> TextureArray {
     roughcast::Bake::of(&image).options(options).run().expect("baked").arrays.remove(0)
 }
 
-/// Moves one channel of one texel of the third level of the second texture by so many steps.
+/// Moves one channel of one texel of the third level of the second texture by `steps`.
 fn moved(array: &TextureArray, steps: u16) -> TextureArray {
     let mut moved = array.clone();
     match moved.layers[1].levels[2].samples_mut() {

@@ -1,4 +1,4 @@
-//! A drawing whose options change, that fills a part of its target, and that lies over another.
+//! Drawings whose options change, that fill a part of their target, and that overlap another drawing.
 
 mod common;
 
@@ -40,7 +40,7 @@ fn options_change_without_another_drawing() {
         let changed = render(&renderer, &mut changing, &scene, SIZE).await?;
         changing.set_options(&mut renderer, &plain).await?;
         let back = render(&renderer, &mut changing, &scene, SIZE).await?;
-        // A filter that hardware does not have leaves the drawing as it was.
+        // A filter that the hardware does not support leaves the drawing unchanged.
         let ewa = plain.with_sampler(Sampler::default().with_filter(Filter::Ewa));
         assert!(changing.set_options(&mut renderer, &ewa).await.is_err());
         assert_eq!(render(&renderer, &mut changing, &scene, SIZE).await?, back);
@@ -101,10 +101,10 @@ impl Target {
 
 #[test]
 fn a_drawing_fills_a_part_of_its_target() {
-    /// Pixels that lie further to the right are placed with another rounding, which a lobe's flank multiplies, and which makes the
-    /// sampler choose other levels for a few.
+    /// Tolerance for pixels further to the right, whose positions round differently. The flank of a lobe amplifies the
+    /// rounding, and for a few pixels the sampler chooses other levels.
     const MOVED: f32 = 1e-3;
-    /// Of the pixels: how many may differ by more. A part that lies a pixel off changes most of them.
+    /// Fraction of the pixels that may differ by more. A part that is one pixel off changes most of them.
     const FEW: f64 = 0.005;
     let (gpu, scene) = (gpu(), plane());
     let (width, height) = SIZE;
@@ -147,7 +147,7 @@ fn a_drawing_lies_over_another_and_is_hidden_by_it() {
         let mut of_floor = drawing(&mut renderer, &floor, &DrawOptions::default()).await?;
         let mut of_ring = drawing(&mut renderer, &ring, &DrawOptions::default()).await?;
         let floor_alone = render(&renderer, &mut of_floor, &floor, SIZE).await?;
-        // Both must place their planes of depth alike: by the larger shape.
+        // Both must place their depth planes identically, by the larger shape.
         let as_floor = Scene { shape: floor.shape.clone(), ..ring.clone() };
         of_ring.set_view(&renderer, &as_floor, SIZE).await?;
         let alone = Target::new(&gpu, SIZE);

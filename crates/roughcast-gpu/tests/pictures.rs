@@ -1,4 +1,4 @@
-//! Pictures of the same scenes by the CPU and by the GPU.
+//! Compares pictures of the same scenes by the CPU and by the GPU.
 
 mod common;
 
@@ -11,33 +11,39 @@ use roughcast::{AnisotropyOutput, BakeOptions, PbrOptions, RoughnessTexture, Sam
 use roughcast_gpu::render::{Bumps, DrawOptions};
 use roughcast_scene::{Filter, Picture, Plane, Sampler, Scene, Shape, Sphere, Torus, View};
 
-/// Squares of round shapes along v. Their triangles lie within 2e-5 of the shape.
+/// Number of squares along v in the mesh of a round shape. The triangles lie within 2e-5 of the shape.
 const DETAIL: u32 = 256;
 
-/// With one texel per pixel, no filter and the same lobes, what is left is single against double floats: directions and
-/// texture coordinates are off by a few 1e-7 (a mesh far smaller than one, ten times as much), and a lobe's flank makes some
-/// ten times that of it; the largest measured is 2e-4. The values compared are relative, down to a hundredth of the brightest.
+/// Largest difference with one texel per pixel, no filter and the same lobes, where only single against double
+/// precision remains. Directions and texture coordinates are off by a few 1e-7 (ten times as much for a mesh far
+/// smaller than one), and the flank of a lobe amplifies that some ten times; the largest measured is 2e-4. Differences
+/// are relative to the value, down to a hundredth of the brightest.
 const SAME_TEXELS: f64 = 1e-3;
-/// On round shapes also flat triangles against round surfaces: the eye meets the triangle up to 6e-5 beside the point of the
-/// round shape, where the bumps' frame has turned as much. Largest measured: 8e-3; it falls as the triangles do.
+/// Largest difference on round shapes, where flat triangles also stand for round surfaces: the view ray meets the
+/// triangle up to 6e-5 from the point on the round shape, and the bumps' frame is rotated by as much. Largest
+/// measured: 8e-3; it falls as the triangles shrink.
 const SAME_TEXELS_ROUND: f64 = 2e-2;
-/// Of the covered pixels, the least part that must be far enough from edges of texels and silhouettes to be compared so.
+/// Least fraction of the covered pixels that must be far enough from texel edges and silhouettes to be compared.
 const COMPARED: f64 = 0.7;
-/// Texels from an edge within which a rounding decides which texel is taken.
+/// Distance from a texel edge, in texels, within which rounding decides which texel is read.
 const EDGE: f64 = 0.02;
 
-/// Mean difference where texels are interpolated at a known level: graphics hardware weighs them in steps of 1/256, so slopes
-/// are off by up to 1/512 of a texel's difference to the next. A driver with exact weights stays below 1e-5.
+/// Mean difference where texels are interpolated at a known level. Graphics hardware weights them in steps of 1/256, so
+/// slopes are off by up to 1/512 of the difference between neighbouring texels. A driver with exact weights stays below
+/// 1e-5.
 const INTERPOLATED: f64 = 2e-3;
-/// Mean difference where the hardware also finds the level of detail: from differences over 2x2 pixels, along the pixel's
-/// sides where the CPU takes the ellipse's axis (up to half a level more), and with a rough logarithm. Largest measured: 1.3e-2.
+/// Mean difference where the hardware also computes the level of detail: from differences over 2x2 pixels, along the
+/// pixel's sides where the CPU uses the ellipse's axis (up to half a level more), and with an approximate logarithm.
+/// Largest measured: 1.3e-2.
 const OWN_LEVEL: f64 = 2.5e-2;
-/// Mean difference with anisotropic filters, whose taps drivers choose as they like. Largest measured: 0.03 where footprints
-/// are up to a few times as long as wide, and 0.1 in the grazing view, where they are longer than any filter.
+/// Mean difference with anisotropic filters, whose taps each driver chooses freely. Largest measured: 0.03 where
+/// footprints are up to a few times as long as wide, and 0.1 in the grazing view, where they are longer than any
+/// filter.
 fn own_taps(view: View) -> f64 {
     if view == View::Grazing { 0.15 } else { 0.05 }
 }
-/// Of the highlight's energy with anisotropic filters, for models that keep it whatever the filter. Largest measured: 0.014.
+/// Relative difference of the highlight's energy with anisotropic filters, for models that preserve it with any filter.
+/// Largest measured: 0.014.
 const ENERGY: f64 = 0.03;
 
 const FORMS: [(Form, BaseFrame); 3] = [
@@ -73,7 +79,7 @@ fn models() -> Vec<(Shading, Vec<TextureArray>)> {
     models
 }
 
-/// Where one texel and one surface decide a pixel.
+/// Compares the pixels that one texel and one surface determine.
 fn apart_within_texels(scene: &Scene, cpu: &Picture, gpu: &Picture) -> Apart {
     compare(scene, cpu, gpu, EDGE)
 }
@@ -93,7 +99,7 @@ fn unfiltered_pictures_of_every_model_and_shape_match() {
         let round = matches!(*scene.shape, Shape::Sphere(_) | Shape::Torus(_));
         let allowed = if round { SAME_TEXELS_ROUND } else { SAME_TEXELS };
         for (index, (shading, maps)) in models.iter().enumerate() {
-            // Each model in another form on the next shape.
+            // Each model uses another form on the next shape.
             let (form, base) = FORMS[(place + index) % FORMS.len()];
             let draw = options(unfiltered(), shading_options(form, base));
             let cpu = by_cpu(scene, *shading, maps, &draw, SIZE);
@@ -114,7 +120,7 @@ fn resolved_bumps_are_those_of_the_cpu() {
             let resolved = with_filter(Filter::Anisotropic).with_bumps(Bumps::Resolved);
             let apart = both(&mut pictures, &scene, shading, &resolved);
             assert!(apart.mean < INTERPOLATED, "{name}, {shading}: {apart:?}");
-            // And not those of the filter.
+            // They must differ from the filtered bumps.
             let maps = maps(shading, SampleType::F16);
             let filtered = by_cpu(&scene, shading, &maps, &with_filter(Filter::Anisotropic), SIZE);
             let gpu = pictures.render(&scene, shading, &maps, &resolved, SIZE).expect("a picture");
@@ -170,7 +176,7 @@ fn anisotropic_pictures_agree_in_the_mean_and_moments_keep_the_highlights_energy
     }
 }
 
-/// The picture by both, with maps of half floats.
+/// The difference between the CPU's and the GPU's pictures, with half-float maps.
 fn both(pictures: &mut GpuPictures, scene: &Scene, shading: Shading, draw: &DrawOptions) -> Apart {
     let maps = maps(shading, SampleType::F16);
     let cpu = by_cpu(scene, shading, &maps, draw, SIZE);
@@ -191,7 +197,7 @@ fn the_comparisons_fail_when_they_should() {
     let lean = gpu(Shading::Lean, &unfiltered);
     let same = apart_within_texels(&scene, &cpu(Shading::Lean, &unfiltered), &lean);
     assert!(same.largest < SAME_TEXELS, "{same:?}");
-    // Another model, another form, a base that differs by a hundredth, a picture that is shifted by a pixel.
+    // Another model, another form, a base that differs by a hundredth, and a picture shifted by a pixel.
     let mut darker = unfiltered;
     darker.shading_options.specular_power *= 1.01;
     let mut paper = unfiltered;
@@ -209,7 +215,7 @@ fn the_comparisons_fail_when_they_should() {
         let apart = apart_within_texels(&scene, other, &lean);
         assert!(apart.largest > SAME_TEXELS_ROUND, "{index}: {apart:?}");
     }
-    // The means, too, see another filter, another level, another wrap, and another model.
+    // The means also detect another filter, another level, another wrap and another model.
     let at = |level, wrap| {
         let sampler =
             Sampler::default().with_filter(Filter::Trilinear).with_level(Some(level)).with_wrap(wrap);
@@ -246,18 +252,18 @@ fn the_comparisons_of_filters_fail_when_they_should() {
                 compare(&scene, &by_cpu(&scene, shading, &maps, &other, SIZE), &gpu, 0.0)
             };
             let what = format!("{view}, {shading}");
-            // A level that is off by half of one.
+            // A level that is off by half a level.
             for bias in [0.5, -0.5] {
                 let apart = against(Filter::Trilinear, with(Filter::Trilinear, bias, 1.0));
                 assert!(apart.mean > OWN_LEVEL, "{what}, bias {bias}: {apart:?}");
             }
-            // No filter, and one that is twice as wide, or eight times in the grazing view.
+            // No filter, and a filter that is twice as wide, or eight times in the grazing view.
             let wider = if view == View::Grazing { 3.0 } else { 1.0 };
             for other in [with(Filter::Nearest, 0.0, 1.0), with(Filter::Anisotropic, wider, 1.0)] {
                 let apart = against(Filter::Anisotropic, other);
                 assert!(apart.mean > own_taps(view), "{what}, {other:?}: {apart:?}");
             }
-            // A base roughness that is off, and a model that loses the highlight with the level.
+            // A wrong base roughness, and a model that loses the highlight at a wrong level.
             let other = match shading {
                 Shading::BlinnPhong => with(Filter::Anisotropic, 2.0, 1.0),
                 _ => with(Filter::Anisotropic, 0.0, 1.5),
@@ -280,14 +286,14 @@ fn round_shapes_converge_as_their_triangles_shrink() {
         let gpu = pictures.render(&scene, Shading::Lean, &maps, &draw, SIZE).expect("a picture");
         apart_within_texels(&scene, &cpu, &gpu).mean
     });
-    // Four times as many triangles each way: a sixteenth, where nothing but their flatness differs.
+    // Four times as many triangles each way give a sixteenth of the difference where only their flatness matters.
     assert!(coarse > 8.0 * fine, "{coarse:e} and {fine:e}");
 }
 
 #[test]
 fn every_format_and_wrap_is_read_as_the_cpu_reads_it() {
     let gpu = gpu();
-    // Far enough for the map to repeat.
+    // Far enough away for the map to repeat.
     let scene = scene(Shape::Plane(Plane::default()), View::Mid);
     assert!(scene.repeats > 1.5, "{}", scene.repeats);
     let mut pictures = GpuPictures::new(&gpu, &scene, 4);

@@ -1,4 +1,4 @@
-//! The cost of waiting for a real device, and errors of a lost one.
+//! The cost of waiting for a real device, and the errors of a lost one.
 
 mod common;
 
@@ -19,7 +19,7 @@ impl Wake for Unpark {
     }
 }
 
-/// Runs a future to its end and gives how often it was polled.
+/// Runs a future to completion and returns its output with the number of polls.
 fn counted<T>(future: impl Future<Output = T>) -> (T, usize) {
     let waker = Arc::new(Unpark(std::thread::current())).into();
     let mut future = pin!(future);
@@ -33,7 +33,7 @@ fn counted<T>(future: impl Future<Output = T>) -> (T, usize) {
     }
 }
 
-/// Work for some tens of milliseconds on a software driver, and a buffer that it writes.
+/// Work that takes some tens of milliseconds on a software driver, and the buffer that it writes.
 fn slow_work(gpu: &Gpu) -> wgpu::Buffer {
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
@@ -77,8 +77,8 @@ fn slow_work(gpu: &Gpu) -> wgpu::Buffer {
     buffer
 }
 
-/// Polls of a future that waits once: when the wait begins, and when it has ended; one more in case an executor's thread
-/// wakes for another reason. A loop that asks to be polled again needs thousands.
+/// Maximum polls of a future that waits once: one when the wait begins, one when it has ended, and one more in case an
+/// executor's thread wakes for another reason. A loop that asks to be polled again needs thousands.
 const MOST_POLLS: usize = 3;
 
 #[test]

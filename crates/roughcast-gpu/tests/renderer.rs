@@ -1,4 +1,4 @@
-//! What the renderer accepts, draws into and refuses.
+//! What the renderer accepts, draws into and rejects.
 
 mod common;
 
@@ -70,7 +70,7 @@ fn shaders_sample_as_many_textures_as_the_model_has_inputs() {
 
 #[test]
 fn a_colour_target_has_the_radiance_of_the_picture() {
-    /// Half a step of a half float below two, and of the single float that it was rounded from.
+    /// Half a step of a half float below two, plus that of the single float that it was rounded from.
     const HALF_FLOAT: f32 = 1e-3;
     let (gpu, scene) = (gpu(), plane());
     let want = picture(&gpu, &scene, SIZE).expect("a picture");
@@ -123,7 +123,7 @@ fn a_colour_target_has_the_radiance_of_the_picture() {
 #[test]
 fn the_background_shows_where_there_is_no_surface() {
     let mut scene = plane();
-    // A camera that looks away.
+    // A camera that faces away.
     scene.camera.target = scene.camera.eye * 2.0;
     let picture = picture(&gpu(), &scene, (16, 8)).expect("a picture");
     assert!(picture.coverage.iter().all(|c| *c == 0.0));
@@ -183,7 +183,7 @@ fn formats_that_the_device_cannot_filter_are_named() {
     }
 }
 
-/// A device with nothing beyond what every implementation of WebGPU has.
+/// A device with only the features that every WebGPU implementation has.
 fn plain_device() -> Gpu {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let adapter = block_on(instance.request_adapter(&Default::default())).expect("an adapter");
@@ -219,7 +219,7 @@ fn textures_baked_on_the_gpu_are_drawn_without_a_copy() {
             Ok::<_, GpuError>(<[Picture; 2]>::try_from(pictures).expect("two of them"))
         })
         .expect("two pictures");
-        // The same texels: the same picture, to the bit.
+        // The same texels give the same picture, bit for bit.
         assert!(here == back, "{shading} with {bits}");
         assert!(here.specular.iter().any(|s| s[0] > 0.0));
     }

@@ -1,4 +1,4 @@
-//! Times by the GPU's clock, and measurements with them.
+//! Times from the GPU's clock, and measurements with them.
 
 mod common;
 
@@ -28,7 +28,7 @@ fn each_span_has_its_name_and_a_time() {
     let measured = block_on(timestamps.read(&gpu)).expect("read back");
     assert_eq!(measured.iter().map(|span| span.name.as_str()).collect::<Vec<_>>(), ["compute", "raster"]);
     for span in measured {
-        // More than an hour would be a wrong unit.
+        // More than an hour would mean a wrong unit.
         assert!(span.nanoseconds.is_some_and(|time| time > 0.0 && time < 3.6e12), "{span:?}");
     }
     assert!(timestamps.span("room again").is_some());

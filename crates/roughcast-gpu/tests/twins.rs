@@ -1,4 +1,4 @@
-//! The library's rules in WGSL against their Rust twins, over thousands of inputs.
+//! Compares the library's rules in WGSL with their Rust twins for thousands of inputs.
 
 mod common;
 
@@ -15,24 +15,25 @@ use wgpu::util::DeviceExt;
 
 const INPUTS: usize = 1 << 14;
 
-/// A quotient or a root of the GPU after one exact correction: the nearest float, save where two are about equally near.
+/// Error of a GPU quotient or root after one exact correction, in floats: the result is the nearest float unless two
+/// floats are about equally near.
 const NEAREST_OR_NEXT: u32 = 1;
 
-/// A repaired slope: the quotient by the larger component, two squares, a root, a quotient and a product, in f32 where the
-/// CPU has f64.
+/// Error of a repaired slope: the quotient by the larger component, two squares, a root, a quotient and a product, in
+/// f32 where the CPU uses f64.
 const REPAIRED: f32 = 6.0 * f32::EPSILON;
 
-/// The inverse of a product of two, read back through another inverse.
+/// Error of the reciprocal of a product of two factors, read back through another reciprocal.
 const STORES: f32 = 4.0 * f32::EPSILON;
 
-/// Runs `body`, WGSL that makes `output: vec4f` of `input: vec4f`, over all inputs.
+/// Runs `body`, WGSL that computes `output: vec4f` from `input: vec4f`, for all inputs.
 fn run(gpu: &Gpu, body: &str, inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
     run_with(gpu, &library_of(Role::Bake), &format!("opaque_zero = zero;\n{body}"), inputs)
 }
 
-/// The same with other functions than the library's.
+/// Runs `body` with functions other than the library's.
 fn run_with(gpu: &Gpu, functions: &str, body: &str, inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
-    // `zero` has to be used, or the binding would be left out.
+    // `zero` must be used, otherwise the binding would be removed.
     let source = format!(
         "{functions}\n@group(0) @binding(0) var<storage, read> inputs: array<vec4f>;\n\
          @group(0) @binding(1) var<storage, read_write> outputs: array<vec4f>;\n\
@@ -94,7 +95,7 @@ fn inputs(seed: u64, smallest_exponent: i32, largest_exponent: i32) -> Vec<[f32;
     (0..INPUTS).map(|_| std::array::from_fn(|_| number())).collect()
 }
 
-/// Floats between two of one sign.
+/// Distance in floats between two of the same sign.
 fn floats_apart(a: f32, b: f32) -> u32 {
     if a == b { 0 } else { a.to_bits().abs_diff(b.to_bits()) }
 }
@@ -149,7 +150,7 @@ fn slopes_are_repaired_as_on_the_cpu() {
         let wanted = roughcast::repaired_slope(input[0], input[1], input[2], MAX_SLOPE, &mut counts)
             .unwrap_or_default();
         let length = wanted.x.hypot(wanted.y);
-        // A slope as long as the largest may fall on either side of it.
+        // A slope almost exactly as long as the maximum may fall on either side of it.
         let on_the_edge = (length - MAX_SLOPE).abs() <= REPAIRED * MAX_SLOPE;
         let fault = match (counts.clamped, counts.behind, counts.invalid, counts.non_finite) {
             (1, ..) => 1.0,
@@ -173,7 +174,7 @@ fn unit_normals_match_the_cpu() {
     {
         let Normal { x, y, z } = roughcast::normal_from_slope(Slope { x: input[0], y: input[1] });
         for (got, wanted) in output.iter().zip([x, y, z]) {
-            // The product with z has one more rounding of z's neighbour.
+            // The product with z, which may be one float off, rounds once more.
             assert!(floats_apart(*got, wanted) <= 2 * NEAREST_OR_NEXT, "{input:?}: {output:?}, not {wanted}");
         }
     }
@@ -182,7 +183,7 @@ fn unit_normals_match_the_cpu() {
 #[test]
 fn texels_are_rounded_as_the_cpu_rounds() {
     let mut inputs = inputs(4, -30, 15);
-    // Numbers in the middle between two halves, and between two codes.
+    // Numbers midway between two half floats, and midway between two codes.
     inputs.extend((0..256_u16).map(|i| {
         let half = f16::from_bits(i * 97);
         let middle = 0.5 * (half.to_f32() + f16::from_bits(i * 97 + 1).to_f32());
@@ -213,7 +214,7 @@ fn weights_are_coverage() {
     for (input, output) in inputs.iter().zip(run(&gpu(), body, &inputs)) {
         let (j, from) = (f64::from(input[0]), f64::from(input[1]));
         let ratio = from / (from / 2.0).floor().max(1.0);
-        // Where the coarser texel covers the finer one, as a part of the coarser.
+        // Overlap of the coarser texel with the finer one, as a fraction of the coarser.
         let covered = |i: f64| (((j + 1.0) * ratio).min(i + 1.0) - (j * ratio).max(i)).max(0.0) / ratio;
         for (k, weight) in output.iter().take(3).enumerate() {
             let wanted = covered(2.0 * j + k as f64);
@@ -238,7 +239,8 @@ fn scales_match_the_cpu() {
 
 #[test]
 fn bins_contain_the_slopes_counted_in_them() {
-    /// The square's leading five bits: 3.1 % at most, half of it in the length.
+    /// Relative width of a bin, which the leading five bits of the square determine: at most 3.1 %, and half of that
+    /// for the length.
     const BIN: f32 = 1.0158;
     let inputs: Vec<[f32; 4]> = inputs(6, -9, 6).into_iter().map(|input| input.map(f32::abs)).collect();
     let body = "output = vec4f(upper_edge_of_slope_bin(slope_bin(input.x * input.x)), 0.0, 0.0, 0.0);";
@@ -261,7 +263,7 @@ fn the_automatic_limit_matches_the_cpu() {
         let square =
             |component: f32| (f64::from(component).powi(2) + f64::from(*base)).max(2.0_f64.powi(-20));
         let factor = square(*peak) / square(peak.min(limit));
-        // Where the factor is just four, rounding decides.
+        // Where the factor is almost exactly four, rounding decides.
         if (factor / 4.0 - 1.0).abs() > 1e-5 {
             assert_eq!(
                 output[0],
@@ -286,10 +288,10 @@ fn a_wrong_twin_is_detected() {
     );
 }
 
-/// A root, a quotient and products of a GPU, of up to 2.5 units each.
+/// Error of a root, a quotient and products on a GPU, of up to 2.5 units each.
 const LIGHT: f32 = 8.0 * f32::EPSILON;
 
-/// The part of the renderer's shader that begins so and ends with a brace of its own.
+/// The part of the renderer's shader that starts with `begin` and ends at the next brace on its own line.
 fn item(begin: &str) -> &'static str {
     let source = include_str!("../src/render/scene.wgsl");
     let (_, rest) = source.split_once(begin).unwrap_or_else(|| panic!("the shader has no '{begin}'"));
@@ -305,7 +307,7 @@ fn lights_are_finite_at_every_distance_and_match_the_cpu() {
     let functions = format!("{}\n{}", least.expect("the shader has it"), functions.join("\n"));
     let body = "let point = SceneLight(vec4f(0.0, 0.0, 0.0, 1.0), vec3f(8.0, 4.0, 2.0));\n\
                 let at = light_at(point, input.xyz);\noutput = vec4f(at.towards, at.irradiance.y);";
-    // The light is at the origin, so that no distance is rounded before its square is taken.
+    // The light is at the origin, so that no distance is rounded before it is squared.
     let mut positions = inputs(9, -40, 10);
     positions[0] = [0.0; 4];
     positions[1] = [1e-30, 0.0, 0.0, 0.0];
@@ -314,7 +316,7 @@ fn lights_are_finite_at_every_distance_and_match_the_cpu() {
     for (position, got) in positions.iter().zip(run_with(&gpu(), &functions, body, &positions)) {
         let at = DVec3::new(position[0].into(), position[1].into(), position[2].into());
         let (towards, irradiance) = light.at(at);
-        // Squares that single floats do not hold count as zero.
+        // Squares too small for single floats count as zero.
         let towards = if at.length() > 1e-18 { towards } else { DVec3::ZERO };
         let want = [towards.x as f32, towards.y as f32, towards.z as f32, irradiance[1]];
         for (got, want) in got.into_iter().zip(want) {

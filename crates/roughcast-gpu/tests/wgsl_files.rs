@@ -1,4 +1,4 @@
-//! Every WGSL file of the library and of this crate goes through naga, in a module as the code puts it together.
+//! Validates every WGSL file of the library and of this crate with naga, in modules assembled the way the code does.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use roughcast::texture::Layout;
 use roughcast::wgsl::{MODULES, Role, library, library_of, renamed};
 use roughcast_gpu::render::{Bumps, LevelOfDetail, ShaderKey, shader_source};
 
-/// Parses and validates a module with everything that naga can check.
+/// Parses and validates a module with every check that naga has.
 fn validate(source: &str) -> Result<(), String> {
     let module = naga::front::wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))?;
     let flags = naga::valid::ValidationFlags::all();
@@ -21,7 +21,7 @@ fn folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
 }
 
-/// The WGSL files in a folder and below it, with their text.
+/// The WGSL files in a folder and its subfolders, with their text.
 fn files_in(folder: &Path) -> Vec<(PathBuf, String)> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).expect("a folder of the repository") {
@@ -71,20 +71,20 @@ fn every_shader_of_the_renderer_is_valid_and_has_all_of_its_files() {
         }
     }
     assert!(sources.len() > 100, "{}", sources.len());
-    // Any model on any layout: all modules of detail, and all files of the renderer.
+    // Any model in any layout: all detail modules, and all files of the renderer.
     let details = MODULES.iter().filter(|module| module.role == Role::Detail);
     let own = files_in(&folder("src/render"));
     assert!(own.len() > 10, "{}", own.len());
     let own = own.iter().map(|(path, text)| (path.display().to_string(), text.as_str()));
     for (name, text) in details.map(|module| (module.name.to_owned(), module.source)).chain(own) {
         let general = ["model_surface", "model_lobe"].iter().any(|name| text.contains(name));
-        // The scene's file has the model's names in it.
+        // The scene's file contains the model's names.
         let text = if general { text.lines().next().expect("a first line") } else { text };
         assert!(sources.iter().any(|source| source.contains(text)), "{name} is in no shader");
     }
 }
 
-/// Bindings of a bake, and constants of its host.
+/// Bindings of a bake, and constants that its host defines.
 const BINDINGS: &str = "
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(2) var map: texture_2d<f32>;
@@ -107,7 +107,7 @@ const STORES: &str = "@group(0) @binding(1) var<uniform> packed_stores: PackedSt
 const SURVEY: &str = "@group(0) @binding(1) var<storage, read_write> packed_stores: PackedStores;
 @group(0) @binding(10) var<storage, read_write> survey: Survey;
 ";
-/// What a fused kernel calls of the levels that are not tested here.
+/// Functions that a fused kernel calls for the levels that are not tested here.
 const OTHER_STORES: &str = "
 fn store_0(at: vec2u, averages: Averages) {}
 fn store_2(at: vec2u, averages: Averages) {}
@@ -117,7 +117,7 @@ fn store_5(at: vec2u, averages: Averages) {}
 fn store_6(at: vec2u, averages: Averages) {}
 ";
 
-/// The passes of a bake: files beside `common`. A name after `=` is WGSL of this test.
+/// The passes of a bake: files in addition to `common`. A name after `=` is WGSL from this test.
 fn passes() -> Vec<Vec<&'static str>> {
     let normal = |texel, component, slope| vec![texel, component, slope, "neutral"];
     let height = |texel, of, gradient| vec![texel, of, gradient, "height"];

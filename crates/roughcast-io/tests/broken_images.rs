@@ -1,4 +1,4 @@
-//! Damaged and hostile files give an error, or an image if they are merely odd; never a panic, and always quickly.
+//! Damaged and hostile files quickly give an error, or an image if they are merely odd, and never cause a panic.
 
 mod shared_data;
 
@@ -8,7 +8,7 @@ use roughcast_io::{Limits, ReadError, ReadOptions, read_image};
 use roughcast_testdata::{available, find};
 use shared_data::manifest;
 
-/// Odd files that contain a complete image, and why.
+/// Odd files that contain a complete image, each with an explanation.
 const READABLE: [(&str, &str); 9] = [
     ("go_invalid-palette.png", "indices past the palette, which the format's own library reads as black"),
     ("magnum_openexr_levels-cube-incomplete.exr", "level 0 is whole, lower levels are not"),
@@ -20,10 +20,10 @@ const READABLE: [(&str, &str); 9] = [
     ("oiio_exif-deep-ifds.png", "EXIF that a parser of EXIF would choke on"),
     ("oiio_rowsperstrip-zero.exr", "an attribute that only TIFF would use"),
 ];
-/// The same; the data has two more copies that differ only in their extension.
+/// More of these files; the data has two more copies that differ only in their extension.
 const READABLE_XMP: [&str; 2] = ["oiio_xmp-deep-nesting.png", "oiio_xmp-many-attribs.png"];
 
-/// Reasons that the errors of some files must give.
+/// Reasons that the error messages of some files must contain.
 const REASONS: [(&str, &str); 15] = [
     ("exr_v1.7.test.interleaved.exr", "its channel names are ambiguous: R, Z"),
     ("oiio_bomb.png", "46340x46340 pixels are more than the limit"),
@@ -42,10 +42,10 @@ const REASONS: [(&str, &str); 15] = [
     ("exr_asan_heap-oob_7f4d5072b39d_561_5f5e4ef49a581edaf7bf0858fbfcfdd1_exr.exr", "outside of the file"),
 ];
 
-/// Time for one file. All take some milliseconds; a slow machine under load may need more.
+/// Time limit for one file. Each takes a few milliseconds, but a slow machine under load may need more.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Name, extension and bytes of the broken files that are ordinary images.
+/// Name, extension and bytes of the broken files in ordinary image formats.
 fn broken_images() -> Vec<(String, String, Vec<u8>)> {
     let files = manifest(&["broken"]).into_iter().filter_map(|entry| {
         let name = entry.path.rsplit('/').next().expect("a file name").to_owned();
@@ -90,7 +90,7 @@ fn the_tables_list_existing_files() {
     }
 }
 
-/// One whole file of each format and of each compression that has its own decoder.
+/// One intact file for each format and for each compression with its own decoder.
 const WHOLE: [&str; 18] = [
     "formats/png/go_basn2c08.png",
     "formats/png/imgrs_basi0g16.png",
@@ -120,8 +120,8 @@ fn whole_files() -> Vec<(&'static str, &'static str, Vec<u8>)> {
     WHOLE.map(file).into()
 }
 
-/// Percent of a file that hold all pixels of level 0, where that is not all of it: what follows are lower levels, or
-/// tags of TIFF that are not read.
+/// Percentage of a file that contains all pixels of level 0, for files in which it is below 100. The rest contains
+/// lower mip levels, or TIFF tags that are not read.
 const PIXELS_END: [(&str, usize); 2] =
     [("heights/oiio_bumpslope/bumpslope.exr", 90), ("formats/tiff/imgrs_hpredict_packbits.tiff", 99)];
 
@@ -144,12 +144,12 @@ fn a_file_that_was_cut_is_an_error() {
     }
 }
 
-/// Damages to each file: enough to reach every branch of the headers within a few seconds.
+/// Damaged copies of each file: enough to reach every branch of the header parsers within a few seconds.
 const DAMAGES: u64 = 400;
-/// A damaged size must not make the test itself slow.
+/// Limits that keep a damaged size from making the test slow.
 const SMALL: Limits = Limits { max_pixels: 1 << 18 };
 
-/// Ready for a fuzzer: any bytes whatever.
+/// Reads arbitrary bytes, as a fuzzer would.
 fn fuzz_read_image(bytes: &[u8], extension: &str) {
     match read_image(bytes, Some(extension), &SMALL.into()) {
         Ok(decoded) => {
@@ -202,7 +202,7 @@ fn noise_behind_a_signature_never_panics() {
     }
 }
 
-/// Marsaglia's generator: the same damages in every run.
+/// Marsaglia's generator, which gives the same damage in every run.
 struct XorShift(u64);
 
 impl XorShift {
@@ -217,7 +217,7 @@ impl XorShift {
         (self.next() % end as u64) as usize
     }
 
-    /// Changes some bytes, most often in the header, where sizes and offsets stand.
+    /// Changes some bytes, most often in the header, which contains the sizes and offsets.
     fn damage(&mut self, bytes: &mut Vec<u8>) {
         const HEADER: usize = 600;
         let reach = if self.below(3) == 0 { bytes.len() } else { bytes.len().min(HEADER) };

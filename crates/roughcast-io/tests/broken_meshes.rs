@@ -1,4 +1,4 @@
-//! Files that are not meshes get one clear line, never a panic.
+//! Files that are not meshes give an error of one clear line and never cause a panic.
 
 #![cfg(feature = "mesh")]
 
@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use roughcast_io::mesh::{MAX_FILE_BYTES, MeshFileError, load_mesh};
 use roughcast_scene::{MAX_TRIANGLES, Mesh};
 
-/// A file in a folder of this test's own.
+/// Writes a file into this test's own folder and returns its path.
 fn file(test: &str, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(test);
     std::fs::create_dir_all(&folder).unwrap();
@@ -16,7 +16,7 @@ fn file(test: &str, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
     path
 }
 
-/// The message, which must be one line that names the file.
+/// The error message, which must be a single line that names the file.
 fn message(result: Result<Mesh, MeshFileError>, path: &std::path::Path) -> String {
     let text = result.map(|_| ()).expect_err("this is not a mesh").to_string();
     assert!(text.starts_with(&path.display().to_string()), "{text}");
@@ -51,7 +51,7 @@ fn broken_obj_files() {
         let message = message(load_mesh(&path), &path);
         assert!(message.contains(wanted), "{text:?}: {message}");
     }
-    // The same triangle, whole, loads: the faults above are what is refused.
+    // The same triangle without faults loads, so the faults above are what causes the refusals.
     let path = file("broken_obj", "whole.obj", format!("# caf\u{e9}\n{TRIANGLE}f 1 2 3\nf -3 -2 -1\n"));
     assert_eq!(load_mesh(&path).unwrap().triangle_count(), 1, "the second repeats the first");
     let latin = [b"# caf\xe9\n".as_slice(), TRIANGLE.as_bytes(), b"f 1 2 3\n"].concat();
@@ -71,7 +71,7 @@ fn missing_files_and_other_formats_are_refused() {
     message(load_mesh(&folder), &folder);
 }
 
-/// A glTF file of one triangle, with its parts open to changes.
+/// A glTF file of one triangle, whose JSON `edit` may change.
 fn gltf(buffer: &str, edit: impl Fn(String) -> String) -> String {
     edit(format!(
         r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
@@ -152,7 +152,7 @@ fn nodes_place_and_mirror() {
     let path = file("nodes", "mirrored.gltf", gltf(DATA_URI, edit));
     let mesh = load_mesh(&path).unwrap();
     assert_eq!(mesh.bounds().centre, glam::DVec3::new(-1.0, 0.5, 5.0));
-    // Mirrored, it still faces +z.
+    // The mirrored triangle still faces +z.
     assert!(mesh.triangles().normals.iter().all(|n| *n == [0.0, 0.0, 1.0]), "{:?}", mesh.triangles());
 }
 
@@ -167,7 +167,7 @@ fn broken_glb_files() {
         let mut damaged = whole.clone();
         damaged[at..at + 4].fill(0xff);
         let path = file("broken_glb", "length.glb", &damaged);
-        // The length of the whole file is not needed; that of the JSON is.
+        // The reader needs the length of the JSON but not that of the whole file.
         assert_eq!(load_mesh(&path).is_ok(), at == 8);
     }
 }
@@ -177,7 +177,7 @@ fn files_beyond_the_limits_are_refused_before_memory_is_taken() {
     let corners = " 1".repeat(MAX_TRIANGLES + 3);
     let path = file("limits", "polygon.obj", format!("{TRIANGLE}f{corners}\n"));
     assert!(message(load_mesh(&path), &path).contains("more triangles than the limit"));
-    // Nodes show one mesh of a hundred thousand triangles over and over.
+    // Many nodes reference the same mesh of a hundred thousand triangles.
     let (triangles, shown) = (100_000, MAX_TRIANGLES / 100_000 + 1);
     let positions = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let mut bytes: Vec<u8> = positions.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
@@ -196,7 +196,7 @@ fn files_beyond_the_limits_are_refused_before_memory_is_taken() {
         })
     };
     let path = file("limits", "two.gltf", text(2));
-    // All of them are the same one.
+    // All the triangles are identical.
     assert_eq!(load_mesh(&path).unwrap().triangle_count(), 1);
     let path = file("limits", "nodes.gltf", text(shown));
     assert!(message(load_mesh(&path), &path).contains("more triangles than the limit"));
@@ -212,7 +212,7 @@ fn damaged_files_never_panic() {
     let glb = std::fs::read(roughcast_testdata::find("models/TwoSidedPlane.glb")).unwrap();
     let obj = std::fs::read(roughcast_testdata::find("models/meshes/cube_bgfx.obj")).unwrap();
     let json = gltf(DATA_URI, |s| s).into_bytes();
-    // A small generator of evenly distributed bits (splitmix64): the same ones on every run.
+    // A small generator of uniformly distributed bits (splitmix64), the same in every run.
     let mut state = 5_u64;
     let mut bits = || {
         state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -220,8 +220,8 @@ fn damaged_files_never_panic() {
         let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         z ^ (z >> 31)
     };
-    // The JSON of the .glb is at its beginning; what follows are pictures. Past it the floats of the vertices are hit by the
-    // third file, whose buffer is in its JSON.
+    // The .glb starts with its JSON, and pictures follow, so only its start is damaged. The third file has its buffer
+    // in its JSON, so damage there also reaches the floats of the vertices.
     for (name, whole, reach, rounds) in [
         ("a.glb", &glb, 3_000, 300),
         ("a.obj", &obj, usize::MAX, 1_500),
@@ -254,7 +254,7 @@ fn foreign_broken_files_get_one_line() {
     for file in roughcast_testdata::files_in("broken") {
         let path = roughcast_testdata::find(&file);
         if path.extension().is_some_and(|e| e == "gltf") {
-            // None of them has a whole mesh in its scene.
+            // None of these files has a complete mesh in its scene.
             message(load_mesh(&path), &path);
             count += 1;
         }

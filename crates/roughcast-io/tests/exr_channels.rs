@@ -1,4 +1,4 @@
-//! Which channels, layers, parts and pixels of an EXR are read. The files of `cases/` were written by OpenImageIO and contain
+//! Which channels, layers, parts and pixels of an EXR are read. OpenImageIO wrote the files of `cases/`, which contain
 //! the surface of `plain.png`; the expected values are those that OpenImageIO reads.
 
 use std::io::Cursor;
@@ -22,7 +22,7 @@ fn texel(decoded: &Decoded) -> Vec<f32> {
     (0..decoded.image.channels()).map(|channel| decoded.image.get(20, 10, channel)).collect()
 }
 
-/// The values were printed with six digits.
+/// Tolerance for the expected values, which were printed with six digits.
 const PRINTED: f32 = 1e-6;
 
 #[track_caller]
@@ -33,7 +33,7 @@ fn expect(decoded: &Decoded, names: &[&str], values: &[f32]) {
     assert!(found.len() == values.len() && close, "{found:?}, not {values:?}");
 }
 
-/// The normal of the surface at that texel, by OpenImageIO; `plain.png` has (73, 113, 242) there.
+/// The normal of the surface at that texel, according to OpenImageIO; `plain.png` has (73, 113, 242) there.
 const NORMAL: [f32; 3] = [-0.427_210_36, -0.112_119_53, 0.897_173_64];
 
 #[test]
@@ -52,7 +52,7 @@ fn channels_go_by_their_names() {
     }
 }
 
-/// The height at that texel, by OpenImageIO.
+/// The height at that texel, according to OpenImageIO.
 const HEIGHT: f32 = 0.893_742;
 
 #[test]
@@ -93,7 +93,7 @@ fn channels_are_chosen_in_the_order_in_which_they_are_named() {
     expect(&read(blender, &full).unwrap(), &["Y", "X"], &[y, x]);
     let within = options(Some("Normal"), &["x", "Y"]);
     expect(&read(blender, &within).unwrap(), &["X", "Y"], &[x, y]);
-    // A short name is enough where the file has it once.
+    // A short name is enough if it occurs only once in the file.
     expect(&read(blender, &options(None, &["Y"])).unwrap(), &["Y"], &[y]);
     let twice = read(blender, &options(None, &["Z"])).unwrap_err();
     assert!(matches!(twice, ReadError::NoSuchChannel { .. }), "depth and normal have a Z: {twice}");
@@ -118,7 +118,7 @@ fn the_display_window_is_the_texture() {
     assert!(warning.contains("44x40 at (8, 4)") && warning.contains("64x48 at (0, 0)"), "{warning}");
 }
 
-/// The name of a part, and the names of its channels with a value each.
+/// The name of a part, and the name and value of each of its channels.
 type Part<'a> = (Option<&'a str>, &'a [(&'a str, f32)]);
 
 /// A file whose layers are in one part or in several.

@@ -1,5 +1,5 @@
-//! EXR files written here, in the layouts that the shared data has no example of: parts, moved data windows, tiles that
-//! do not divide the image, rows from the bottom, mixed sample types.
+//! EXR files written by these tests, in layouts that are missing from the shared data: parts, moved data windows, tiles
+//! that do not divide the image, rows from the bottom, mixed sample types.
 
 use std::io::Cursor;
 
@@ -10,7 +10,7 @@ use roughcast_io::{Decoded, ReadError, ReadOptions, read_image};
 const WIDTH: usize = 37;
 const HEIGHT: usize = 53;
 
-/// A value that differs from pixel to pixel and channel to channel and that a half holds exactly.
+/// A value that differs between pixels and between channels and that a half represents exactly.
 fn value(x: usize, y: usize, channel: usize) -> f32 {
     (x * 8 + y * 16 + channel) as f32 / 4.0
 }
@@ -45,7 +45,7 @@ fn read(file: &[u8]) -> std::result::Result<Decoded, ReadError> {
     read_image(file, None, &ReadOptions::default())
 }
 
-/// Whether `decoded` holds the pixels of the first `channels` channels written, in their order.
+/// Asserts that `decoded` holds the pixels of the first `channels` channels written, in their order.
 fn assert_pixels(decoded: &Decoded, channels: usize, what: &str) {
     assert_eq!((decoded.image.width(), decoded.image.height()), (WIDTH, HEIGHT), "{what}");
     assert_eq!(decoded.image.channels(), channels, "{what}");
@@ -68,7 +68,7 @@ fn every_lossless_layout_gives_the_same_pixels() {
         Compression::ZIP16,
         Compression::PIZ,
     ];
-    // Tiles that do not divide the image, small ones, and one tile larger than the image.
+    // Tiles that do not divide the image, small tiles, and one tile larger than the image.
     let blocks = [
         Blocks::ScanLines,
         Blocks::Tiles(Vec2(16, 10)),
@@ -126,7 +126,7 @@ fn a_half_beside_a_float_is_widened() {
 #[test]
 fn an_unfinished_file_is_reported_as_unfinished() {
     let mut file = write(vec![layer(&["R"], Encoding::UNCOMPRESSED)], Vec2(0, 0));
-    // The table of blocks ends where the first block begins: y, the length and one row of halves.
+    // The table of blocks ends where the first block begins. A block has y, the length and one row of halves.
     let block = 4 + 4 + WIDTH * 2;
     let table_end = file.len() - HEIGHT * block;
     file[table_end - 8..table_end].fill(0);

@@ -1,15 +1,16 @@
-//! JPEG in every layout of samples and scans, against libjpeg-turbo's `djpeg`.
+//! Compares JPEG files in every layout of samples and scans with the output of libjpeg-turbo's `djpeg`.
 //!
-//! `testdata/generated/jpeg` has one picture, written by `cjpeg` with twelve choices of sampling factors and in up to seven ways
-//! each (see the README there), and for each choice the pixels that `djpeg` makes of it.
+//! `testdata/generated/jpeg` has one picture, written by `cjpeg` with twelve choices of sampling factors and in up to
+//! seven ways each (see the README there), and for each choice the pixels that `djpeg` decodes.
 
 use roughcast::{Image, Samples};
 use roughcast_io::{ReadError, ReadOptions, read_image, read_image_file};
 use roughcast_testdata::{files_in, find};
 
-/// libjpeg's and our cosine transforms and interpolations round differently; 4 of 255 was seen in 953 files.
+/// Largest allowed difference. libjpeg's cosine transforms and interpolations round differently from ours; 4 of 255 was
+/// seen in 953 files.
 const LARGEST: u8 = 4;
-/// The same on average over a file; 0.42 was seen.
+/// Largest allowed mean difference over a file; 0.42 was seen.
 const MEAN: f64 = 0.6;
 
 fn pixels(path: &str) -> Image {
@@ -17,7 +18,7 @@ fn pixels(path: &str) -> Image {
     read.unwrap_or_else(|error| panic!("{path}: {error}")).image
 }
 
-/// Largest and mean difference, in steps of 8 bits.
+/// Largest and mean difference, in 8-bit steps.
 fn difference(a: &Image, b: &Image) -> (u8, f64) {
     assert_eq!((a.width(), a.height(), a.channels()), (b.width(), b.height(), b.channels()));
     let (Samples::U8(a), Samples::U8(b)) = (a.samples(), b.samples()) else { panic!("not 8 bits") };
@@ -52,7 +53,7 @@ fn files_of_the_bug_reports_match_libjpeg() {
     // The same coefficients in one scan and in three.
     let scans = difference(&case("normal_72x50_420_ni"), &case("normal_72x50_420_interleaved"));
     assert_eq!(scans, (0, 0.0));
-    // Ranges of red, green and blue, by djpeg.
+    // Ranges of red, green and blue, according to djpeg.
     let range = |image: &Image, channel: usize| {
         let Samples::U8(samples) = image.samples() else { panic!("not 8 bits") };
         let values = samples.iter().skip(channel).step_by(3).copied();
@@ -71,7 +72,7 @@ fn files_of_the_bug_reports_match_libjpeg() {
     }
 }
 
-/// A baseline file of the set, to be damaged.
+/// A baseline file of the set, for the tests to damage.
 fn whole() -> Vec<u8> {
     std::fs::read(find("generated/jpeg/2x2_planes.jpg")).expect("the file is there")
 }
@@ -87,7 +88,7 @@ fn a_file_that_ends_anywhere_is_refused() {
 
 #[test]
 fn unsupported_files_are_refused_with_a_reason() {
-    // The kind of frame, at the marker of the baseline one.
+    // The file with another kind of frame: replaces the marker of the baseline frame.
     let frame = |marker: u8| {
         let mut bytes = whole();
         let at = bytes.windows(2).position(|pair| pair == [0xff, 0xc0]).expect("a baseline frame");
@@ -103,7 +104,7 @@ fn unsupported_files_are_refused_with_a_reason() {
             "{error}"
         );
     }
-    // A component whose sampling factor, 2, lies between 1 and the largest, 4, in a scan of its own.
+    // A component in its own scan, whose sampling factor, 2, is between 1 and the largest factor, 4.
     let mut odd = whole();
     let at = odd.windows(2).position(|pair| pair == [0xff, 0xc0]).expect("a baseline frame");
     (odd[at + 11], odd[at + 14]) = (0x41, 0x21);

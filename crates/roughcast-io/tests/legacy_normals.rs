@@ -1,7 +1,8 @@
-//! Normal maps in the formats of older tools: Direct3D 9's bump formats, A8L8, RXGB and ATI2 in DDS, Basis Universal in KTX2.
+//! Normal maps in the formats of older tools: Direct3D 9's bump formats, A8L8, RXGB and ATI2 in DDS, and Basis
+//! Universal in KTX2.
 //!
-//! The small files contain the surface of `plain.png`; what another program made of the same file, or of the same picture, is the
-//! reference.
+//! The small files contain the surface of `plain.png`. The reference is another program's result for the same file or
+//! the same picture.
 
 use roughcast::{Image, Kind, NormalChannels};
 use roughcast_io::{Decoded, FileInfo, NormalEncoding, ReadOptions, read_image, read_image_file};
@@ -16,7 +17,7 @@ fn plain() -> Image {
     read("cases/png-grey-rgb-x-in-alpha/plain.png").image
 }
 
-/// Largest and mean difference of one channel each.
+/// Largest and mean difference between one channel of each image.
 fn difference(
     a: impl Fn(usize, usize) -> f32,
     b: impl Fn(usize, usize) -> f32,
@@ -32,7 +33,7 @@ fn stated(info: &FileInfo) -> (Option<Kind>, NormalEncoding) {
     (info.kind, info.normal_encoding)
 }
 
-/// Rounding of f32.
+/// Tolerance for the rounding of f32.
 const EXACT: f32 = 1e-6;
 
 #[test]
@@ -47,7 +48,7 @@ fn luminance_and_alpha_with_the_flag_of_colours_are_two_channels() {
 
 #[test]
 fn signed_fields_are_the_components_of_the_surface() {
-    // Half a step of the field, and half of one of 8 bits of plain.png.
+    // The tolerance is half a step of the field plus half an 8-bit step of plain.png.
     for (name, steps) in [("d_l6v5u5", 15.0), ("d_cxv8u8_117", 127.0)] {
         let file = read(&format!("cases/missing-dds-legacy-normal-formats/{name}.dds"));
         assert_eq!(
@@ -63,7 +64,7 @@ fn signed_fields_are_the_components_of_the_surface() {
     }
 }
 
-/// A DDS file of one row: pixel format of flags, FourCC, bits and masks, and its texels.
+/// A DDS file of one row, from its texels and the flags, FourCC, bits and masks of its pixel format.
 fn dds(flags: u32, code: u32, bits: u32, masks: [u32; 4], texels: &[u32]) -> Vec<u8> {
     let mut words = vec![u32::from_le_bytes(*b"DDS "), 124, 0x1007, 1, texels.len() as u32, 0, 0, 0];
     words.extend([0; 11]);
@@ -75,7 +76,7 @@ fn dds(flags: u32, code: u32, bits: u32, masks: [u32; 4], texels: &[u32]) -> Vec
     bytes
 }
 
-/// A signed number of this many bits, as it is stored.
+/// The stored form of a signed number of this many bits.
 fn field(value: f64, bits: u32) -> u32 {
     let full = f64::from((1_u32 << (bits - 1)) - 1);
     (value * full).round() as i32 as u32 & ((1 << bits) - 1)
@@ -133,7 +134,7 @@ fn reversed_masks_of_a2w10v10u10_are_read_as_the_pixels_say() {
     const BUMP_DUDV: u32 = 0x8_0000;
     let masks = [0x3ff0_0000, 0xf_fc00, 0x3ff, 0xc000_0000];
     let normals = [[0.5, -0.25, 0.829], [-0.6, 0.0, 0.8], [0.0, 0.0, 1.0]];
-    // u in the lowest bits, as Direct3D defines the format, and in the highest, as these masks say.
+    // First u is in the lowest bits, as Direct3D defines the format, then in the highest, as these masks say.
     for shifts in [[0, 10, 20], [20, 10, 0]] {
         let texel = |normal: [f64; 3]| {
             normal.into_iter().zip(shifts).fold(0, |word, (value, shift)| word | field(value, 10) << shift)
@@ -150,7 +151,8 @@ fn reversed_masks_of_a2w10v10u10_are_read_as_the_pixels_say() {
     }
 }
 
-/// Colours in BC3 have four values of 5 or 6 bits per block: 0.021 on this small map. Another channel in the place costs 0.1.
+/// Allowed mean error of BC3. Its colours have four values of 5 or 6 bits per block, which costs 0.021 on this small
+/// map. A wrong channel costs 0.1.
 const BC3_MEAN: f32 = 0.03;
 
 #[test]
@@ -162,7 +164,8 @@ fn the_components_of_rxgb_are_back_in_their_places() {
         let (_, mean) = difference(|x, y| a.get(x, y, channel), |x, y| b.get(x, y, channel), (64, 48));
         assert!(mean < BC3_MEAN, "channel {channel}: {mean}");
     }
-    // The same picture, compressed by NVIDIA's tools, and by texconv as BC5, which OpenImageIO decoded for the reference.
+    // NVIDIA's tools compressed the same picture, and texconv compressed it as BC5, which OpenImageIO decoded for the
+    // reference.
     let nvidia = read("cases/missing-dds-legacy-normal-formats/nvtt_BC3n_AGBR.dds");
     let reference = read("cases/dds-ati2-x-first/texconv_DX9_BC5_UNORM.reference.png").image;
     for channel in [0, 1] {
@@ -173,7 +176,7 @@ fn the_components_of_rxgb_are_back_in_their_places() {
     }
 }
 
-/// OpenImageIO rounds the interpolated values to 8 bits.
+/// Tolerance for OpenImageIO, which rounds the interpolated values to 8 bits.
 const ROUNDED: f32 = 0.5 / 255.0 + EXACT;
 
 #[test]
@@ -231,8 +234,8 @@ fn moved_channels_of_dxt5_are_back_in_their_places() {
     }
 }
 
-/// Of ETC1S and UASTC against the picture from which they were made. ETC1S of this file has 0.025; a channel out of its place
-/// costs 0.18. UASTC has 0.0133, the error of the file from which it was transcoded.
+/// Allowed mean errors of ETC1S and UASTC against their source picture. ETC1S has 0.025 for this file; a misplaced
+/// channel costs 0.18. UASTC has 0.0133, the error of the file from which it was transcoded.
 const ETC1S_MEAN: f32 = 0.03;
 const UASTC_MEAN: f32 = 0.02;
 
@@ -267,7 +270,7 @@ fn basis_universal_matches_its_source_picture() {
     }
 }
 
-/// Transcoding ETC1S to BC7 costs a step or two of 8 bits.
+/// Transcoding ETC1S to BC7 costs one or two 8-bit steps.
 const TRANSCODED: f32 = 4.0 / 255.0;
 
 #[test]

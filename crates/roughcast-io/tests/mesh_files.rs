@@ -1,4 +1,4 @@
-//! What a mesh file keeps apart: primitives, materials and sets of texture coordinates.
+//! Reading a mesh file keeps its primitives, materials and sets of texture coordinates separate.
 #![cfg(feature = "mesh")]
 
 use std::path::PathBuf;
@@ -9,7 +9,7 @@ use roughcast_io::mesh::{
 };
 use roughcast_scene::MeshFault;
 
-/// A file in a folder of this test's own.
+/// Writes a file into this test's own folder and returns its path.
 fn file(name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("mesh_files");
     std::fs::create_dir_all(&folder).unwrap();
@@ -21,8 +21,8 @@ fn file(name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
 const UV0: [[f32; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
 const UV1: [[f32; 2]; 3] = [[0.5, 0.25], [0.75, 0.25], [0.5, 0.5]];
 
-/// A triangle with two sets of texture coordinates, shown by a named node that moves it by 5 along z; `edit` changes the
-/// JSON, `uv1` the second set.
+/// A triangle with two sets of texture coordinates, placed by a named node that moves it by 5 along z. `uv1` is the
+/// second set, and `edit` changes the JSON.
 fn two_sets(name: &str, uv1: [[f32; 2]; 3], edit: impl Fn(String) -> String) -> PathBuf {
     let positions = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let floats = positions.iter().flatten().chain(UV0.iter().flatten()).chain(uv1.iter().flatten());
@@ -94,7 +94,7 @@ fn gltf_keeps_primitives_materials_and_every_set() {
     assert_eq!(colour.image, MeshImage::Elsewhere("https://example.org/c.png".to_owned()));
     assert_eq!(lacquer.emissive_texture, None);
 
-    // The second primitive lacks the second set, and repeats the first one's triangle.
+    // The second primitive lacks the second set and repeats the triangle of the first.
     let mesh = file.into_mesh().unwrap();
     assert_eq!((mesh.uv_set_count(), mesh.triangle_count()), (1, 1));
 }
@@ -107,7 +107,7 @@ fn a_mesh_has_the_sets_that_all_its_parts_have() {
     assert_eq!(mesh.triangles().uv_sets[1][..3], UV1);
 }
 
-/// The only set that was left out.
+/// The only set of texture coordinates that was skipped.
 fn skipped(file: &MeshFile) -> (usize, usize, &MeshFileFault) {
     let [skipped] = file.skipped_uv_sets.as_slice() else { panic!("{:?}", file.skipped_uv_sets) };
     (skipped.primitive, skipped.set, &skipped.fault)
@@ -115,7 +115,7 @@ fn skipped(file: &MeshFile) -> (usize, usize, &MeshFileFault) {
 
 #[test]
 fn a_faulty_second_set_is_named_and_the_mesh_is_read_by_the_first() {
-    /// A name, the second set, a change of the JSON, the set that is left out, and a part of the reason.
+    /// A name, the second set, an edit of the JSON, the number of the skipped set, and part of the reason.
     type Case = (&'static str, [[f32; 2]; 3], fn(String) -> String, usize, &'static str);
     let nan = [[f32::NAN; 2]; 3];
     let cases: [Case; 5] = [
@@ -148,7 +148,7 @@ fn a_faulty_second_set_is_named_and_the_mesh_is_read_by_the_first() {
         assert_eq!(file.primitives[0].triangles.uv_sets, [UV0.to_vec()], "{name}");
         assert!(file.into_mesh().unwrap().has_texture_coordinates(), "{name}");
     }
-    // A fault of the first set is one of the file, as ever.
+    // A fault in the first set is still a fault of the file.
     let first = two_sets("first", UV1, |s| s.replace(r#""TEXCOORD_0":1,"#, r#""TEXCOORD_0":0,"#));
     assert!(read_mesh(first).unwrap_err().to_string().contains("should hold vectors of 2"));
 }
@@ -176,7 +176,7 @@ fn obj_keeps_groups_and_names_of_materials() {
     assert_eq!(names, ["dark oak", "brass"]);
     let parts: Vec<_> = file.primitives.iter().map(|p| (p.name.as_deref(), p.material)).collect();
     assert_eq!(parts, [(None, Some(0)), (Some("back rest"), Some(1)), (Some("back rest"), Some(0))]);
-    // Our v grows downwards.
+    // Our v increases downwards.
     assert_eq!(file.primitives[0].triangles.uv_sets, [vec![[0.0, 1.0], [1.0, 1.0], [0.0, 0.0]]]);
     assert_eq!(file.into_mesh().unwrap().triangle_count(), 3);
 }

@@ -7,8 +7,8 @@ use roughcast::{Image, Samples};
 use roughcast_testdata::{available, find, is_extended, rows_with_files};
 use shared_data::{manifest, must_read};
 
-/// CRC-32 of all samples of an image, little-endian, row by row: one line a file, `checksum path`.
-/// The head of the file says which decoders made them.
+/// CRC-32 of all samples of an image, little-endian, row by row: one line per file, `checksum path`.
+/// The header of this list names the decoders that gave the checksums.
 const CHECKSUMS: &str = include_str!("pixel_checksums.txt");
 
 fn little_endian_bytes(image: &Image) -> Vec<u8> {
@@ -90,7 +90,7 @@ fn a_transparent_grey_of_four_bits_is_compared_at_its_own_scale() {
 
 #[test]
 fn a_half_float_normal_map_is_its_16_bit_source_rounded() {
-    // Both are too large for the small set.
+    // Both files are too large for the small set.
     let Some(_) = available("materials/surfgrad_ocean16/normals.png") else { return };
     let source = must_read("materials/surfgrad_ocean16/normals.png").image;
     let half = must_read("materials/surfgrad_ocean16/normals_half_derived.exr").image;
@@ -104,7 +104,7 @@ fn every_half_float_is_kept() {
     let Samples::F16(samples) = image.samples() else { panic!("not halves") };
     let mut seen = vec![false; 1 << 16];
     samples.iter().for_each(|half| seen[usize::from(half.to_bits())] = true);
-    // OpenEXR's example holds each bit pattern once, over its three channels.
+    // OpenEXR's example contains each bit pattern once, spread over its three channels.
     assert!(
         seen.iter().all(|&seen| seen),
         "{} bit patterns are missing",
@@ -122,7 +122,7 @@ fn distinct_values(image: &Image, channel: usize) -> usize {
 
 #[test]
 fn heights_keep_all_their_levels() {
-    // The counts are those that the manifest states. Both are too large for the small set.
+    // The counts are those in the manifest. Both files are too large for the small set.
     let Some(_) = available("heights/surfgrad_Dump_u16.tif") else { return };
     assert_eq!(distinct_values(&must_read("heights/surfgrad_Dump_u16.tif").image, 0), 32759);
     let heights = must_read("heights/bgfx_heightmap_f32.exr").image;

@@ -19,7 +19,7 @@ const FOLDERS: [&str; 9] = [
     "formats/tiny",
 ];
 
-/// Files that are refused, with words of the reason.
+/// Files that are refused, each with part of the reason.
 const REFUSED: [(&str, &str); 7] = [
     ("formats/exr/openexr_t12.exr", "outside of the display window, 400x100 at (0, -100)"),
     ("formats/exr/exrs_y_ry_by_dwaa.exr", "luminance with chroma is not supported: save it as RGB"),
@@ -30,8 +30,8 @@ const REFUSED: [(&str, &str); 7] = [
     ("formats/tiff/imgrs_ycbcr_lzw_broken.tif", "YCbCr colour is not supported"),
 ];
 
-/// Files whose channels do not follow from the manifest: transparency beside the colours (`P`, `L` with a tRNS chunk),
-/// TGA's attribute bit, which is no alpha, and EXR's names without the layer and in our order.
+/// Files whose channels do not follow from the manifest: transparency in addition to the colours (`P`, `L` with a tRNS
+/// chunk), TGA's attribute bit, which is not alpha, and EXR names, here without the layer and in our order.
 const CHANNELS: [(&str, &[&str]); 22] = [
     ("formats/png/go_basn3p08-trns.png", &["R", "G", "B", "A"]),
     ("formats/png/go_ftbbn0g01.png", &["Y", "A"]),
@@ -58,7 +58,7 @@ const CHANNELS: [(&str, &[&str]); 22] = [
 ];
 const SLOPES: [&str; 6] = ["b0_h", "b1_dhds", "b2_dhdt", "b3_dhds2", "b4_dhdt2", "b5_dh2dsdt"];
 
-/// Files whose size is wrong in the manifest: it counted the planes of a planar image as rows.
+/// Files whose size is wrong in the manifest, which counts the planes of a planar image as rows.
 const SIZES: [(&str, [usize; 2]); 4] = [
     ("formats/tiff/pillow_tiff_strip_planar_16bit_RGB.tiff", [100, 40]),
     ("formats/tiff/pillow_tiff_strip_planar_16bit_RGBa.tiff", [100, 40]),
@@ -66,7 +66,7 @@ const SIZES: [(&str, [usize; 2]); 4] = [
     ("formats/tiff/pillow_tiff_tiled_planar_16bit_RGBa.tiff", [100, 40]),
 ];
 
-/// Levels of the files that have more than one.
+/// Number of levels of the files that have more than one.
 const LEVELS: [(&str, usize); 7] = [
     ("formats/exr/openexr_ColorCodedLevels.exr", 10),
     ("formats/exr/openexr_PeriodicPattern.exr", 10),
@@ -77,7 +77,7 @@ const LEVELS: [(&str, usize); 7] = [
     ("heights/oiio_bumpslope/bumpslope-central.exr", 7),
 ];
 
-/// The images of the folders that are not block-compressed textures.
+/// The images in the folders, without block-compressed textures.
 fn images() -> Vec<Entry> {
     let mut entries = manifest(&FOLDERS);
     entries.retain(|entry| !entry.path.ends_with(".dds"));
@@ -116,7 +116,7 @@ fn channels(entry: &Entry) -> Vec<&'static str> {
     if let Some(channels) = lookup(&CHANNELS, &entry.path) {
         return channels.to_vec();
     }
-    // EXR's words go on with the type: `RGBA:float16x4`.
+    // For EXR the type follows the channels: `RGBA:float16x4`.
     match entry.channels.split(':').next().expect("the words of the channels") {
         "L" | "1" | "Y" => vec!["Y"],
         "LA" => vec!["Y", "A"],
@@ -136,7 +136,7 @@ fn size(entry: &Entry) -> [usize; 2] {
 #[test]
 fn every_image_is_read_as_described_or_refused_with_its_reason() {
     let entries = images();
-    // The data may grow, but a manifest that is read wrongly must not pass as an empty one.
+    // The data may grow, but a misread manifest must not pass as an empty one.
     assert!(entries.len() >= if is_extended() { 200 } else { 120 }, "only {} images found", entries.len());
     for entry in &entries {
         if let Some(reason) = lookup(&REFUSED, &entry.path) {

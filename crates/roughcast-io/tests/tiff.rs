@@ -1,4 +1,4 @@
-//! TIFFs of other writers: their pixels, what their tags mean, and what is refused.
+//! TIFF files from other writers: their pixels, the meaning of their tags, and the files that are refused.
 //!
 //! `testdata/generated/tiff/make.py` made most of the files, with the checksums of the pixels that tifffile decodes.
 
@@ -8,7 +8,7 @@ use roughcast_io::{
 };
 use roughcast_testdata::{files_in, find};
 
-/// Checksums of the pixels of the cases in the test data, as tifffile 2026.3.3 decodes them (-9999 being NaN).
+/// Checksums of the pixels of the cases in the test data, as tifffile 2026.3.3 decodes them (with -9999 as NaN).
 const CASES: [&str; 7] = [
     "f1a7507a U8 3 cases/tiff-tiled-lzw/rgb8_127x25_tile16.tif",
     "9b7f3bd4 U8 3 cases/tiff-tiles-with-strip-tags/quad-tile.tif",
@@ -19,7 +19,7 @@ const CASES: [&str; 7] = [
     "b3cbb077 F32 1 cases/missing-height-units-nodata/dem_nodata.tif",
 ];
 
-/// Files of `testdata/generated/tiff` that are refused, with words of the reason and of the advice.
+/// Files of `testdata/generated/tiff` that are refused, each with part of the reason and of the advice.
 const REFUSED: [(&str, [&str; 2]); 4] = [
     ("refused_lerc.tif", ["LERC compression", "LZW, deflate or ZSTD"]),
     ("refused_lzma.tif", ["LZMA compression", "LZW, deflate or ZSTD"]),
@@ -27,7 +27,7 @@ const REFUSED: [(&str, [&str; 2]); 4] = [
     ("refused_complex.tif", ["samples of complex numbers", "of floats"]),
 ];
 
-/// Pixels in a row of the files that `make.py` made.
+/// Width in pixels of the files that `make.py` made.
 const WIDTH: usize = 37;
 
 fn bytes_of(name: &str) -> Vec<u8> {
@@ -102,7 +102,7 @@ fn every_file_is_read_or_refused_with_advice() {
     }
 }
 
-/// OpenImageIO names the same channels, but for the fourth of unstated meaning, which it calls `channel3`.
+/// OpenImageIO gives the same names, except to the fourth channel of unstated meaning, which it calls `channel3`.
 #[test]
 fn only_a_sample_that_is_said_to_be_alpha_makes_grey_and_alpha() {
     for (name, channels) in [
@@ -130,7 +130,7 @@ fn channels_are_chosen_by_name() {
             assert_eq!([chosen.get(x, y, 0), chosen.get(x, y, 1)], [whole.get(x, y, 4), whole.get(x, y, 1)]);
         }
     }
-    // What is named counts, also an alpha or a colour of a palette.
+    // Alpha and the colours of a palette can also be chosen by name.
     for (name, wanted, called) in [("grey_alpha.tif", "a", "alpha"), ("palette_8bit.tif", "g", "G")] {
         let options = ReadOptions::default().with_channels(vec![wanted.to_owned()]);
         let Decoded { image, info } = read(name, &options).expect("a known channel");
@@ -162,7 +162,7 @@ fn another_image_of_the_file_is_chosen_by_its_number() {
         read("two_images.tif", &options)
     };
     let (first, second) = (nth("1").expect("an image").image, nth("2").expect("an image").image);
-    // The second is the negative of the first.
+    // The second image is the negative of the first.
     assert!((0..first.samples().len()).all(|i| first.samples().get(i) + second.samples().get(i) == 1.0));
     for layer in ["0", "3", "diffuse"] {
         let error = nth(layer).unwrap_err();
@@ -229,13 +229,13 @@ fn the_size_of_a_pixel_on_the_ground_is_reported() {
     assert_eq!(info("nodata_float.tif").pixel_size, None);
 }
 
-/// Percent of a file to keep. The last bytes of some files are those of tags that are not read.
+/// Percentages of a file to keep. The last bytes of some files belong to tags that are not read.
 const CUTS: [usize; 5] = [1, 10, 40, 70, 90];
 
 #[test]
 fn a_file_that_was_cut_is_an_error() {
     for path in files_in("generated/tiff").iter().filter(|path| path.ends_with(".tif")) {
-        // The second image of these is no more needed than the tags of others.
+        // The second image of these files is not needed, nor are the tags at the end of others.
         if path.contains("two_images") || path.contains("mask_") {
             continue;
         }
@@ -247,7 +247,7 @@ fn a_file_that_was_cut_is_an_error() {
     }
 }
 
-/// A TIFF of one directory at the end; each entry is a tag, its type and its value.
+/// A TIFF with one directory, at the end; each entry is a tag, its type and its value.
 fn tiff(data: &[u8], entries: &[(u16, u16, u32)]) -> Vec<u8> {
     let mut file = b"II*\0".to_vec();
     file.extend((8 + data.len() as u32).to_le_bytes());
@@ -266,7 +266,7 @@ fn tiff(data: &[u8], entries: &[(u16, u16, u32)]) -> Vec<u8> {
 const SHORT: u16 = 3;
 const LONG: u16 = 4;
 
-/// Grey of 8 bits, 4x2 pixels in one strip, with other values for some tags.
+/// An 8-bit grey TIFF of 4x2 pixels in one strip, with other values for some tags.
 fn small(others: &[(u16, u16, u32)]) -> Vec<u8> {
     let mut entries = vec![
         (256, SHORT, 4),
@@ -304,7 +304,7 @@ fn sizes_are_checked_before_memory_is_taken() {
     assert!(is_limit(&error_of(&small(&[(256, LONG, u32::MAX), (257, LONG, u32::MAX)]))));
     let error = error_of(&small(&[(TILE_WIDTH, LONG, u32::MAX), (TILE_LENGTH, LONG, u32::MAX)]));
     assert!(is_limit(&error), "{error}");
-    // Samples that are decoded and not read count, too.
+    // Samples that are decoded but not read also count.
     let error = error_of(&small(&[(256, LONG, 1 << 19), (262, SHORT, 2), (277, SHORT, 1024)]));
     assert!(is_limit(&error), "{error}");
 }
@@ -340,7 +340,7 @@ fn broken_tags_are_named() {
     }
 }
 
-/// libtiff applies no predictor to them either; tifffile does.
+/// libtiff does not apply a predictor to such files either; tifffile does.
 #[test]
 fn a_predictor_of_an_uncompressed_file_is_ignored_with_a_warning() {
     let decoded = read_image(&small(&[(317, SHORT, 2)]), None, &ReadOptions::default()).expect("whole");

@@ -1,4 +1,4 @@
-//! A folder of maps: one bad file does not stop the others, a watch stops all.
+//! A folder of maps: one bad file does not stop the others; a watch stops all.
 
 mod common;
 
@@ -32,7 +32,7 @@ fn maps(folder: &Path) -> FolderJob<'static> {
     FolderJob::new(maps, folder.join("baked"), BakeSettings::new(Layout::Clean))
 }
 
-/// The outcome for each file, in a word.
+/// The outcome for each file, as a single word.
 fn words(job: &FolderJob<'_>) -> Vec<(String, String)> {
     let results = job.run(&Unwatched).expect("maps");
     let row = |result: &roughcast_pipeline::FolderResult| {
@@ -108,7 +108,7 @@ fn a_break_stops_all_jobs() {
     let folder = scratch();
     let mut job = maps(folder.path());
     job.jobs = NonZeroUsize::new(1);
-    // Files are tried in the order of their names; the third is the first that is baked.
+    // Files are processed in order of their names; the third is the first one to be baked.
     let results = job
         .run(&|progress: &Progress<'_>| {
             assert_eq!(progress.count, 6);
@@ -122,7 +122,7 @@ fn a_break_stops_all_jobs() {
     }
     assert_eq!(names(&job.output), ["rock_disp.ktx2"], "what was done stays, the rest leaves nothing");
 
-    // Several at a time: those under way stop too.
+    // With several at a time, those in progress stop as well.
     job.jobs = NonZeroUsize::new(3);
     job.output = folder.path().join("none");
     let reports = AtomicUsize::new(0);

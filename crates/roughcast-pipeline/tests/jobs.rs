@@ -1,4 +1,4 @@
-//! One job: what it reports, how it is stopped, and on which threads it runs.
+//! A single job: what it reports, how it is stopped, and on which threads it runs.
 
 mod common;
 
@@ -68,7 +68,7 @@ fn a_job_reports_its_stages_and_writes_its_files() {
 fn a_cancelled_job_leaves_no_new_files_and_keeps_older_ones() {
     const OLD: &[u8] = b"an older output";
     for stop_at in [Stage::Reading, Stage::Baking, Stage::Compressing, Stage::Writing] {
-        // At the beginning of the stage, and where it says how far it is.
+        // At the beginning of the stage, and at its progress reports.
         for within in [false, true] {
             if within && stop_at == Stage::Reading {
                 continue;
@@ -118,7 +118,7 @@ fn a_job_runs_on_the_pool_in_which_it_is_called() {
         ControlFlow::Continue(())
     };
     pool.install(|| job.run(&watch)).expect("a map");
-    // Among the reports are those of the threads that compress blocks.
+    // The reports include those of the threads that compress blocks.
     let expected = BTreeSet::from([(Some(NAME.to_owned()), 2)]);
     assert_eq!(threads.into_inner().expect("no panic"), expected);
     let files = |folder: &Path| PBR_FILES.map(|name| fs::read(folder.join(name)).expect("it was written"));
@@ -140,7 +140,7 @@ fn the_parts_of_a_set_are_found_beside_any_of_them() {
         assert_eq!(parts, [Part::Normal, Part::Roughness]);
         assert_eq!(decode(&arrays).expect("all parts").len(), 7);
     }
-    // A part of another bake under the name of the first.
+    // A part of another bake with the name of the first.
     let first = fs::read(&report.files[0]).expect("it is there");
     let mut other = job.clone();
     other.settings.map.height_scale = Some(0.1);
@@ -219,7 +219,7 @@ fn inputs_are_not_overwritten_and_baked_files_are_not_maps() {
     let again = BakeJob { input: input.clone(), ..job.clone() };
     let error = again.run(&Unwatched).expect_err("it is baked");
     assert_eq!(error.no_map(), Some(&MapError::Baked { layout: "lean".to_owned() }));
-    // A link of another extension leads to the input.
+    // A link with another extension points to the input.
     #[cfg(unix)]
     {
         let link = folder.path().join("link.ktx2");

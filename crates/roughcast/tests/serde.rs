@@ -58,7 +58,7 @@ fn options_survive_and_what_is_left_out_is_the_default() {
     round_trip(&PbrOptions::default());
     round_trip(&ShadingOptions::published(90.0));
     let short: BakeOptions = from_value(json!({ "layout": "clean" })).expect("the rest is the default");
-    assert_eq!((short.layout, short.bits), (Layout::Clean, BakeOptions::default().bits));
+    assert_eq!((short.layout, short.sample_type), (Layout::Clean, BakeOptions::default().sample_type));
     let error = from_value::<BakeOptions>(json!({ "layuot": "clean" })).expect_err("a misprint").to_string();
     assert!(error.contains("layuot"), "{error}");
 }

@@ -1,4 +1,4 @@
-//! Decodes many files for a comparison with other decoders: `dump LIST SAMPLES`.
+//! Decodes many files for comparison with other decoders: `dump LIST SAMPLES`.
 //!
 //! LIST has one file per line: path, layer and channels (separated by commas), separated by tabs; the last two may be empty.
 //! Each file gives one line on standard output, its fields separated by tabs: `read`, width, height, channels, sample type,
@@ -30,7 +30,7 @@ fn main() -> ExitCode {
 }
 
 fn run(list: &Path, samples: &Path) -> std::io::Result<()> {
-    // The message of a panic becomes a line of the output.
+    // A panic's message becomes a line of the output.
     std::panic::set_hook(Box::new(|_| {}));
     let mut samples = BufWriter::new(File::create(samples)?);
     let mut answers = std::io::stdout().lock();
@@ -80,7 +80,7 @@ fn description(decoded: &Decoded) -> String {
     )
 }
 
-/// A text without separators of fields or lines.
+/// Replaces field and line separators in a text.
 fn plain(text: &str) -> String {
     text.replace(char::is_control, " ")
 }

@@ -1,6 +1,6 @@
-//! Shared by the tests of the program: running it, the test data, and reading its outputs.
+//! Shared code of the program's tests: running it, the test data, and reading its outputs.
 
-// Every test file is a crate of its own and uses a part of this.
+// Every test file is its own crate and uses only a part of this.
 #![allow(dead_code)]
 
 use std::collections::BTreeMap;
@@ -16,7 +16,7 @@ use roughcast_testdata::available;
 /// The program under test.
 pub const PROGRAM: &str = env!("CARGO_BIN_EXE_roughcast");
 
-/// What a run of the program left behind.
+/// The result of a run of the program.
 pub struct Outcome {
     /// The exit code; `None` if a signal ended it.
     pub code: Option<i32>,
@@ -40,8 +40,8 @@ impl Outcome {
         self
     }
 
-    /// Panics unless the run ended with this code and, beside warnings, one line on stderr, which names `file`. Returns
-    /// the line.
+    /// Panics unless the run ended with this code and, apart from warnings, one line on stderr that names `file`.
+    /// Returns the line.
     #[track_caller]
     pub fn expect_refusal(&self, code: i32, file: &Path) -> String {
         assert_eq!(self.code, Some(code), "stderr: {}", self.stderr);
@@ -53,7 +53,7 @@ impl Outcome {
         line.to_owned()
     }
 
-    /// Panics unless the command line was refused with one line that has these words.
+    /// Panics unless the command line was rejected with one line that contains these words.
     #[track_caller]
     pub fn expect_usage_error(&self, words: &str) {
         assert_eq!(self.code, Some(2), "stderr: {}", self.stderr);
@@ -69,7 +69,7 @@ impl Outcome {
     }
 }
 
-/// The program with arguments, to be run in some special way.
+/// The program with arguments, for a run with special settings.
 pub fn command<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Command {
     let mut command = Command::new(PROGRAM);
     command.args(arguments);
@@ -86,12 +86,12 @@ pub fn bake(input: &Path, output: &Path, further: &[&str]) -> Outcome {
     run(["bake", text(input), "-o", text(output)].iter().chain(further))
 }
 
-/// A path as text; those of the tests are UTF-8, but for the ones that are about others.
+/// A path as text. The tests' paths are UTF-8, except in tests about other encodings.
 pub fn text(path: &Path) -> &str {
     path.to_str().expect("the path is UTF-8")
 }
 
-/// A folder that vanishes with the test.
+/// A folder that is deleted at the end of the test.
 pub fn scratch() -> tempfile::TempDir {
     tempfile::tempdir().expect("a temporary folder")
 }
@@ -118,7 +118,7 @@ pub fn bare_mesh(folder: &Path) -> PathBuf {
     path
 }
 
-/// Calls `check` for every item, several at a time, and panics with all failures.
+/// Calls `check` for every item, several at a time, and panics with a list of all failures.
 pub fn check_all<T: Sync>(items: &[T], check: impl Fn(&T) -> Result<(), String> + Sync) {
     let next = AtomicUsize::new(0);
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
@@ -166,14 +166,14 @@ pub fn unpacked(path: &Path, folder: &Path) -> Vec<MomentLevel> {
     levels
 }
 
-/// Largest differences of two pyramids.
+/// Largest differences between two pyramids.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Difference {
     /// Of a component of the mean slope.
     pub slope: f32,
     /// Of the variance along an axis.
     pub variance: f32,
-    /// Of half the covariance's trace: what layouts without direction keep.
+    /// Of half the covariance's trace, which is what layouts without direction keep.
     pub trace: f32,
 }
 

@@ -1,10 +1,10 @@
-//! Stored textures compared texel by texel, in steps of their format.
+//! Compares stored textures texel by texel, in steps of their format.
 
 use half::f16;
 use roughcast::Samples;
 use roughcast::texture::TextureArray;
 
-/// The largest difference of two textures that should be the same, in steps of the format, and where it is.
+/// The largest difference between two textures that should be equal, in steps of the format, and its location.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
     pub steps: u32,
@@ -16,7 +16,7 @@ pub struct Difference {
 /// Compares all layers, levels and channels.
 ///
 /// # Errors
-/// If the two are not of one shape.
+/// If the two differ in shape.
 pub fn difference(a: &TextureArray, b: &TextureArray) -> Result<Difference, String> {
     let mut found = Difference { steps: 0, place: String::new(), texels_that_differ: 0, texels: 0 };
     if a.layers.len() != b.layers.len() {
@@ -70,7 +70,8 @@ fn pairs<T>(a: &[T], b: &[T], order: impl Fn(&T) -> i64) -> Vec<u32> {
     a.iter().zip(b).map(|(a, b)| order(a).abs_diff(order(b)) as u32).collect()
 }
 
-/// Neighbouring half floats are one apart, across zero as well; both zeros are one number. NaN is far from everything.
+/// Maps neighbouring half floats to neighbouring integers, across zero as well; both zeros are equal. NaN is far from
+/// everything.
 fn half_in_order(v: &f16) -> i64 {
     if v.is_nan() {
         return 1 << 20;

@@ -1,9 +1,9 @@
-//! Maps to bake: made up, with everything that maps can be, and real ones.
+//! Maps to bake: synthetic ones with every special case, and real ones.
 
 use half::f16;
 use roughcast::{Image, SampleType, Samples};
 
-/// A small generator of even numbers in 0 .. 1 (Knuth's MMIX), the same on every machine.
+/// A small generator of uniformly distributed numbers in 0 .. 1 (Knuth's MMIX), the same on every machine.
 pub struct Random(pub u64);
 
 impl Random {
@@ -13,7 +13,7 @@ impl Random {
     }
 }
 
-/// Unit normals over smooth bumps with noise on top; a few are bad: flat out, backwards, zero.
+/// Unit normals over smooth bumps with added noise; a few are bad: horizontal, backwards or zero.
 pub fn normals(width: usize, height: usize, channels: usize, sample_type: SampleType) -> Image {
     let mut random = Random((width * 7919 + height) as u64);
     let mut values = Vec::with_capacity(width * height * channels);
@@ -34,7 +34,7 @@ pub fn normals(width: usize, height: usize, channels: usize, sample_type: Sample
     image(width, height, channels, sample_type, &values)
 }
 
-/// Waves and steps with noise on top, 0 ..= 1.
+/// Waves and steps with added noise, 0 ..= 1.
 pub fn heights(width: usize, height: usize, sample_type: SampleType) -> Image {
     let mut random = Random((width * 31 + height) as u64);
     let value = |i: usize| {

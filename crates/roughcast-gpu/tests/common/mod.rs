@@ -1,4 +1,4 @@
-//! What the tests share.
+//! Shared code of the tests.
 
 #![allow(dead_code)] // each test program uses a part
 
@@ -9,7 +9,7 @@ pub mod scenes;
 
 use roughcast_gpu::{Gpu, GpuOptions, LimitChoice};
 
-/// A device with all features of the adapter. Without an adapter every test fails: none is skipped silently.
+/// A device with all features of the adapter. Without an adapter every test fails; none is skipped silently.
 pub fn gpu() -> Gpu {
     gpu_with(&GpuOptions::default())
 }
@@ -25,7 +25,7 @@ fn gpu_with(options: &GpuOptions) -> Gpu {
     })
 }
 
-/// A device that has nothing but what WebGPU promises.
+/// A device with only what WebGPU guarantees.
 pub fn gpu_without_features() -> Gpu {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = gpu().info.backend.into();

@@ -1,4 +1,4 @@
-//! Pictures of the CPU and of the GPU compared.
+//! Compares pictures by the CPU and by the GPU.
 
 use roughcast::shading::ShadingOptions;
 use roughcast::texture::TextureArray;
@@ -28,7 +28,7 @@ pub fn by_cpu(
     Method { shading, detail, options: shading_options }.render(scene, size, &unwatched).expect("a picture")
 }
 
-/// The same by the GPU; the geometry is the scene's.
+/// Pictures by the GPU, with the geometry of one scene.
 pub struct GpuPictures {
     pub renderer: Renderer,
     pub geometry: Geometry,
@@ -62,16 +62,17 @@ pub fn options(sampler: Sampler, shading_options: ShadingOptions) -> DrawOptions
     DrawOptions::default().with_sampler(sampler).with_shading_options(shading_options)
 }
 
-/// The difference of two pictures.
+/// The difference between two pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Apart {
-    /// Largest difference of a channel, in parts of the larger of the value and of a hundredth of the brightest value.
+    /// Largest difference of a channel, relative to the value or to a hundredth of the brightest value, whichever is
+    /// larger.
     pub largest: f64,
-    /// Where it is.
+    /// Location of the largest difference.
     pub place: String,
-    /// Mean of the absolute differences over the mean radiance.
+    /// Mean absolute difference divided by the mean radiance.
     pub mean: f64,
-    /// Relative difference of the sum of the specular light.
+    /// Relative difference of the total specular light.
     pub energy: f64,
     /// Pixels that were compared.
     pub pixels: usize,
@@ -79,7 +80,7 @@ pub struct Apart {
     pub covered: usize,
 }
 
-/// Of the brightest value, the part below which differences are not relative to the value any more.
+/// Fraction of the brightest value below which differences are no longer relative to the value.
 const DARK: f64 = 0.01;
 
 /// Compares radiance and specular parts at the pixels that `compared` chooses.
@@ -105,7 +106,7 @@ pub fn apart(cpu: &Picture, gpu: &Picture, compared: impl Fn(usize) -> bool) -> 
         let (a, b) = (values(cpu, i), values(gpu, i));
         for (channel, (a, b)) in a.into_iter().zip(b).enumerate() {
             let difference = (a - b).abs() / a.max(DARK * brightest);
-            // Not a number is far from everything.
+            // NaN is far from everything.
             if difference.is_nan() || difference > apart.largest {
                 apart.largest = if difference.is_nan() { f64::INFINITY } else { difference };
                 apart.place =
@@ -125,7 +126,8 @@ pub fn apart(cpu: &Picture, gpu: &Picture, compared: impl Fn(usize) -> bool) -> 
     apart
 }
 
-/// Whether the pixels all about are covered alike in both pictures: not at a silhouette, where a rounding decides.
+/// Whether all neighbouring pixels have the same coverage in both pictures. At a silhouette they do not, because
+/// rounding decides there.
 pub fn inside(cpu: &Picture, gpu: &Picture, i: usize) -> bool {
     let (width, height) = (cpu.width, cpu.height);
     let (x, y) = (i % width, i / width);
@@ -136,14 +138,15 @@ pub fn inside(cpu: &Picture, gpu: &Picture, i: usize) -> bool {
         .all(|j| cpu.coverage[j] == own && gpu.coverage[j] == own)
 }
 
-/// The least cosine between view and surface, below which flat triangles are seen too obliquely to stand for round shapes:
-/// where they lie a little lower, the eye meets them somewhere else.
+/// Least cosine between view and surface normal at which flat triangles can stand for round shapes. Seen more
+/// obliquely, triangles that lie slightly lower meet the view ray somewhere else.
 const OBLIQUE: f64 = 0.3;
-/// From the poles of a sphere, in parts of the map's height, where triangles do not have the direction of its tangent.
+/// Distance from the poles of a sphere, as a fraction of the map's height, within which triangles do not follow the
+/// direction of its tangent.
 const POLE: f64 = 0.1;
 
-/// Whether the middle of a pixel shows a place where flat triangles stand for the shape, and where a rounding does not
-/// decide which texel is the nearest: at least `margin` texels from the edges of its texel, of maps of `side` texels.
+/// Whether the centre of a pixel shows a place where flat triangles stand for the shape and where rounding does not
+/// decide which texel is nearest: at least `margin` texels from the edges of its texel, for maps of `side` texels.
 pub fn well_placed(scene: &Scene, (width, height): (u32, u32), i: usize, side: f64, margin: f64) -> bool {
     let (x, y) = (i % width as usize, i / width as usize);
     let ray = scene.camera.ray(x as f64 + 0.5, y as f64 + 0.5, width, height);

@@ -11,15 +11,15 @@ use roughcast_scene::{Bounds, Light, Mesh, Plane, Scene, Shape, Sphere, Torus, V
 
 pub const SIZE: (u32, u32) = (128, 96);
 
-/// Texels of a map, each way.
+/// Width and height of a map in texels.
 pub const SIDE: usize = 64;
 
-/// A mesh with texture coordinates, normals and tangents of its own, a hundredth in size.
+/// A mesh with its own texture coordinates, normals and tangents, scaled to a hundredth.
 pub fn mesh() -> Mesh {
     load_mesh(roughcast_testdata::find("models/BoomBox/boombox.glb")).expect("a mesh")
 }
 
-/// A shape in one of the standard views, whose highlight is in the picture, with a point light beside it.
+/// A shape in one of the standard views, with its highlight in the picture and a point light beside the shape.
 pub fn scene(shape: Shape, view: View) -> Scene {
     let bounds = shape.bounds();
     let scene = view.scene(Arc::new(shape), (SIDE, SIDE), SIZE, Material::default());
@@ -36,7 +36,7 @@ fn with_point_light(mut scene: Scene, bounds: Bounds) -> Scene {
     scene
 }
 
-/// Every shape in a view, and the plane from behind.
+/// Every shape in a view, and the plane seen from behind.
 pub fn scenes(view: View) -> Vec<(&'static str, Scene)> {
     let mut behind = scene(Shape::Plane(Plane::default()), view);
     behind.camera.eye.y *= -1.0;

@@ -1,4 +1,4 @@
-//! Distributions and the surfaces of models: the functions in WGSL beside their Rust twins.
+//! Distributions and the surfaces of models: the functions in WGSL and their Rust twins.
 
 use roughcast::shading::*;
 use roughcast::texture::Base;
@@ -16,7 +16,7 @@ fn weighted(a: &[f32]) -> WeightedGaussian {
     WeightedGaussian { weight: a[5], mean: slope(a), covariance: covariance(&a[2..]) }
 }
 
-/// A whole number, which the tolerance may have moved.
+/// A whole number that the tolerance computation may have perturbed.
 fn whole(a: f32) -> usize {
     (a + 0.5) as usize
 }
@@ -44,7 +44,7 @@ fn gaussian_and_base(inputs: &mut Inputs) -> Vec<f32> {
 fn mixture_words(surface: &MixtureSurface) -> Vec<f32> {
     let parts: Vec<_> = surface.gaussians().collect();
     let weight = |place: usize| parts.get(place).map_or(0.0, |(weight, _)| *weight);
-    // Where there is none the first is repeated.
+    // Missing Gaussians repeat the first one.
     let part = |place: usize| gaussian_words(parts.get(place).unwrap_or(&parts[0]).1);
     let weights = (0..MAX_GAUSSIANS).map(weight);
     weights.chain((0..MAX_GAUSSIANS).flat_map(part)).collect()

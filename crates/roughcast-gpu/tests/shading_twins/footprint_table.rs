@@ -1,4 +1,4 @@
-//! Masking and the footprint: their functions in WGSL beside their Rust twins.
+//! Masking and the footprint: the functions in WGSL and their Rust twins.
 
 use roughcast::shading::*;
 
@@ -51,7 +51,7 @@ fn axes_of(inputs: &mut Inputs) -> Vec<f32> {
     axes_words(footprint_axes([ax, ay], [bx, by]))
 }
 
-/// A cosine to the normal above zero, and a variance.
+/// A positive cosine to the normal, and a variance.
 fn cosine_and_variance(inputs: &mut Inputs) -> Vec<f32> {
     vec![inputs.direction()[2].abs().max(1e-6), inputs.of_any_size(1e-6, 1.0).abs()]
 }
@@ -63,7 +63,7 @@ pub fn masking_twins() -> Vec<Twin> {
             gives: Gives::Numbers,
             call: "put(projected_variance(f3(0u), f3(3u)));",
             arguments: |inputs| {
-                // Of a distribution: of others next to nothing may be left.
+                // The covariance of a valid distribution: for others, almost nothing may be left after cancellation.
                 let [xx, yy] = [0; 2].map(|_| inputs.of_any_size(1e-6, 1.0).abs());
                 let xy = inputs.between(-0.9, 0.9) * (xx * yy).sqrt();
                 [&[xx, yy, xy][..], &inputs.direction()].concat()
@@ -99,7 +99,7 @@ pub fn masking_twins() -> Vec<Twin> {
             gives: Gives::Numbers,
             call: "put(gaussian_visible_part(gaussian(0u), f3(6u), f3(9u), o()));",
             arguments: |inputs| {
-                // The lobe asks only where both are above the surface.
+                // The lobe calls the function only if both directions are above the surface.
                 let mut words = inputs.gaussian_lobe();
                 words[8] = words[8].abs().max(1e-6);
                 words[11] = words[11].abs().max(1e-6);
@@ -142,7 +142,7 @@ pub fn footprint_twins() -> Vec<Twin> {
             name: "level_variances",
             gives: Gives::Numbers,
             call: "put_variances(level_variances(f(0u)));",
-            // Between the levels, where the variance is continuous but its rounded-down level is not.
+            // Between whole levels: at a whole level the variance is continuous, but the level rounded down is not.
             arguments: |inputs| vec![inputs.below(12) as f32 + inputs.between(-0.5, 1.0).clamp(0.01, 0.99)],
             rust: |a, _, _| variances_words(level_variances(a[0])),
         },
@@ -151,7 +151,7 @@ pub fn footprint_twins() -> Vec<Twin> {
             gives: Gives::Numbers,
             call: "put(filter_level(FilterVariances(f2(0u), f2(2u))));",
             arguments: |inputs| {
-                // Near level 0 a logarithm is a small difference.
+                // Near level 0 the logarithm is a small difference.
                 let level = inputs.between(0.2, 12.0);
                 variances_words(level_variances(level))
             },
@@ -194,7 +194,7 @@ pub fn footprint_twins() -> Vec<Twin> {
         Twin {
             name: "whole_footprint",
             gives: Gives::Numbers,
-            // It takes nothing, but a shader without input has no place for it.
+            // The function takes no arguments, but a shader that reads no input would have no binding for it.
             call: "put(f(0u)); put_ratio(whole_footprint());",
             arguments: |inputs| vec![inputs.unit()],
             rust: |a, _, _| [&a[..1], &ratio_words(FootprintRatio::WHOLE)].concat(),

@@ -9,39 +9,39 @@ use roughcast_gpu::Gpu;
 use roughcast_gpu::read_back::read_buffer;
 use wgpu::util::DeviceExt;
 
-/// Words of the packing and of the options before the arguments of a case.
+/// Words of the packing and the options that precede the arguments of a case.
 const PACKING_WORDS: usize = 16;
 const OPTION_WORDS: usize = 8;
-/// Cases run together.
+/// Cases that run together.
 const WORKGROUP: u32 = 64;
 
 /// A function with its arguments laid out as words.
 pub struct Twin {
     /// The WGSL function's name.
     pub name: &'static str,
-    /// What it gives.
+    /// Kind of its results.
     pub gives: Gives,
-    /// A WGSL statement that calls it with `f(i)`, `f2(i)`, ... of the arguments, `o()` the options and `p()` the packing, and
-    /// writes what it gives.
+    /// A WGSL statement that calls it with the arguments `f(i)`, `f2(i)`, ..., the options `o()` and the packing `p()`,
+    /// and writes the results.
     pub call: &'static str,
     /// Arguments of a case.
     pub arguments: fn(&mut crate::inputs::Inputs) -> Vec<f32>,
-    /// The Rust twin; where Rust has it only inside of others, the formula in f64.
+    /// The Rust twin; where Rust has the function only inside others, the formula in f64.
     pub rust: fn(&[f32], &ShadingOptions, &Packing) -> Vec<f32>,
 }
 
-/// What a function gives, where that decides how far roundings on the way bear on it.
+/// Kind of a function's results, which decides how much intermediate rounding matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Gives {
-    /// Numbers by themselves.
+    /// Independent numbers.
     Numbers,
     /// The six words of a Gaussian, whose determinant is a small difference of products.
     Gaussian,
     /// The words of a mixture's surface: four weights, and the words of four Gaussians.
     Mixture,
-    /// The six words of a footprint's axes, of which the shorter is a small difference of products where the footprint is long.
+    /// The six words of a footprint's axes; the shorter is a small difference of products if the footprint is long.
     Axes,
-    /// The eight words of a footprint's ratio: parts, and what they leave of one.
+    /// The eight words of a footprint's ratio: parts and their complements to one.
     Ratio,
     /// The eight words of a facet of GGX, whose tangent is a small difference of vectors.
     Ggx,
@@ -54,19 +54,19 @@ pub struct Case {
     pub arguments: Vec<f32>,
 }
 
-/// The modules of shading. Those of detail need a host, and those of baking have a test of their own.
+/// The shading modules. Detail modules need a host, and baking modules have their own test.
 pub fn modules() -> impl Iterator<Item = &'static wgsl::Module> {
     let shades = |module: &&wgsl::Module| !matches!(module.role, Role::Bake | Role::Detail);
     wgsl::MODULES.iter().filter(shades)
 }
 
-/// The library of shading as Rust has it.
+/// The shading library as Rust assembles it.
 pub fn library() -> String {
     let names: Vec<&str> = modules().map(|module| module.name).collect();
     wgsl::library(&names).expect("these are modules")
 }
 
-/// What a library's twin gives for each case, on the GPU.
+/// Runs a twin's WGSL function of `library` on the GPU and returns its results for each case.
 pub async fn run(gpu: &Gpu, library: &str, twin: &Twin, cases: &[Case]) -> Vec<Vec<f32>> {
     let outputs = (twin.rust)(&cases[0].arguments, &cases[0].options, &cases[0].packing).len();
     let words: Vec<u32> = cases.iter().flat_map(words).collect();
@@ -143,27 +143,28 @@ fn source(library: &str, twin: &Twin, [stride, outputs, cases]: [usize; 3]) -> S
     source
 }
 
-/// A function may give what its twin gives for arguments that are off by so many units in their last place: it rounds
-/// its intermediate results, each by half a unit or, for quotients and roots of GPUs, by up to 2.5, and no more than a few of
-/// them bear on the result together.
+/// Perturbation of the arguments, in units in the last place. A function may return anything that its twin returns for
+/// arguments perturbed by this much: it rounds intermediate results, each by half a unit or, for GPU quotients and
+/// roots, by up to 2.5, and only a few of them affect a result together.
 const ARGUMENT_ULPS: f32 = 8.0;
 
-/// Where intermediate results of the size of one cancel, the result may be off by so many units of one.
+/// Error allowed where intermediate results of the size of one cancel, in units in the last place of one.
 const CANCELLED_ULPS: f32 = 4.0;
 
-/// And be off by this part of its value: `exp` of a GPU is off by 3 + 2 |x| units (Vulkan), here of |x| <= 87, and `log` near 1
-/// by 2^-21, which an exponent of at most 430 (beyond it nothing is left where `log` is used) doubles into 1e-4.
+/// Relative error allowed in addition: a GPU's `exp` is off by 3 + 2 |x| units (Vulkan), here with |x| <= 87, and its
+/// `log` near 1 by 2^-21, which an exponent of at most 430 (beyond it nothing is left where `log` is used) amplifies to
+/// 1e-4.
 const RELATIVE: f32 = 1e-4;
 
-/// What is smaller than this counts as nothing: GPUs may flush what is no normal single float to zero, 1.2e-38, also on the way
-/// to a product with an exponent of up to 16384.
+/// Magnitude below which a value counts as zero: GPUs may flush subnormal single floats, below 1.2e-38, to zero,
+/// including those that are later multiplied by an exponent of up to 16384.
 const FLUSHED: f32 = 2e-34;
 
 /// The first result that differs from the Rust twin's, in words.
 pub fn first_difference(twin: &Twin, cases: &[Case], results: &[Vec<f32>]) -> Option<String> {
     cases.iter().zip(results).find_map(|(case, got)| {
         let (wanted, allowed) = wanted_and_allowed(twin, case);
-        // NaN is never close, and arbitrary results are not tested.
+        // NaN is never close, and an infinite tolerance never passes.
         let close = |i: &usize| (got[*i] - wanted[*i]).abs() <= allowed[*i] && allowed[*i].is_finite();
         let wrong = (0..wanted.len()).find(|i| !close(i))?;
         Some(format!(
@@ -183,7 +184,7 @@ pub fn wanted_and_allowed(twin: &Twin, case: &Case) -> (Vec<f32>, Vec<f32>) {
     (wanted, allowed)
 }
 
-/// What roundings before a subtraction leave in its result, which moving the arguments does not show.
+/// The error that rounding before a subtraction leaves in the result, which perturbing the arguments does not reveal.
 fn cancellation(gives: Gives, wanted: &[f32]) -> Vec<f32> {
     let unit = CANCELLED_ULPS * f32::EPSILON;
     let mut left = vec![0.0; wanted.len()];
@@ -195,10 +196,10 @@ fn cancellation(gives: Gives, wanted: &[f32]) -> Vec<f32> {
                 cancellation_of_gaussian(unit, wanted, left);
             }
         }
-        // The part of the derivatives that is along the shorter axis.
+        // The part of the derivatives along the shorter axis.
         Gives::Axes => left[4..6].fill(unit * wanted[0].sqrt() / wanted[1]),
         Gives::Ratio => [0, 2, 7].iter().for_each(|place| left[*place] = unit),
-        // The part of a direction in the surface's plane that is across the normal is no shorter than the normal's z.
+        // For a direction in the surface's plane, the part across the normal is no shorter than the normal's z.
         Gives::Ggx => left[4..7].fill(unit / wanted[2]),
     }
     left
@@ -213,7 +214,7 @@ fn cancellation_of_gaussian(unit: f32, wanted: &[f32], left: &mut [f32]) {
     (left[2], left[3], left[5]) = (variance, variance, 2.0 * determinant);
 }
 
-/// How far each result moves when the arguments do.
+/// How far each result moves when the arguments are perturbed.
 fn tolerances(rust: &impl Fn(&[f32]) -> Vec<f32>, arguments: &[f32], wanted: &[f32]) -> Vec<f32> {
     let mut allowed: Vec<f32> = wanted.iter().map(|value| RELATIVE * value.abs() + FLUSHED).collect();
     let mut moved = arguments.to_vec();

@@ -1,4 +1,4 @@
-//! Arguments for the twins: typical values of shading, and extremes.
+//! Arguments for the twins: typical values in shading, and extremes.
 
 use roughcast::Slope;
 use roughcast::shading::{
@@ -52,7 +52,7 @@ impl Inputs {
         };
     }
 
-    /// Whether a base is in: of one in three.
+    /// Whether the base is baked in, which it is in one case in three.
     fn base(&mut self) -> Base {
         [Base::None, Base::None, Base::Baked][self.below(3)]
     }
@@ -63,7 +63,7 @@ impl Inputs {
         self.mixture(count)
     }
 
-    /// A distribution of this many Gaussians.
+    /// A distribution of `count` Gaussians.
     pub fn mixture(&mut self, count: usize) -> Distribution {
         let mut rest = 1.0;
         let parts: Vec<WeightedGaussian> = (0..count)
@@ -78,7 +78,7 @@ impl Inputs {
         mixture.with_normal(self.normal().into()).with_base(self.base())
     }
 
-    /// A distribution of this model's, and directions about the mean of its first Gaussian.
+    /// A distribution of one to four Gaussians, and directions about the mean of the first.
     pub fn mixture_lobe(&mut self) -> Vec<f32> {
         let distribution = self.distribution();
         let first = distribution.gaussians()[0];
@@ -87,7 +87,7 @@ impl Inputs {
         [&distribution_words(&distribution)[..], &view, &light].concat()
     }
 
-    /// In 0 .. 1 (splitmix64).
+    /// A number in 0 .. 1 (splitmix64).
     pub fn unit(&mut self) -> f32 {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.state ^ (self.state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -103,14 +103,14 @@ impl Inputs {
         low + (high - low) * self.unit()
     }
 
-    /// Of any size between, both signs.
+    /// A number of any magnitude between the two, with either sign.
     pub fn of_any_size(&mut self, smallest: f32, largest: f32) -> f32 {
         let size = self.between(smallest.log2(), largest.log2()).exp2();
         if self.below(2) == 0 { size } else { -size }
     }
 
-    /// A unit vector above the surface; one in eight nearly in it, one in sixteen the normal, one in sixteen below. Of
-    /// some the length is off by a few roundings, as a vertex shader leaves it.
+    /// A unit vector above the surface; one in eight nearly in it, one in sixteen the normal, one in sixteen below. The
+    /// length of some is off by a few roundings, as a vertex shader leaves it.
     pub fn direction(&mut self) -> [f32; 3] {
         let z = match self.below(16) {
             0 => return [0.0, 0.0, 1.0],
@@ -124,7 +124,7 @@ impl Inputs {
         [r * angle.cos() * error, r * angle.sin() * error, z * error]
     }
 
-    /// A filtered normal: of any length up to one, some steep, some zero, some into the surface.
+    /// A filtered normal: of any length up to one, some steep, some zero, some pointing into the surface.
     pub fn normal(&mut self) -> [f32; 3] {
         let slope = self.slope();
         let length = self.between(0.05, 1.0) / (1.0 + slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
@@ -145,7 +145,8 @@ impl Inputs {
         }
     }
 
-    /// A covariance: round, long in any direction, of rank one, zero, and, one in ten, one of no distribution.
+    /// A covariance: round, elongated in any direction, of rank one, zero and, in one case in ten, of no valid
+    /// distribution.
     pub fn covariance(&mut self) -> [f32; 3] {
         let a = self.of_any_size(1e-6, 1.0).abs();
         match self.below(10) {
@@ -165,12 +166,12 @@ impl Inputs {
         }
     }
 
-    /// A stored quantity whose value this is.
+    /// The stored number that decodes to `value`.
     pub fn stored(value: f32, [scale, offset]: [f32; 2]) -> f32 {
         (value - offset) / scale
     }
 
-    /// LEAN's texels of some moments.
+    /// LEAN's texels for random moments.
     pub fn lean(&mut self) -> Vec<f32> {
         let ([x, y], [xx, yy, xy], normal) = (self.slope(), self.covariance(), self.normal());
         let moments = Moments::from_mean_and_covariance(Slope { x, y }, Covariance { xx, yy, xy });
@@ -187,7 +188,7 @@ impl Inputs {
         ]
     }
 
-    /// The derivatives of a footprint, in texels: mostly of a few texels, round or long, some tiny or huge.
+    /// The derivatives of a footprint, in texels: mostly a few texels, round or elongated, some tiny or huge.
     pub fn footprint(&mut self) -> [f32; 4] {
         let long = match self.below(8) {
             0 => self.of_any_size(1e-4, 1e6).abs(),
@@ -214,14 +215,14 @@ impl Inputs {
         [self.unit(), trace(self), self.unit(), trace(self), xx, yy, xy, magnified]
     }
 
-    /// A facet's words, and a pair of directions whose half vector is near its normal.
+    /// The words of a facet, and a pair of directions whose half vector is near its normal.
     pub fn facet_lobe(&mut self) -> Vec<f32> {
         let facet = bump_facet(self.normal(), self.options.specular_power);
         let [view, light] = self.directions(facet.normal, self.options.specular_power.sqrt().recip());
         [&facet.normal[..], &[facet.specular_power], &view, &light].concat()
     }
 
-    /// The same for a Gaussian of slopes.
+    /// The words of a Gaussian of slopes, and a pair of directions whose half vector is near its mean.
     pub fn gaussian_lobe(&mut self) -> Vec<f32> {
         let ([x, y], [xx, yy, xy]) = (self.slope(), self.covariance());
         let base = 1.0 / self.options.specular_power;
@@ -277,8 +278,8 @@ impl Inputs {
         [&normal[..], &[roughness], &[stored(x), stored(y), strength, 1.0]].concat()
     }
 
-    /// Directions to viewer and light. Three in four have a half vector about `axis`, at a few of its widths or less,
-    /// since anywhere else a narrow lobe is zero.
+    /// Directions to viewer and light. In three of four cases the half vector is within a few widths of `axis`, because
+    /// a narrow lobe is zero anywhere else.
     fn directions(&mut self, axis: [f32; 3], width: f32) -> [[f32; 3]; 2] {
         let view = self.direction();
         if self.below(4) == 0 {
@@ -304,7 +305,7 @@ pub fn weighted_words(gaussian: &WeightedGaussian) -> [f32; 6] {
     [mean.x, mean.y, covariance.xx, covariance.yy, covariance.xy, weight]
 }
 
-/// The filtered normal, the base as a number, and four Gaussians; those beyond the distribution's count are zero.
+/// The filtered normal, the base as a number, and four Gaussians; unused Gaussians are zero.
 pub fn distribution_words(distribution: &Distribution) -> Vec<f32> {
     let parts = distribution.gaussians();
     let part = |place: usize| parts.get(place).copied().unwrap_or_default();

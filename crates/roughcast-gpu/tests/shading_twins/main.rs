@@ -1,4 +1,5 @@
-//! Every function of the shading library in WGSL, run on the GPU for thousands of arguments, against its Rust twin.
+//! Runs every WGSL function of the shading library on the GPU for thousands of arguments and compares it with its Rust
+//! twin.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -18,7 +19,7 @@ use pollster::block_on;
 use roughcast_gpu::Gpu;
 use table::twins;
 
-/// Cases of each function.
+/// Number of cases for each function.
 const CASES: usize = 6000;
 
 fn cases(twin: &Twin) -> Vec<Case> {
@@ -31,7 +32,7 @@ fn cases(twin: &Twin) -> Vec<Case> {
     (0..CASES).map(case).collect()
 }
 
-/// The first difference between a library and Rust.
+/// The first difference between a library and its Rust twin.
 fn difference(gpu: &Gpu, library: &str, twin: &Twin) -> Option<String> {
     let cases = cases(twin);
     first_difference(twin, &cases, &block_on(run(gpu, library, twin, &cases)))
@@ -70,7 +71,7 @@ fn every_function_gives_what_its_rust_twin_gives() {
 
 #[test]
 fn the_cases_of_every_lobe_include_its_highlight() {
-    // Else a twin that is always zero would do.
+    // Otherwise a twin that always returns zero would pass.
     const LEAST: f64 = 0.2;
     for twin in twins().iter().filter(|twin| twin.name.ends_with("_lobe")) {
         let cases = cases(twin);
@@ -80,16 +81,17 @@ fn the_cases_of_every_lobe_include_its_highlight() {
     }
 }
 
-/// Of how many results the tolerance may exceed a hundredth of the value: of how many the function is ill-conditioned.
+/// Largest fraction of a function's results whose tolerance may exceed a hundredth of the value, because the function
+/// is ill-conditioned there.
 fn far_results_allowed(name: &str) -> f64 {
     match name {
-        // Differences of the moments of steep slopes; one slope in ten is up to 128.
+        // Differences between moments of steep slopes; one slope in ten reaches up to 128.
         "lean_moments" => 0.15,
         "clean_moments" => 0.06,
-        // Of a third of the texels z follows from x and y, which says little about the z of a steep normal.
+        // For a third of the texels z follows from x and y, which determine the z of a steep normal poorly.
         "pbr_normal" => 0.2,
         "pbr_moments" => 0.12,
-        // Covariances of rank one, which one case in ten is: their determinants, and their smaller variances.
+        // Covariances of rank one (one case in ten): their determinants and their smaller variances.
         "slope_gaussian" => 0.006,
         "shaded_gaussian" | "gaussian_surface" => 0.0015,
         "mixture_surface" => 0.001,
@@ -101,21 +103,21 @@ fn far_results_allowed(name: &str) -> f64 {
         "weighted_covariance" => 2e-4,
         "whole_gaussian" => 1e-4,
         "pixel_mixture" => 2e-5,
-        // Footprints that are nearly circles have no longer axis.
+        // Nearly circular footprints have no longer axis.
         "footprint_axes" => 1e-3,
-        // What is magnified by next to nothing.
+        // Magnifications close to zero.
         "footprint_ratio" => 0.02,
-        // Stored normals whose value is the small difference of code and offset.
+        // Stored normals whose value is a small difference between code and offset.
         "bump_normal" | "toksvig_normal" => 0.004,
         "schilling_moments" | "toksvig_moments" => 0.002,
-        // Flanks of the narrowest lobes: their exponents multiply what half vectors are rounded by.
+        // Flanks of the narrowest lobes: their exponents multiply the rounding errors of the half vectors.
         "blinn_phong_lobe" | "beckmann_lobe" | "mixture_lobe" | "gaussian_lobe" => 0.006,
         "ggx_lobe" => 1e-3,
         _ => 0.0,
     }
 }
 
-/// The part of a function's results whose tolerance exceeds a hundredth of the value.
+/// The fraction of a function's results whose tolerance exceeds a hundredth of the value.
 fn far_results(twin: &Twin) -> f64 {
     const FAR: f32 = 0.01;
     let (mut results, mut far) = (0_u32, 0_u32);
@@ -149,8 +151,8 @@ fn few_results_have_loose_tolerances() {
 #[test]
 fn wrong_twins_are_detected() {
     let (gpu, right) = (gpu(), library());
-    // The kinds of mistake that one makes: a sign, a factor, a swapped axis, a forgotten normalisation, a wrong form, a
-    // missing clamp, and a rounding that is too coarse.
+    // Typical mistakes: a wrong sign, a wrong factor, a swapped axis, a forgotten normalisation, a wrong form, a
+    // missing clamp and too coarse a rounding.
     let mistakes = [
         ("gaussian_lobe", "d.y - surface.covariance * inverse_xx", "d.y + surface.covariance * inverse_xx"),
         ("mixture_lobe", "rest * rest * (surface.variance.x", "rest * rest * (surface.variance.y"),

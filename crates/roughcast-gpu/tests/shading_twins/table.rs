@@ -1,4 +1,4 @@
-//! Every function of the WGSL library beside its Rust twin.
+//! Every function of the WGSL library with its Rust twin.
 
 use roughcast::shading::*;
 use roughcast::{Covariance, Slope};
@@ -54,7 +54,7 @@ fn normalized(v: [f64; 3]) -> Vec<f32> {
     v.iter().map(|x| (x / length) as f32).collect()
 }
 
-/// A number that a function returns alone.
+/// A single number that a function returns.
 pub fn one(value: f32) -> Vec<f32> {
     vec![value]
 }
@@ -107,7 +107,7 @@ fn lobe_twins() -> Vec<Twin> {
             call: "put(phong_lobe(facet(0u), f3(4u), f3(7u), o()));",
             arguments: |inputs| {
                 let mut words = inputs.facet_lobe();
-                // About the reflected ray the lobe has four times the variance of one about the half vector.
+                // The lobe about the reflected ray has four times the variance of the lobe about the half vector.
                 words[3] *= 0.25;
                 words
             },

@@ -1,4 +1,4 @@
-//! From filtered texels to distributions: the functions in WGSL beside their Rust twins.
+//! Functions from filtered texels to distributions, in WGSL and as Rust twins.
 
 use roughcast::texture::*;
 use roughcast::{Distribution, variance_from_stored};
@@ -21,7 +21,7 @@ fn toksvig(inputs: &mut Inputs) -> Vec<f32> {
 
 fn clean(inputs: &mut Inputs) -> Vec<f32> {
     let ([x, y], Packing { slope, trace, .. }) = (inputs.slope(), inputs.packing);
-    // One in a few is rounded to below the mean's own square.
+    // Some second moments are rounded to below the square of the mean.
     let variance = inputs.of_any_size(1e-6, 1.0).max(-1e-4);
     let stored = [Inputs::stored(x, slope), Inputs::stored(y, slope)];
     [&stored[..], &[Inputs::stored(x * x + y * y + variance, trace), 1.0]].concat()

@@ -1,4 +1,4 @@
-//! The real files that the tests read, and what is known of them.
+//! The real files that the tests read, and their descriptions.
 
 // Each test binary uses its own part of this module.
 #![allow(dead_code)]
@@ -6,10 +6,10 @@
 use roughcast_io::{Decoded, ReadError, ReadOptions, read_image_file};
 use roughcast_testdata::find;
 
-/// A file of the folder, as `MANIFEST.tsv` describes it.
+/// A file in the folder, as `MANIFEST.tsv` describes it.
 #[derive(Clone, Debug)]
 pub struct Entry {
-    /// Relative to the folder.
+    /// Path relative to the folder.
     pub path: String,
     /// `512x256`, or empty.
     pub resolution: String,
@@ -17,7 +17,7 @@ pub struct Entry {
     pub bit_depth: String,
     /// `RGB`, `L`, `B:float16+G:float16` ...
     pub channels: String,
-    /// Words on the format.
+    /// Details of the format.
     pub details: String,
 }
 

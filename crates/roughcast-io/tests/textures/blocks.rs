@@ -33,8 +33,9 @@ fn flat_blocks_keep_their_value() {
     }
 }
 
-/// BC4 and BC5 place eight values between the least and the greatest of a block, so a texel is at most half a step off.
-/// The encoder refines its end points for the sum of squares, which may move them by a step of 8 bits or two.
+/// BC4 and BC5 place eight values from the minimum to the maximum of a block, so a texel is at most half a step off.
+/// The encoder refines its end points to reduce the sum of squared errors, which may move them by one or two 8-bit
+/// steps.
 const END_POINT_SLACK: f32 = 2.0 / 255.0;
 
 #[test]
@@ -67,7 +68,7 @@ fn root_mean_square_error(a: &Image, b: &Image) -> f64 {
     ((0..len).map(square).sum::<f64>() / len as f64).sqrt()
 }
 
-/// Of a normal map with hard edges. The measured errors are 0.0084 (BC4), 0.0082 (BC5) and 0.0109 (BC7).
+/// Allowed error for a normal map with hard edges. The measured errors are 0.0084 (BC4), 0.0082 (BC5) and 0.0109 (BC7).
 const NORMAL_MAP_ERROR: f64 = 0.015;
 
 #[test]
@@ -85,8 +86,8 @@ fn a_normal_map_is_nearly_unchanged() {
     }
 }
 
-/// BC7 keeps four channels that have nothing to do with each other only roughly; this is a guard against a channel that
-/// is lost or exchanged, which costs 0.4 and more.
+/// BC7 preserves four unrelated channels only roughly. This limit detects a lost or swapped channel, which costs 0.4 or
+/// more.
 const UNRELATED_CHANNELS_ERROR: f64 = 0.05;
 
 #[test]
@@ -103,7 +104,7 @@ fn bc7_keeps_the_fourth_channel_as_data() {
 
 #[test]
 fn the_edge_is_repeated_and_not_mixed_with_black() {
-    // 5 texels per row: the second block has one real column. Filled with zeros it could not be flat.
+    // 5 texels per row: the second block has one real column. If the rest were zeros, the block would not be flat.
     let image = Image::new(5, 5, 1, Samples::U8(vec![200; 25])).unwrap();
     let blocks = compress(&array_of(image), BlockFormat::Bc4).unwrap();
     let bytes = &blocks.layers[0].levels[0];

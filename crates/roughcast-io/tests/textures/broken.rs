@@ -1,4 +1,4 @@
-//! Broken and hostile files: an error, no panic, and nothing allocated because a header says so.
+//! Broken and hostile files give an error, without a panic and without allocating what a header merely claims.
 
 use std::time::{Duration, Instant};
 
@@ -9,15 +9,15 @@ use crate::support::{
     Random, assert_same_texels, bytes_of, dds_bytes, ktx2_bytes, names_in, noise_array, read_image,
 };
 
-/// In the folder of broken files, but readable after all.
+/// Readable files in the folder of broken files.
 const READABLE: [(&str, &str); 2] = [
-    // Magnum does not know the number; it is D3DFMT_R32F, and its texels are all there.
+    // Magnum does not know this number; it is D3DFMT_R32F, and the file has all its texels.
     ("magnum_dds_fourcc-114.dds", "R32F"),
-    // Its chain ends before 1 x 1, which the format allows. Level 0 is whole.
+    // Its mip chain ends before 1 x 1, which the format allows. Level 0 is complete.
     ("magnum_ktx_2d-mipmaps-incomplete.ktx2", "R8G8B8_SRGB"),
 ];
 
-/// Each of these files has a few kilobytes; a second is a thousand times what reading takes.
+/// Time limit for one file. Each has a few kilobytes; one second is a thousand times as long as reading takes.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 #[test]
@@ -66,7 +66,7 @@ const DDS_WIDTH: usize = 16;
 const DDS_LEVELS: usize = 28;
 const DDS_LAYERS: usize = 140;
 
-/// Which check stops it shows in the message; all of them stand before the allocation.
+/// The error message shows which check refused the file; all checks run before the allocation.
 #[test]
 fn a_small_file_cannot_claim_a_large_texture() {
     let unlimited = Limits { max_pixels: u64::MAX };
@@ -77,7 +77,7 @@ fn a_small_file_cannot_claim_a_large_texture() {
             put(&mut file, KTX2_HEIGHT, side);
             let error = ktx2::read_image(&file, &Limits::default()).unwrap_err();
             assert!(matches!(error, ReadError::TooLarge { .. }), "{error}");
-            // Without a limit the level's own length, then the ratio of the compressor, stop it.
+            // Without a limit, the check of the level's length refuses it, then that of the compression ratio.
             let error = ktx2::read_image(&file, &unlimited).unwrap_err().to_string();
             assert!(
                 error.contains("level 0 states 64 bytes") || error.contains("fit into memory"),
@@ -147,7 +147,7 @@ fn numbers_that_contradict_each_other_are_malformed() {
     let dds_changes: [(Change, bool); 5] = [
         ((DDS_WIDTH, 0), false),
         ((DDS_HEIGHT, 6), false),
-        // Level 0 exists in these, which is all that an image needs.
+        // These files have level 0, which is all that an image needs.
         ((DDS_LEVELS, 4), true),
         ((DDS_LEVELS, u32::MAX), true),
         ((DDS_LAYERS, 2), true),
@@ -174,7 +174,7 @@ fn foreign_files_are_not_baked_textures() {
     }
 }
 
-/// Every prefix of a file is refused, but for DDS ones that have lost levels only.
+/// Every prefix of a file is refused, except prefixes of DDS files that have lost only levels.
 #[test]
 fn truncated_files_are_errors() {
     let array = noise_array(SampleType::U8, 2, (9, 7), 2);
@@ -198,7 +198,7 @@ fn truncated_files_are_errors() {
     }
 }
 
-/// Ten thousand files with a few bytes changed: whatever they have become, they are read or refused.
+/// Ten thousand files with a few changed bytes are each either read or refused.
 #[test]
 fn changed_bytes_never_panic() {
     let array = noise_array(SampleType::U8, 4, (13, 6), 2);
@@ -214,7 +214,7 @@ fn changed_bytes_never_panic() {
     for round in 0..10_000 {
         let mut file = seeds[round % seeds.len()].clone();
         for _ in 0..1 + random.next() % 4 {
-            // Half of the changes go to the header, where they matter.
+            // Half of the changes are in the header, where they matter.
             let reach = if random.next().is_multiple_of(2) { file.len().min(160) } else { file.len() };
             let at = random.next() as usize % reach;
             file[at] = random.next() as u8;
@@ -230,7 +230,7 @@ fn changed_bytes_never_panic() {
     );
 }
 
-/// A level of several Zstandard frames is valid; another writer may split it.
+/// A level of several Zstandard frames is valid, since another writer may split it.
 #[test]
 fn several_zstd_frames_in_a_level_are_read() {
     let array = noise_array(SampleType::U16, 1, (8, 1), 1);

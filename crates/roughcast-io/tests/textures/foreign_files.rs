@@ -1,4 +1,4 @@
-//! Every KTX2, KTX1 and DDS file at hand: read with the size that it has, or refused for the right reason.
+//! Every available KTX2, KTX1 and DDS file is read with its correct size or refused for the right reason.
 
 use roughcast::Samples;
 use roughcast_io::{Limits, ReadError, ReadOptions, ValueRange, ktx2};
@@ -10,7 +10,7 @@ use crate::support::{bytes_of, decoded, names_in, read_image};
 enum Expected {
     /// Width, height, layers, levels, format.
     Image(usize, usize, usize, usize, &'static str),
-    /// `Unsupported`, with these words.
+    /// `Unsupported`, with these words in the message.
     Refused(&'static str),
 }
 use Expected::{Image, Refused};
@@ -147,7 +147,7 @@ const DDS_FILES: &[(&str, Expected)] = &[
     ("pillow_uncompressed_la.dds", Image(128, 128, 1, 1, "16-bit YA")),
 ];
 
-/// The tables list every file, so that none is passed over.
+/// The tables list every file, so that none is skipped.
 fn check_folder(folder: &str, table: &[(&str, Expected)]) {
     let path = |name: &str| format!("{folder}/{name}");
     let table: Vec<_> = table.iter().filter(|row| available(&path(row.0)).is_some()).collect();
@@ -213,21 +213,21 @@ fn normals_and_heights_in_dxt5() {
     }
 }
 
-/// A picture of 4 x 3 texels that Magnum's authors stored in many ways; they agree on it.
+/// Magnum's authors stored the same picture of 4 x 3 texels in many ways, and the files agree.
 #[test]
 fn swizzles_are_applied() {
     let read = |name: &str| decoded(&format!("formats/ktx2/magnum_ktx_{name}.ktx2")).image;
-    // The second is stored with red and blue exchanged, and its swizzle exchanges them back.
+    // The second file is stored with red and blue swapped, and its swizzle swaps them back.
     assert_eq!(read("swizzle-bgr"), read("bgr"));
     assert_ne!(read("swizzle-identity"), read("bgr"));
     assert_eq!(read("swizzle-identity"), read("2d-layers"));
-    // Stored with red and blue exchanged, too, in 16 bits.
+    // This file is also stored with red and blue swapped, in 16 bits.
     let Samples::U16(wide) = read("bgr-swizzle-bgr-16bit").into_samples() else { panic!("16 bits") };
     let Samples::U8(narrow) = read("swizzle-identity").into_samples() else { panic!("8 bits") };
     assert_eq!(wide, narrow.iter().map(|&v| u16::from(v) * 257).collect::<Vec<_>>());
 }
 
-/// Changes the value of KTXswizzle, which has four letters, in a file of three channels.
+/// Changes the four letters of KTXswizzle in a file with three channels.
 fn with_swizzle(letters: &[u8; 4]) -> Result<roughcast_io::Decoded, ReadError> {
     let mut bytes = bytes_of("formats/ktx2/magnum_ktx_swizzle-identity.ktx2");
     let at = bytes.windows(5).position(|window| window == b"rgb1\0").unwrap();
@@ -246,7 +246,7 @@ fn swizzles_drop_what_is_trivial_and_keep_the_rest() {
     assert_eq!(first_two(b"b001")[..2], [255, 0]);
     assert_eq!(first_two(b"bbbg")[..8], [255, 255, 255, 0, 0, 0, 0, 255]);
     assert_eq!(first_two(b"1gb0")[..8], [255, 0, 255, 0, 255, 255, 0, 0]);
-    // Alpha of a file without one is 1, and thus nothing to keep.
+    // The alpha of a file without an alpha channel is 1, so it is dropped.
     assert_eq!(first_two(b"rgba")[..6], [0, 0, 255, 0, 255, 0]);
     for invalid in [b"rgbx", b"RGB1", b"rg\0\0"] {
         assert!(matches!(with_swizzle(invalid), Err(ReadError::Malformed { .. })), "{invalid:?}");

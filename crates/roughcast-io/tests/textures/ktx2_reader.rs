@@ -1,4 +1,4 @@
-//! Our KTX2 files, checked by an independent reader and against the rules of the specification.
+//! Checks our KTX2 files with an independent reader and against the rules of the specification.
 
 use ktx2::{Format, Reader, SupercompressionScheme, dfd};
 use roughcast::SampleType;
@@ -37,7 +37,7 @@ fn raw_level(array: &TextureArray, level: usize) -> Vec<u8> {
     samples.flat_map(bytes).collect()
 }
 
-/// Header, descriptor and key-value data.
+/// Checks the header, descriptor and key-value data.
 fn check_frame(file: &[u8], format: Format, layers: usize, size: (usize, usize), unit_bytes: u64) {
     let reader = Reader::new(file).unwrap();
     let header = reader.header();
@@ -63,7 +63,7 @@ fn check_frame(file: &[u8], format: Format, layers: usize, size: (usize, usize),
     check_layout(file, header.level_count as usize, header.supercompression_scheme.is_some(), unit_bytes);
 }
 
-/// Sections follow each other, levels from the smallest to the largest, aligned as demanded, without gaps.
+/// Checks that the sections follow each other, aligned as required and without gaps, with levels from small to large.
 fn check_layout(file: &[u8], levels: usize, supercompressed: bool, unit_bytes: u64) {
     let word = |at: usize| u64::from(u32::from_le_bytes(file[at..at + 4].try_into().unwrap()));
     let long = |at: usize| u64::from_le_bytes(file[at..at + 8].try_into().unwrap());
@@ -73,7 +73,7 @@ fn check_layout(file: &[u8], levels: usize, supercompressed: bool, unit_bytes: u
     let mut end = word(56) + word(60);
     for level in (0..levels).rev() {
         let (offset, length) = (long(80 + 24 * level), long(88 + 24 * level));
-        // lcm(unit, 4), which for powers of two is the greater.
+        // lcm(unit, 4), which for powers of two is the larger of both.
         let alignment = if supercompressed { 1 } else { unit_bytes.max(4) };
         assert_eq!(offset, end.next_multiple_of(alignment), "level {level}");
         assert!(file[end as usize..offset as usize].iter().all(|&byte| byte == 0), "padding is zero");
@@ -131,8 +131,8 @@ fn blocks_are_read_by_an_independent_reader() {
     }
 }
 
-/// The Khronos tools' own files say what a descriptor must be. Only the primaries may differ: ours are unspecified (0),
-/// as the values are not colours, those of most pictures BT.709 (1).
+/// The descriptors in the Khronos tools' own files are the reference. Only the primaries may differ: ours are
+/// unspecified (0), since the values are not colours, while those of most pictures are BT.709 (1).
 #[test]
 fn descriptors_match_the_khronos_tools() {
     const PRIMARIES: usize = 13;

@@ -1,4 +1,4 @@
-//! KTX2, DDS and block compression, tested with real files and independent readers.
+//! Tests KTX2, DDS and block compression with real files and independent readers.
 
 mod blocks;
 mod broken;

@@ -1,4 +1,4 @@
-//! What is written is read back bit for bit.
+//! Written textures are read back bit for bit.
 
 use roughcast::SampleType;
 use roughcast::texture::{TextureArray, layers_of};
@@ -8,7 +8,7 @@ use roughcast_io::{
 
 use crate::support::{assert_same_texels, dds_bytes, ktx2_bytes, noise_array};
 
-/// Odd, thin, single, and large enough for several blocks of rows.
+/// Odd, thin and single-texel sizes, and one that is large enough for several blocks of rows.
 const SIZES: [(usize, usize); 4] = [(53, 37), (1, 7), (1, 1), (640, 427)];
 const SAMPLE_TYPES: [SampleType; 4] = [SampleType::U8, SampleType::U16, SampleType::F16, SampleType::F32];
 const SUPERCOMPRESSIONS: [Supercompression; 2] = [Supercompression::None, Supercompression::Zstd];

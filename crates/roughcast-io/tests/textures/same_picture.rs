@@ -1,4 +1,4 @@
-//! The same picture in several files must be read as the same.
+//! A picture that is stored in several files must read the same from each.
 
 use roughcast::{Image, Samples};
 use roughcast_io::{Limits, ValueRange, dds};
@@ -17,10 +17,10 @@ fn difference(a: &Image, b: &Image, channels: usize) -> (f64, f64) {
 
 /// Widening 8 bits to 16 is exact; half of an 8-bit step allows for either rounding.
 const WIDENED: f64 = 0.5 / 255.0;
-/// The block files were transcoded from a Basis Universal file, whose own error is 0.0134 on average. A channel out of its
-/// place costs 0.18.
+/// The block files were transcoded from a Basis Universal file, whose own error is 0.0134 on average. A misplaced
+/// channel costs 0.18.
 const TRANSCODED_MEAN: f64 = 0.02;
-/// The same for the worst texel, 0.117 as measured, at the edge of the S.
+/// The same for the worst texel, which is at the edge of the S and has a measured error of 0.117.
 const TRANSCODED_MAX: f64 = 0.15;
 
 #[test]
@@ -65,7 +65,7 @@ fn png_rgb8(path: &str) -> Image {
     Image::new(frame.width as usize, frame.height as usize, 3, Samples::U8(pixels)).unwrap()
 }
 
-/// Block compression of these files costs 0.7 (BC5) and 0.45 (BC1) steps of 8 bits on average.
+/// Block compression of these files costs 0.7 (BC5) and 0.45 (BC1) 8-bit steps on average.
 const SPHERE_MEAN: f64 = 1.0 / 255.0;
 
 #[test]
@@ -90,13 +90,13 @@ fn bc1_is_its_png() {
     assert!(mean < SPHERE_MEAN, "mean {mean}");
 }
 
-/// Mean squared curl of the gradient field that a normal map stands for, with y up (`green` = 1) or down (-1). A height
-/// field's gradient has no curl, so the true reading of the channels has by far the least.
+/// Mean squared curl of the gradient field that a normal map represents, with y up (`green` = 1) or down (-1). A height
+/// field's gradient has no curl, so the correct interpretation of the channels has by far the smallest.
 fn curl(image: &Image, [x_channel, y_channel]: [usize; 2], green: f32) -> f64 {
     let slope = |x: usize, y: usize| {
         let [nx, ny] = [x_channel, y_channel].map(|channel| image.get(x, y, channel) * 2.0 - 1.0);
         let nz = (1.0 - nx * nx - ny * ny).max(0.01).sqrt();
-        // Down the rows, the derivative of the height is against the sign of y up.
+        // Rows run downwards, so the derivative of the height along them has the opposite sign to that for y up.
         [f64::from(-nx / nz), f64::from(green * ny / nz)]
     };
     let mut sum = 0.0;
@@ -110,7 +110,7 @@ fn curl(image: &Image, [x_channel, y_channel]: [usize; 2], green: f32) -> f64 {
     sum
 }
 
-/// How many times less curl the right reading must have than the next best; 57 is reported for this file.
+/// Minimum ratio of the next best interpretation's curl to that of the correct one; 57 is reported for this file.
 const CURL_FACTOR: f64 = 10.0;
 
 #[test]
@@ -130,7 +130,7 @@ fn ati2_marked_as_xy_is_plain_bc5() {
     let ati2 = dds::read_image(&bytes, &Limits::default()).expect("a whole file").image;
     bytes[FOUR_CC].copy_from_slice(b"BC5U");
     assert_eq!(dds::read_image(&bytes, &Limits::default()).expect("the same blocks").image, ati2);
-    // The same blocks in files of another writer.
+    // The same blocks in another writer's files.
     for name in ["pillow_bc5u.dds", "pillow_bc5_unorm.dds"] {
         let path = format!("formats/dds/{name}");
         if available(&path).is_some() {

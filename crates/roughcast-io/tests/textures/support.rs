@@ -1,4 +1,4 @@
-//! What several of these tests need.
+//! Helpers that several of these tests share.
 
 use half::f16;
 use roughcast::texture::{Layout, Part, Texture, TextureArray, TextureInfo};
@@ -11,13 +11,13 @@ pub fn bytes_of(path: &str) -> Vec<u8> {
     std::fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// Names of the files of a folder of the test data, sorted; at least one.
+/// Sorted names of the files in a folder of the test data; at least one.
 pub fn names_in(folder: &str) -> Vec<String> {
     let name = |path: String| path.rsplit('/').next().expect("a name").to_owned();
     files_in(folder).into_iter().map(name).collect()
 }
 
-/// Reads by extension.
+/// Reads an image in the format that its extension names.
 pub fn read_image(path: &str) -> Result<Decoded, ReadError> {
     let bytes = bytes_of(path);
     if path.to_lowercase().ends_with(".dds") {
@@ -31,7 +31,7 @@ pub fn decoded(path: &str) -> Decoded {
     read_image(path).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
-/// The same numbers on every machine (Marsaglia's xorshift).
+/// A generator that gives the same numbers on every machine (Marsaglia's xorshift).
 pub struct Random(u64);
 
 impl Random {
@@ -47,7 +47,7 @@ impl Random {
     }
 }
 
-/// Samples of arbitrary bits: floats hold NaNs, infinities and subnormals, too.
+/// Samples of arbitrary bits; floats include NaNs, infinities and subnormals.
 fn noise(random: &mut Random, sample_type: SampleType, len: usize) -> Samples {
     let bits = (0..len).map(|_| random.next() as u32);
     match sample_type {
@@ -102,7 +102,7 @@ pub fn dds_bytes(payload: Payload<'_>) -> Vec<u8> {
     bytes
 }
 
-/// Equal info, sizes and bits. Names are not compared: they come from the layout, and the noise has none.
+/// Asserts equal info, sizes and bits. Names are not compared: they come from the layout, and the noise has none.
 pub fn assert_same_texels(got: &TextureArray, wanted: &TextureArray, what: &str) {
     assert_eq!(got.info, wanted.info, "{what}");
     assert_eq!(got.layers.len(), wanted.layers.len(), "{what}: layers");
@@ -117,7 +117,7 @@ pub fn assert_same_texels(got: &TextureArray, wanted: &TextureArray, what: &str)
     }
 }
 
-/// NaN is not equal to itself, its bits are.
+/// The bits of the samples, which compare equal even for NaN.
 fn bits(samples: &Samples) -> (SampleType, Vec<u32>) {
     let bits = match samples {
         Samples::U8(v) => v.iter().map(|&s| u32::from(s)).collect(),
@@ -128,7 +128,7 @@ fn bits(samples: &Samples) -> (SampleType, Vec<u32>) {
     (samples.sample_type(), bits)
 }
 
-/// The picture as floats in 0 ..= 1, `channels` a texel.
+/// The picture as floats in 0 ..= 1, `channels` per texel.
 pub fn floats(image: &Image, channels: usize) -> Vec<f32> {
     let texels = image.width() * image.height();
     let of_texel = |texel: usize| {

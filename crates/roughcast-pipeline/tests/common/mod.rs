@@ -1,4 +1,4 @@
-//! What the tests of jobs share.
+//! Shared code of the tests of jobs.
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use roughcast::{Image, Samples};
 use roughcast_io::png_levels;
 
-/// A folder that vanishes with the test.
+/// A folder that is deleted at the end of the test.
 pub fn scratch() -> tempfile::TempDir {
     tempfile::tempdir().expect("a temporary folder")
 }
@@ -20,12 +20,12 @@ pub fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// A normal map of the test data, with green up.
+/// A normal map from the test data, with green up.
 pub fn normals() -> PathBuf {
     roughcast_testdata::find("cases/missing-roughness-size/plain.png")
 }
 
-/// Writes heights of a rough surface.
+/// Writes the heights of a rough surface.
 pub fn heights(path: &Path, side: usize) {
     let samples = (0..side * side).map(|i| (i * 37 % 251) as u8).collect();
     write(path, side, 1, samples);
