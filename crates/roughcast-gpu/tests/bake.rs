@@ -4,7 +4,7 @@ mod common;
 
 use common::compare::difference;
 use common::maps::{heights, normals, real};
-use common::{gpu, gpu_of_the_web, gpu_without_features};
+use common::{gpu, gpu_of_the_web, gpu_without_features, one_level};
 use pollster::block_on;
 use roughcast::texture::{Base, Layout, TextureArray};
 use roughcast::{
@@ -376,16 +376,7 @@ fn textures_already_on_the_gpu_match_the_cpu() {
             Samples::F16(v) => bytemuck::cast_slice(v),
             Samples::F32(v) => bytemuck::cast_slice(v),
         };
-        let descriptor = wgpu::TextureDescriptor {
-            label: None,
-            size: wgpu::Extent3d { width: 44, height: 36, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        };
+        let descriptor = one_level((44, 36), format, wgpu::TextureUsages::TEXTURE_BINDING);
         let map = gpu.device.create_texture_with_data(&gpu.queue, &descriptor, Default::default(), bytes);
         let cpu = roughcast::Bake::of(&image).source(source).options(options).run().expect("baked");
         for path in PATHS {

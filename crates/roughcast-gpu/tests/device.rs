@@ -2,22 +2,13 @@
 
 mod common;
 
-use common::{gpu, gpu_of_the_web, gpu_without_features};
+use common::{gpu, gpu_of_the_web, gpu_without_features, one_level};
 use pollster::block_on;
 use roughcast_gpu::{Gpu, GpuError, GpuOptions, read_back};
 use wgpu::util::DeviceExt;
 
 fn texture_of(width: u32, height: u32, format: wgpu::TextureFormat) -> wgpu::TextureDescriptor<'static> {
-    wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    }
+    one_level((width, height), format, wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST)
 }
 
 #[test]

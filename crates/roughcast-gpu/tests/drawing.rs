@@ -2,8 +2,8 @@
 
 mod common;
 
-use common::gpu;
 use common::scenes::{SIZE, maps, scene};
+use common::{gpu, one_level};
 use pollster::block_on;
 use roughcast::SampleType;
 use roughcast::shading::{Form, Shading, ShadingOptions};
@@ -62,18 +62,10 @@ struct Target {
 }
 
 impl Target {
-    fn new(gpu: &Gpu, (width, height): (u32, u32)) -> Self {
+    fn new(gpu: &Gpu, size: (u32, u32)) -> Self {
         let texture = |format, usage| {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: None,
-                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: usage | wgpu::TextureUsages::RENDER_ATTACHMENT,
-                view_formats: &[],
-            })
+            let usage = usage | wgpu::TextureUsages::RENDER_ATTACHMENT;
+            gpu.device.create_texture(&one_level(size, format, usage))
         };
         let copied = wgpu::TextureUsages::COPY_SRC;
         Self {

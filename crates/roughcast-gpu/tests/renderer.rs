@@ -4,7 +4,7 @@ mod common;
 
 use common::pictures::{GpuPictures, options};
 use common::scenes::{SIDE, SIZE, maps, maps_with, scene};
-use common::{gpu, gpu_of_the_web};
+use common::{gpu, gpu_of_the_web, one_level};
 use pollster::block_on;
 use roughcast::shading::{Shading, ShadingOptions};
 use roughcast::texture::{Layout, Part, TextureInfo};
@@ -76,16 +76,8 @@ fn a_colour_target_has_the_radiance_of_the_picture() {
     let want = picture(&gpu, &scene, SIZE).expect("a picture");
     let format = wgpu::TextureFormat::Rgba16Float;
     let target = |format, usage| {
-        gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: None,
-            size: wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: usage | wgpu::TextureUsages::RENDER_ATTACHMENT,
-            view_formats: &[],
-        })
+        let usage = usage | wgpu::TextureUsages::RENDER_ATTACHMENT;
+        gpu.device.create_texture(&one_level(SIZE, format, usage))
     };
     let colour = target(format, wgpu::TextureUsages::COPY_SRC);
     let depth = target(DEPTH_FORMAT, wgpu::TextureUsages::empty());

@@ -34,3 +34,21 @@ pub fn gpu_without_features() -> Gpu {
     let device = pollster::block_on(adapter.request_device(&Default::default())).expect("a plain device");
     Gpu::from_device(device.0, device.1)
 }
+
+/// A two-dimensional texture of one level, `size` texels wide and high.
+pub fn one_level(
+    size: (u32, u32),
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+) -> wgpu::TextureDescriptor<'static> {
+    wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    }
+}
