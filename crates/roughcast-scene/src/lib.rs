@@ -29,6 +29,7 @@ pub mod metrics;
 mod mipmap;
 pub mod pattern;
 mod picture;
+mod placement;
 pub mod render;
 mod sampler;
 mod scene;
@@ -42,8 +43,7 @@ mod views;
 pub use camera::{Camera, CameraError, PixelRays};
 #[cfg(feature = "render")]
 pub use detail::{
-    BakedTextures, Detail, DetailPoint, Placement, Reconstruction, Resolved, SlopeDetail, SlopeMap,
-    TextureDetail,
+    BakedTextures, Detail, DetailPoint, Reconstruction, Resolved, SlopeDetail, SlopeMap, TextureDetail,
 };
 pub use detail::{DetailError, TextureInputs, model_inputs, texture_inputs};
 #[cfg(feature = "render")]
@@ -54,6 +54,7 @@ pub use mesh::{MAX_TRIANGLES, MAX_VERTICES, Mesh, MeshFault};
 #[cfg(feature = "render")]
 pub use mipmap::{Level, Mipmap};
 pub use picture::{Picture, luminance};
+pub use placement::Placement;
 pub use render::MipmapError;
 pub use sampler::{Filter, Sampler};
 pub use scene::Scene;

@@ -25,7 +25,7 @@
 use glam::{DVec2, DVec3};
 use roughcast::SlopeMatrix;
 
-use crate::{Hit, Side, UvPoint};
+use crate::{Hit, Placement, Side, UvPoint};
 
 /// Sine of the angle between dpds and dpdt, projected along the shading normal, below which the surface's area is too
 /// small to determine a direction.
@@ -36,45 +36,28 @@ const MIN_SINE: f64 = 1e-10;
 /// ```
 /// use glam::DVec3;
 /// use roughcast::Slope;
-/// use roughcast_scene::{Plane, Ray, Shape, SlopeFrame};
+/// use roughcast_scene::{Placement, Plane, Ray, Shape, SlopeFrame};
 ///
 /// let plane = Shape::Plane(Plane::default()); // two units wide
 /// let hit = plane.hit(&Ray { origin: DVec3::Y, direction: DVec3::NEG_Y }).expect("the plane");
 /// // 256x64 texels: stretched fourfold along v, so that bumps are four times less steep along it.
-/// let lies = SlopeFrame::new((256, 64), 1.0).with_world_height_per_texel(2.0 / 256.0);
+/// let placement = Placement::default().with_world_height_per_texel(2.0 / 256.0);
+/// let lies = SlopeFrame::new((256, 64), 1.0, placement);
 /// let slope = Slope { x: 0.5, y: 0.5 }.transformed(lies.matrix(&hit));
 /// assert_eq!(slope, Slope { x: 0.5, y: 0.125 });
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlopeFrame {
-    uv_set: usize,
     texels_per_unit: DVec2,
-    world_height_per_texel: Option<f64>,
+    placement: Placement,
 }
 
 impl SlopeFrame {
-    /// A texture of `texels`, `(width, height)` of level 0, that repeats `repeats` times over a unit of the first set
-    /// of texture coordinates, without a world height.
-    pub fn new(texels: (usize, usize), repeats: f64) -> Self {
+    /// A texture of `texels`, `(width, height)` of level 0, that repeats `repeats` times over a unit of its texture
+    /// coordinates.
+    pub fn new(texels: (usize, usize), repeats: f64, placement: Placement) -> Self {
         let texels_per_unit = DVec2::new(texels.0 as f64, texels.1 as f64) * repeats;
-        Self { uv_set: 0, texels_per_unit, world_height_per_texel: None }
-    }
-
-    /// The same frame with another set of texture coordinates.
-    #[must_use]
-    pub fn with_uv_set(self, uv_set: usize) -> Self {
-        Self { uv_set, ..self }
-    }
-
-    /// The same frame with bumps of a size: the world-space height that corresponds to one texel of height.
-    #[must_use]
-    pub fn with_world_height_per_texel(self, height: f64) -> Self {
-        Self { world_height_per_texel: Some(height), ..self }
-    }
-
-    /// The set of texture coordinates that places the texture on the surface.
-    pub fn uv_set(&self) -> usize {
-        self.uv_set
+        Self { texels_per_unit, placement }
     }
 
     /// The matrix that transforms slopes in the texture's frame, in texels per texel, to the frame of the hit.
@@ -87,14 +70,14 @@ impl SlopeFrame {
     /// shading normal lies in the surface, if the texture coordinates are missing or constant, and
     /// if single floats cannot represent the result.
     pub fn matrix(&self, hit: &Hit<'_>) -> SlopeMatrix {
-        let Some(height) = self.world_height_per_texel else { return [[1.0, 0.0], [0.0, 1.0]] };
+        let Some(height) = self.placement.world_height_per_texel() else { return [[1.0, 0.0], [0.0, 1.0]] };
         let normal = hit.frame.normal();
         let (r1, r2) = (hit.dpdt.cross(normal), normal.cross(hit.dpds));
         let det = hit.dpds.dot(r1);
         if det.abs() <= MIN_SINE * hit.dpds.length() * hit.dpdt.length() {
             return [[0.0; 2]; 2];
         }
-        let UvPoint { ds, dt, .. } = hit.uv_sets.get(self.uv_set);
+        let UvPoint { ds, dt, .. } = hit.uv_sets.get(self.placement.uv_set());
         // Change of the world-space height with u for a slope of one along x, and with v for a slope of one along y.
         let (along_u, along_v) = (-height * self.texels_per_unit.x, height * self.texels_per_unit.y);
         let slope = |change: DVec2| self.slope_of_gradient(hit, (r1 * change.x + r2 * change.y) / det);

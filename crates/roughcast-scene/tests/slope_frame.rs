@@ -10,8 +10,8 @@ use roughcast::shading::{Material, Shading, ShadingOptions};
 use roughcast::{Bake, BakeOptions, Moments, SampleType, Slope};
 use roughcast_scene::render::{Method, unwatched};
 use roughcast_scene::{
-    BakedTextures, Camera, Filter, Hit, Light, Mesh, Picture, Plane, Ray, Sampler, Scene, Shape, SlopeFrame,
-    Sphere, Torus, TriangleMesh, UvPoint, UvSets, pattern,
+    BakedTextures, Camera, Filter, Hit, Light, Mesh, Picture, Placement, Plane, Ray, Sampler, Scene, Shape,
+    SlopeFrame, Sphere, Torus, TriangleMesh, UvPoint, UvSets, pattern,
 };
 
 /// Slopes and matrices are single floats: a few roundings of values up to a few units.
@@ -136,8 +136,17 @@ fn reflect(v: DVec3) -> DVec3 {
     v * DVec3::new(-1.0, 1.0, 1.0)
 }
 
+/// On the first set, with this world height per texel.
+fn of_height(texels: (usize, usize), repeats: f64, height: f64) -> SlopeFrame {
+    SlopeFrame::new(texels, repeats, Placement::default().with_world_height_per_texel(height))
+}
+
 fn frame(set: usize) -> SlopeFrame {
-    SlopeFrame::new(TEXELS, 1.0).with_uv_set(set).with_world_height_per_texel(WORLD_HEIGHT)
+    SlopeFrame::new(
+        TEXELS,
+        1.0,
+        Placement::default().with_uv_set(set).with_world_height_per_texel(WORLD_HEIGHT),
+    )
 }
 
 /// The normal that a slope gives in the frame of a hit, in world space.
@@ -258,14 +267,13 @@ fn square_texels_with_matching_height_keep_their_slopes() {
     let on_plane = plane.hit(&Ray { origin: DVec3::new(0.3, 2.0, 0.1), direction: DVec3::NEG_Y }).unwrap();
     for (hit, width) in [(square, 1.0), (mirrored, 1.0), (on_plane, 5.0)] {
         for repeats in [1.0, 3.0] {
-            let lies =
-                SlopeFrame::new((64, 64), repeats).with_world_height_per_texel(width / (64.0 * repeats));
+            let lies = of_height((64, 64), repeats, width / (64.0 * repeats));
             assert!(distance(lies.matrix(&hit), IDENTITY) < SINGLE, "{:?}", lies.matrix(&hit));
         }
         // Without a height it is the identity for any stretch.
-        assert_eq!(SlopeFrame::new((64, 7), 2.5).matrix(&hit), IDENTITY);
+        assert_eq!(SlopeFrame::new((64, 7), 2.5, Placement::default()).matrix(&hit), IDENTITY);
         // Twice as high is twice as steep; half as many rows along v are half as steep along it.
-        let lies = SlopeFrame::new((64, 32), 1.0).with_world_height_per_texel(2.0 * width / 64.0);
+        let lies = of_height((64, 32), 1.0, 2.0 * width / 64.0);
         assert!(distance(lies.matrix(&hit), [[2.0, 0.0], [0.0, 1.0]]) < SINGLE);
     }
 }
@@ -295,7 +303,7 @@ fn degenerate_parametrizations_are_flat() {
         assert_eq!(frame(0).matrix(&flat), FLAT, "{flat:?}");
     }
     for height in [0.0, f64::NAN, f64::INFINITY] {
-        assert_eq!(distance(frame(0).with_world_height_per_texel(height).matrix(&hit), FLAT), 0.0);
+        assert_eq!(distance(of_height(TEXELS, 1.0, height).matrix(&hit), FLAT), 0.0);
     }
     // Texture coordinates on a line are valid: heights change along it, and the slope is that of the surface.
     let line = with(&line);

@@ -8,8 +8,6 @@
 
 mod inputs;
 #[cfg(feature = "render")]
-mod placement;
-#[cfg(feature = "render")]
 mod point;
 #[cfg(feature = "render")]
 mod slope_map;
@@ -19,8 +17,6 @@ mod slopes;
 mod textures;
 
 pub use inputs::{DetailError, TextureInputs, model_inputs, texture_inputs};
-#[cfg(feature = "render")]
-pub use placement::Placement;
 #[cfg(feature = "render")]
 pub use point::{Detail, DetailPoint, Resolved};
 #[cfg(feature = "render")]

@@ -2,10 +2,10 @@
 
 use glam::DVec2;
 use roughcast::shading::ShadingOptions;
-use roughcast::{Distribution, Slope};
+use roughcast::{Distribution, Slope, SlopeMatrix};
 
 use crate::filter::Quad;
-use crate::{Footprint, Hit, Ray};
+use crate::{Footprint, Hit, Placement, Ray, SlopeFrame};
 
 /// A source of bumps on a surface. Slopes are in the tangent frame of the hit.
 pub trait Detail: Sync {
@@ -91,6 +91,14 @@ impl<'a> DetailPoint<'a> {
     #[inline]
     pub fn footprint(&self, set: usize) -> Footprint {
         self.hit.footprint_in_set(set, &self.surface_footprint).scaled(self.repeats)
+    }
+
+    /// The matrix that transforms slopes of a texture with this size in texels to the frame of the hit. `None` if the
+    /// slopes are the same in both.
+    #[inline]
+    pub(super) fn slope_matrix(&self, placement: &Placement, texels: (usize, usize)) -> Option<SlopeMatrix> {
+        placement.world_height_per_texel()?;
+        Some(SlopeFrame::new(texels, self.repeats, *placement).matrix(self.hit))
     }
 
     /// Which neighbours are used to compute derivatives.

@@ -3,7 +3,8 @@
 use roughcast::shading::ShadingOptions;
 use roughcast::{Covariance, Distribution, Moments, Normal, Slope, Wrap, normal_from_slope};
 
-use super::{Detail, DetailPoint, Placement, Reconstruction, SlopeMap};
+use super::{Detail, DetailPoint, Reconstruction, SlopeMap};
+use crate::Placement;
 use crate::render::pixel_filter_quantile;
 
 /// Samples along each side of a pixel for the distribution of [`SlopeDetail`].
@@ -45,7 +46,7 @@ impl Detail for SlopeDetail {
     #[inline]
     fn slope(&self, at: &DetailPoint<'_>) -> Slope {
         let slope = self.slopes.at(at.uv(self.placement.uv_set()), self.wrap, self.reconstruction);
-        self.placement.matrix(self.slopes.size(), at).map_or(slope, |matrix| slope.transformed(matrix))
+        at.slope_matrix(&self.placement, self.slopes.size()).map_or(slope, |matrix| slope.transformed(matrix))
     }
 
     /// Mean and covariance of 256 slopes drawn from the Gaussian pixel filter; the textures of a bake approximate
@@ -74,7 +75,7 @@ impl Detail for SlopeDetail {
         let mean = Slope { x: x as f32, y: y as f32 };
         let normal = Normal::from(normal.map(|sum| (sum / count) as f32));
         let distribution = Distribution::new(normal, mean, covariance);
-        match self.placement.matrix(self.slopes.size(), at) {
+        match at.slope_matrix(&self.placement, self.slopes.size()) {
             Some(matrix) => distribution.transformed(matrix),
             None => distribution,
         }

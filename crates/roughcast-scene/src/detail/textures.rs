@@ -5,9 +5,9 @@ use roughcast::texture::{Packing, TexelReader, TextureArray, TextureInfo};
 use roughcast::{Distribution, Slope};
 
 use super::inputs::{DetailError, TextureInputs, model_inputs, texture_inputs};
-use super::{Detail, DetailPoint, Placement};
+use super::{Detail, DetailPoint};
 use crate::filter::Lookup;
-use crate::{Filter, Footprint, Mipmap, Sampler};
+use crate::{Filter, Footprint, Mipmap, Placement, Sampler};
 
 /// The index of a material's roughness among its textures.
 const ROUGHNESS: usize = 1;
@@ -102,7 +102,7 @@ impl Detail for TextureDetail<'_> {
         let texels = self.sample_all(&finest, &self.lookup(at, Footprint::default()));
         let read = reader.read(&texels[..textures.len()], packing, &self.options(ShadingOptions::default()));
         let mean = read.whole().mean;
-        self.placement.matrix(self.textures.size(), at).map_or(mean, |matrix| mean.transformed(matrix))
+        at.slope_matrix(&self.placement, self.textures.size()).map_or(mean, |matrix| mean.transformed(matrix))
     }
 
     fn distribution(&self, at: &DetailPoint<'_>, options: &ShadingOptions) -> Distribution {
@@ -114,7 +114,7 @@ impl Detail for TextureDetail<'_> {
         });
         // Changed in place: copying a distribution right after it is written stalls the processor.
         let mut seen = reader.read_pixel(&texels[..textures.len()], &ratio, packing, options);
-        if let Some(matrix) = self.placement.matrix(self.textures.size(), at) {
+        if let Some(matrix) = at.slope_matrix(&self.placement, self.textures.size()) {
             seen = seen.transformed(matrix);
         }
         seen

@@ -1,16 +1,11 @@
 //! How a texture of slopes is placed on a surface: which texture coordinates it uses, and how high its bumps are.
 
-use roughcast::SlopeMatrix;
-
-use super::DetailPoint;
-use crate::SlopeFrame;
-
 /// The texture coordinates that place a texture on a surface, and the height of its bumps.
 ///
 /// By default the first set is used, and slopes are interpreted in the tangent frame unchanged. This is glTF's
 /// convention for normal maps: stretching a texture does not change the steepness of its bumps. With a world height the
 /// bumps have a size, and stretching, shearing and mirroring change them as they would change real bumps: see
-/// [`SlopeFrame`].
+/// [`SlopeFrame`](crate::SlopeFrame).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Placement {
     uv_set: usize,
@@ -35,12 +30,8 @@ impl Placement {
         self.uv_set
     }
 
-    /// The matrix that transforms slopes of a texture with this size in texels to the frame of the hit. `None` if the
-    /// slopes are the same in both.
-    #[inline]
-    pub(super) fn matrix(&self, texels: (usize, usize), at: &DetailPoint<'_>) -> Option<SlopeMatrix> {
-        let height = self.world_height_per_texel?;
-        let frame = SlopeFrame::new(texels, at.repeats()).with_uv_set(self.uv_set);
-        Some(frame.with_world_height_per_texel(height).matrix(at.hit()))
+    /// The world-space height that corresponds to one texel of height, where bumps have a size.
+    pub fn world_height_per_texel(&self) -> Option<f64> {
+        self.world_height_per_texel
     }
 }
