@@ -141,10 +141,10 @@ pub fn decode(data: &[u8]) {
     for textures in read.into_iter().flatten() {
         // For a layout of several files, the same texels replace the others regardless of their metadata.
         for part in Part::ALL {
-            let other =
-                TextureArray { info: TextureInfo { part: *part, ..textures.info }, ..textures.clone() };
+            let mut other = textures.clone();
+            other.info.part = *part;
             match roughcast::texture::decode(&[textures.clone(), other]) {
-                Ok(levels) => levels.iter().flat_map(|level| &level.moments).for_each(check_moments),
+                Ok(levels) => levels.iter().flat_map(|level| level.moments()).for_each(check_moments),
                 Err(error) => assert!(!error.to_string().contains('\n'), "{error}"),
             }
         }

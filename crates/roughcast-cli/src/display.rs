@@ -11,7 +11,8 @@ const KEPT: f64 = 0.99;
 /// rest.
 pub fn exposure_of(picture: &Picture) -> f32 {
     let brightest = |[r, g, b]: &[f32; 3]| r.max(*g).max(*b);
-    let mut values: Vec<f32> = picture.radiance.iter().map(brightest).filter(|value| *value > 0.0).collect();
+    let mut values: Vec<f32> =
+        picture.radiance().iter().map(brightest).filter(|value| *value > 0.0).collect();
     values.sort_by(f32::total_cmp);
     match values.get((values.len() as f64 * KEPT) as usize) {
         Some(white) => 1.0 / white,
@@ -21,8 +22,9 @@ pub fn exposure_of(picture: &Picture) -> f32 {
 
 /// The picture at an exposure, in sRGB; values brighter than white are clamped to white.
 pub fn shown(picture: &Picture, exposure: f32) -> Srgb8Picture {
-    let pixels = picture.radiance.iter().flat_map(|pixel| pixel.map(|value| srgb8(value * exposure)));
-    Srgb8Picture { width: picture.width as u32, height: picture.height as u32, pixels: pixels.collect() }
+    let pixels = picture.radiance().iter().flat_map(|pixel| pixel.map(|value| srgb8(value * exposure)));
+    let (width, height) = (picture.width() as u32, picture.height() as u32);
+    Srgb8Picture::new(width, height, pixels.collect()).expect("rendered pictures have pixels")
 }
 
 /// Encodes a linear value in sRGB (IEC 61966-2-1). NaN is black.

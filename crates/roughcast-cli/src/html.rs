@@ -84,12 +84,12 @@ impl Page {
 
     /// A losslessly compressed picture with a caption.
     pub fn picture(&mut self, picture: &Srgb8Picture, caption: &str) {
-        self.figure(picture.width, caption, &image("png", picture, &png(picture), caption));
+        self.figure(picture.width(), caption, &image("png", picture, &png(picture), caption));
     }
 
     /// A picture with a caption, as a JPEG without visible artefacts: a fraction of the bytes for a detailed picture.
     pub fn photograph(&mut self, picture: &Srgb8Picture, caption: &str) {
-        self.figure(picture.width, caption, &image("jpeg", picture, &jpeg(picture, STILL), caption));
+        self.figure(picture.width(), caption, &image("jpeg", picture, &jpeg(picture, STILL), caption));
     }
 
     /// Pictures of equal size, shown one after the other in a loop.
@@ -106,7 +106,7 @@ impl Page {
         let film = format!(
             "<style>@keyframes film{count}{{0%{{opacity:1}}{shown:.4}%{{opacity:0}}}}</style><div class=\"film\">{frames_html}</div>"
         );
-        self.figure(frames.first().map_or(0, |frame| frame.width), caption, &film);
+        self.figure(frames.first().map_or(0, |frame| frame.width()), caption, &film);
     }
 
     fn figure(&mut self, width: u32, caption: &str, content: &str) {
@@ -152,13 +152,13 @@ fn jpeg(picture: &Srgb8Picture, least_quality: u8) -> Vec<u8> {
         write_jpeg(picture, quality, &mut bytes).expect("memory takes a picture that could be rendered");
         bytes
     };
-    let cheap = CHEAP * f64::from(picture.width) * f64::from(picture.height);
+    let cheap = CHEAP * f64::from(picture.width()) * f64::from(picture.height());
     let better = (least_quality + 5..=SMOOTH).rev().step_by(5).map(encoded);
     better.into_iter().find(|bytes| bytes.len() as f64 <= cheap).unwrap_or_else(|| encoded(least_quality))
 }
 
 fn image(kind: &str, picture: &Srgb8Picture, bytes: &[u8], alt: &str) -> String {
-    let Srgb8Picture { width, height, .. } = picture;
+    let (width, height) = (picture.width(), picture.height());
     let (alt, data) = (escaped(alt), BASE64.encode(bytes));
     format!(
         "<img width=\"{width}\" height=\"{height}\" alt=\"{alt}\" src=\"data:image/{kind};base64,{data}\">"
@@ -254,7 +254,7 @@ mod tests {
     fn smooth_pictures_lose_less_than_busy_ones() {
         let picture = |value: fn(usize) -> usize| {
             let pixels = (0..256 * 256).flat_map(|i| [value(i) as u8; 3]).collect();
-            Srgb8Picture { width: 256, height: 256, pixels }
+            Srgb8Picture::new(256, 256, pixels).expect("whole pixels")
         };
         let with = |picture: &Srgb8Picture, quality| {
             let mut bytes = Vec::new();

@@ -123,13 +123,13 @@ impl Findings {
 
     /// A file that `bake` wrote: the meaning of its texels, and the slopes decoded from them.
     fn textures(&mut self, args: &Args, array: TextureArray) {
-        self.layout(&array.info, array.layers[0].sample_type());
-        let named = |(texture, channel): (&Texture, usize)| {
-            (format!("{}.{}", texture.name, texture.channels[channel]), range_over_levels(texture, channel))
-        };
-        let channels = |texture: &Texture| texture.levels[0].channels().min(texture.channels.len());
-        let all = array.layers.iter().flat_map(|texture| (0..channels(texture)).map(move |c| (texture, c)));
-        self.ranges(all.map(named));
+        self.layout(&array.info, array.sample_type());
+        let ranges = array.layers().iter().flat_map(|texture| {
+            texture.channel_names().iter().enumerate().map(move |(channel, name)| {
+                (format!("{}.{name}", texture.name()), range_over_levels(texture, channel))
+            })
+        });
+        self.ranges(ranges);
         let parts = textures::with_other_parts(&args.file, array, &args.source.limits());
         match parts.and_then(|parts| Ok(decode(&parts)?)) {
             Ok(levels) => self.slopes(&levels),
@@ -205,7 +205,7 @@ impl Findings {
             let stats = LevelSlopes::of(level);
             self.lines.push(format!(
                 "{number:>5} {:>11} {:>10.5} {:>10.5} {:>10.5} {:>10.4} {:>12.4e} {:>12.4e}",
-                format!("{}x{}", level.width, level.height),
+                format!("{}x{}", level.width(), level.height()),
                 stats.mean[0],
                 stats.mean[1],
                 stats.rms,
@@ -215,8 +215,8 @@ impl Findings {
             ));
             rows.push(json!({
                 "level": number,
-                "width": level.width,
-                "height": level.height,
+                "width": level.width(),
+                "height": level.height(),
                 "mean_slope": stats.mean,
                 "steepest_slope": stats.maximum,
                 "rms_slope": stats.rms,
@@ -238,7 +238,7 @@ struct LevelSlopes {
 impl LevelSlopes {
     fn of(level: &MomentLevel) -> Self {
         let mut sums = Self { mean: [0.0; 2], maximum: 0.0, rms: 0.0, variance: [0.0; 2] };
-        for moments in &level.moments {
+        for moments in level.moments() {
             let (x, y) = (f64::from(moments.mean.x), f64::from(moments.mean.y));
             let covariance = moments.covariance();
             sums.mean[0] += x;
@@ -248,7 +248,7 @@ impl LevelSlopes {
             sums.variance[0] += f64::from(covariance.xx);
             sums.variance[1] += f64::from(covariance.yy);
         }
-        let texels = level.moments.len() as f64;
+        let texels = level.moments().len() as f64;
         Self {
             mean: sums.mean.map(|sum| sum / texels),
             maximum: sums.maximum,
@@ -260,7 +260,7 @@ impl LevelSlopes {
 
 /// Smallest and largest finite value of a channel over all levels; `None` if no value is finite.
 fn range_over_levels(texture: &Texture, channel: usize) -> Option<(f32, f32)> {
-    texture.levels.iter().filter_map(|level| range_of(level, channel)).reduce(larger_range)
+    texture.levels().iter().filter_map(|level| range_of(level, channel)).reduce(larger_range)
 }
 
 fn larger_range((low, high): (f32, f32), other: (f32, f32)) -> (f32, f32) {

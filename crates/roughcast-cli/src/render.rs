@@ -367,7 +367,7 @@ fn add(
     let mut file = AtomicFile::create(path).with_context(named)?;
     match format {
         PictureFormat::Png => write_png(&shown(picture, exposure), &mut file),
-        PictureFormat::Exr => write_exr((picture.width, picture.height), planes(picture), &mut file),
+        PictureFormat::Exr => write_exr((picture.width(), picture.height()), planes(picture), &mut file),
     }
     .with_context(named)?;
     file.flush().with_context(named)?;
@@ -377,12 +377,12 @@ fn add(
 /// The channels of a picture in EXR. Radiance is premultiplied by coverage, as usual in EXR, and the background is black.
 fn planes(picture: &Picture) -> Vec<Plane> {
     let channel = |pixels: &[[f32; 3]], i: usize| pixels.iter().map(|pixel| pixel[i]).collect();
-    let mut planes = vec![Plane { name: "A", values: picture.coverage.clone() }];
+    let mut planes = vec![Plane { name: "A", values: picture.coverage().to_vec() }];
     for (i, name) in ["R", "G", "B"].into_iter().enumerate() {
-        planes.push(Plane { name, values: channel(&picture.radiance, i) });
+        planes.push(Plane { name, values: channel(picture.radiance(), i) });
     }
     for (i, name) in ["specular.R", "specular.G", "specular.B"].into_iter().enumerate() {
-        planes.push(Plane { name, values: channel(&picture.specular, i) });
+        planes.push(Plane { name, values: channel(picture.specular(), i) });
     }
     planes
 }

@@ -68,12 +68,9 @@ fn moments_of(arrays: &[TextureArray]) -> Result<TextureArray> {
     };
     let spec = &layers_of(&info)[0];
     let images = levels.into_iter().map(|level| {
-        let texels = level.moments.iter().flat_map(|m| [m.mean.x, m.mean.y, m.xx, m.yy, m.xy]).collect();
-        Image::new(level.width, level.height, spec.channels.len(), Samples::F32(texels))
+        let texels = level.moments().iter().flat_map(|m| [m.mean.x, m.mean.y, m.xx, m.yy, m.xy]).collect();
+        Image::new(level.width(), level.height(), spec.channels.len(), Samples::F32(texels))
     });
     let levels = images.collect::<Result<Vec<_>, _>>()?;
-    Ok(TextureArray {
-        info,
-        layers: vec![Texture { name: spec.name, channels: spec.channels.to_vec(), levels }],
-    })
+    Ok(TextureArray::new(info, vec![Texture::new(spec.name, spec.channels.to_vec(), levels)?])?)
 }

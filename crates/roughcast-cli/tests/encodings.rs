@@ -21,10 +21,10 @@ fn float_moments(map: &Path, options: &[&str]) -> Vec<MomentLevel> {
 
 /// Root mean square difference of the slopes.
 fn difference(a: &[MomentLevel], b: &[MomentLevel]) -> f64 {
-    let pairs = a[0].moments.iter().zip(&b[0].moments);
+    let pairs = a[0].moments().iter().zip(b[0].moments());
     let squares =
         pairs.map(|(a, b)| f64::from((a.mean.x - b.mean.x).powi(2) + (a.mean.y - b.mean.y).powi(2)));
-    (squares.sum::<f64>() / a[0].moments.len() as f64).sqrt()
+    (squares.sum::<f64>() / a[0].moments().len() as f64).sqrt()
 }
 
 /// Difference between a z derived from 8 bits of x and y and a z with 8 bits of its own.
@@ -137,9 +137,9 @@ fn options_set_strength_and_directions() {
         &["--red", "left", "--green", "down", "--normal-scale", "-1"],
     ]
     .map(|options| float_moments(&data(PLAIN), options));
-    for (i, moments) in plain[0].moments.iter().enumerate() {
+    for (i, moments) in plain[0].moments().iter().enumerate() {
         let slope = moments.mean;
-        let at = |levels: &[MomentLevel]| (levels[0].moments[i].mean.x, levels[0].moments[i].mean.y);
+        let at = |levels: &[MomentLevel]| (levels[0].moments()[i].mean.x, levels[0].moments()[i].mean.y);
         assert_eq!(at(&halved), (0.5 * slope.x, 0.5 * slope.y));
         assert_eq!(at(&left), (-slope.x, slope.y));
         assert_eq!(at(&down), (slope.x, -slope.y));

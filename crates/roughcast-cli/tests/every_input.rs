@@ -86,13 +86,14 @@ fn baked_as(kind: &str, outcome: &Outcome, output: &Path) -> Result<(), String> 
     }
     let levels = moments(output);
     let size = |side: &str| report[side].as_u64().map(|n| n as usize);
-    if (Some(levels[0].width), Some(levels[0].height)) != (size("width"), size("height")) {
+    if (Some(levels[0].width()), Some(levels[0].height())) != (size("width"), size("height")) {
         return Err("the output has another size than the report".to_owned());
     }
     let last = levels.last().expect("there is a level");
-    if (last.width, last.height) != (1, 1) || Some(levels.len()) != report["levels"].as_array().map(Vec::len)
+    if (last.width(), last.height()) != (1, 1)
+        || Some(levels.len()) != report["levels"].as_array().map(Vec::len)
     {
-        return Err(format!("{} levels, the last {}x{}", levels.len(), last.width, last.height));
+        return Err(format!("{} levels, the last {}x{}", levels.len(), last.width(), last.height()));
     }
     conserved(&levels, &report)
 }
@@ -120,10 +121,10 @@ fn conserved(levels: &[MomentLevel], report: &serde_json::Value) -> Result<(), S
 /// Means of the slope's components and of its squared length.
 fn means(level: &MomentLevel) -> [f64; 3] {
     let mut sums = [0.0; 3];
-    for moments in &level.moments {
+    for moments in level.moments() {
         sums[0] += f64::from(moments.mean.x);
         sums[1] += f64::from(moments.mean.y);
         sums[2] += f64::from(moments.xx) + f64::from(moments.yy);
     }
-    sums.map(|sum| sum / level.moments.len() as f64)
+    sums.map(|sum| sum / level.moments().len() as f64)
 }

@@ -33,9 +33,9 @@ fn baked(input: &Path, options: &[&str]) -> roughcast::texture::Texture {
     let folder = scratch();
     let output = folder.path().join("slopes.exr");
     bake(input, &output, &[&["--as", "bump-slopes", "--wrap", "clamp"], options].concat()).expect_success();
-    let mut array = textures(&output);
-    assert_eq!(array.layers.len(), 1);
-    array.layers.remove(0)
+    let mut layers = textures(&output).into_layers();
+    assert_eq!(layers.len(), 1);
+    layers.remove(0)
 }
 
 /// Largest difference of a channel, and its largest value.
@@ -53,11 +53,11 @@ fn central_differences_match_in_half_floats() {
     let file = reference("bumpslope-central.exr");
     // maketx gives slopes in heights per texel. A height v is v * height_scale * 64 texels here.
     let ours = baked(&file, &["--bits", "half", "--gradient", "central", "--height-scale", "0.015625"]);
-    assert_eq!(ours.channels, CHANNELS);
+    assert_eq!(ours.channel_names(), CHANNELS);
     let theirs = level_0(&file, &CHANNELS);
-    assert_eq!(compare(&ours.levels[0], &theirs, 0).0, 0.0, "the height is copied");
+    assert_eq!(compare(&ours.levels()[0], &theirs, 0).0, 0.0, "the height is copied");
     for (channel, name) in CHANNELS.iter().enumerate().skip(1) {
-        let (difference, largest) = compare(&ours.levels[0], &theirs, channel);
+        let (difference, largest) = compare(&ours.levels()[0], &theirs, channel);
         assert!(largest > 0.0, "{name} is not empty");
         assert!(difference <= HALF_STEP * largest, "{name}: {difference} of {largest}");
     }
@@ -80,10 +80,10 @@ fn sobel_slopes_match_in_floats() {
     let ours = baked(&file, &["--bits", "float", "--gradient", "sobel", "--height-scale", "1"]);
     let theirs = level_0(&file, &CHANNELS);
     assert_eq!(theirs.width(), 64, "a height scale of 1 stands for maketx's factor of 64");
-    assert_eq!(compare(&ours.levels[0], &theirs, 0).0, 0.0, "the height is copied");
+    assert_eq!(compare(&ours.levels()[0], &theirs, 0).0, 0.0, "the height is copied");
     for (channel, name) in CHANNELS.iter().enumerate().skip(1) {
         let tolerance = if channel <= 2 { FLOAT_SLOPE } else { FLOAT_SQUARE };
-        let (difference, largest) = compare(&ours.levels[0], &theirs, channel);
+        let (difference, largest) = compare(&ours.levels()[0], &theirs, channel);
         assert!(largest > 1.0, "{name} is not empty");
         assert!(difference <= tolerance, "{name}: {difference} of {largest}");
     }
@@ -97,7 +97,7 @@ fn further_levels_are_means_of_four_texels() {
     let mut side = theirs.width();
     let mut expected: Vec<f64> =
         (0..theirs.samples().len()).map(|index| f64::from(theirs.samples().get(index))).collect();
-    for (number, level) in ours.levels.iter().enumerate() {
+    for (number, level) in ours.levels().iter().enumerate() {
         assert_eq!((level.width(), level.height()), (side, side), "level {number}");
         for (index, wanted) in expected.iter().enumerate() {
             let found = f64::from(level.samples().get(index));
@@ -127,7 +127,7 @@ fn halved(texels: &[f64], side: usize) -> Vec<f64> {
 fn a_normal_map_has_no_height() {
     let file = data("materials/surfgrad_ocean16/normals_64crop_16bit_derived.png");
     let ours = baked(&file, &["--bits", "float"]);
-    for level in &ours.levels {
+    for level in ours.levels() {
         for index in (0..level.samples().len()).step_by(CHANNELS.len()) {
             assert_eq!(level.samples().get(index), -1.0, "b0_h, as maketx writes it");
         }

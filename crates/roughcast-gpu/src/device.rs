@@ -76,16 +76,11 @@ impl Default for GpuOptions {
 /// A device with its queue and its capabilities.
 #[derive(Clone, Debug)]
 pub struct Gpu {
-    /// The device.
-    pub device: wgpu::Device,
-    /// Its queue.
-    pub queue: wgpu::Queue,
-    /// The adapter's name and driver, and whether it is a software adapter.
-    pub info: wgpu::AdapterInfo,
-    /// Features that may be used.
-    pub features: wgpu::Features,
-    /// The device's limits.
-    pub limits: wgpu::Limits,
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    info: wgpu::AdapterInfo,
+    features: wgpu::Features,
+    limits: wgpu::Limits,
     /// Used to query format support beyond WebGPU's guarantees; `None` for a device of the caller.
     adapter: Option<wgpu::Adapter>,
 }
@@ -131,6 +126,31 @@ impl Gpu {
     pub fn from_device(device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let (info, features, limits) = (device.adapter_info(), device.features(), device.limits());
         Self { device, queue, info, features, limits, adapter: None }
+    }
+
+    /// The device.
+    pub fn device(&self) -> &wgpu::Device {
+        &self.device
+    }
+
+    /// Its queue.
+    pub fn queue(&self) -> &wgpu::Queue {
+        &self.queue
+    }
+
+    /// The adapter's name and driver, and whether it is a software adapter.
+    pub fn info(&self) -> &wgpu::AdapterInfo {
+        &self.info
+    }
+
+    /// Features that may be used.
+    pub fn features(&self) -> wgpu::Features {
+        self.features
+    }
+
+    /// The device's limits.
+    pub fn limits(&self) -> &wgpu::Limits {
+        &self.limits
     }
 
     /// Whether the adapter is a software implementation on the CPU, whose timings are not those of graphics hardware.

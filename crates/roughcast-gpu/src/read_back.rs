@@ -94,9 +94,9 @@ pub async fn stage_texture(
 /// # Errors
 /// [`GpuError`] if the copy does not fit into memory or the device was lost.
 pub async fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let mut encoder = gpu.device().create_command_encoder(&Default::default());
     let staged = stage_buffer(gpu, &mut encoder, buffer).await?;
-    gpu.queue.submit([encoder.finish()]);
+    gpu.queue().submit([encoder.finish()]);
     staged.read(gpu).await
 }
 
@@ -105,9 +105,9 @@ pub async fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, Gp
 /// # Errors
 /// [`GpuError`] if the copy does not fit into memory or the device was lost.
 pub async fn read_texture(gpu: &Gpu, texture: &wgpu::Texture, level: u32) -> Result<Vec<u8>, GpuError> {
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let mut encoder = gpu.device().create_command_encoder(&Default::default());
     let staged = stage_texture(gpu, &mut encoder, texture, level).await?;
-    gpu.queue.submit([encoder.finish()]);
+    gpu.queue().submit([encoder.finish()]);
     staged.read(gpu).await
 }
 
@@ -126,17 +126,17 @@ async fn staging_buffer(gpu: &Gpu, size: u64) -> Result<wgpu::Buffer, GpuError> 
 /// # Errors
 /// [`GpuError::ReadBack`] if the device was lost.
 pub async fn submitted_work_done(gpu: &Gpu) -> Result<(), GpuError> {
-    let ask = |answer: Answer<()>| gpu.queue.on_submitted_work_done(move || answer.send(()));
-    called_back(&gpu.device, ask).await.map_err(|reason| GpuError::ReadBack { reason })
+    let ask = |answer: Answer<()>| gpu.queue().on_submitted_work_done(move || answer.send(()));
+    called_back(gpu.device(), ask).await.map_err(|reason| GpuError::ReadBack { reason })
 }
 
 async fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<(), GpuError> {
     let ask = |answer: Answer<_>| {
         // Without the scope, wgpu would panic on a lost device. The callback receives the error too.
-        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let scope = gpu.device().push_error_scope(wgpu::ErrorFilter::Validation);
         buffer.map_async(wgpu::MapMode::Read, .., move |result| answer.send(result));
         drop(scope.pop());
     };
-    let mapped = called_back(&gpu.device, ask).await.map_err(|reason| GpuError::ReadBack { reason })?;
+    let mapped = called_back(gpu.device(), ask).await.map_err(|reason| GpuError::ReadBack { reason })?;
     mapped.map_err(|error| GpuError::ReadBack { reason: one_line(&error) })
 }

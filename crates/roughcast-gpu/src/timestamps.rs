@@ -14,7 +14,7 @@ const QUERY_BYTES: u64 = 8;
 /// let span = timestamps.span("reduce").ok_or(...)?;
 /// encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { timestamp_writes: Some(span.of_compute_pass()), .. });
 /// timestamps.resolve(&mut encoder);       // after the last pass
-/// gpu.queue.submit([encoder.finish()]);
+/// gpu.queue().submit([encoder.finish()]);
 /// let measured = timestamps.read(&gpu).await?;
 /// ```
 #[derive(Debug)]
@@ -69,7 +69,7 @@ impl Timestamps {
             mapped_at_creation: false,
         };
         let results = gpu.create_buffer("timestamps", &descriptor).await?;
-        let nanoseconds_a_tick = gpu.queue.get_timestamp_period();
+        let nanoseconds_a_tick = gpu.queue().get_timestamp_period();
         Ok(Self { queries, results, capacity, names: Vec::new(), nanoseconds_a_tick })
     }
 
@@ -159,7 +159,7 @@ impl Span {
     }
 
     fn write(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, query: u32) -> Result<(), GpuError> {
-        if !gpu.features.contains(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS) {
+        if !gpu.features().contains(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS) {
             let instead = "measure a pass instead";
             return Err(GpuError::Feature { feature: "timestamps outside of passes", instead });
         }

@@ -321,7 +321,7 @@ fn the_webs_limits_take_more_dispatches_to_the_same_result() {
     for layout in LAYOUTS {
         let case = Case::new(&image, normal_source(), layout, SampleType::F16);
         let ((many, expected), (few, got)) = (case.on_gpu(&native), case.on_gpu(&web));
-        assert_eq!(web.limits.max_storage_textures_per_shader_stage, 4);
+        assert_eq!(web.limits().max_storage_textures_per_shader_stage, 4);
         assert!(few.dispatch_count() > many.dispatch_count(), "the limit was felt");
         assert_eq!(difference(&got, &expected).expect("one shape").steps, 0);
         case.check(&web);
@@ -377,7 +377,7 @@ fn textures_already_on_the_gpu_match_the_cpu() {
             Samples::F32(v) => bytemuck::cast_slice(v),
         };
         let descriptor = one_level((44, 36), format, wgpu::TextureUsages::TEXTURE_BINDING);
-        let map = gpu.device.create_texture_with_data(&gpu.queue, &descriptor, Default::default(), bytes);
+        let map = gpu.device().create_texture_with_data(gpu.queue(), &descriptor, Default::default(), bytes);
         let cpu = roughcast::Bake::of(&image).source(source).options(options).run().expect("baked");
         for path in PATHS {
             let baker =

@@ -22,16 +22,17 @@ fn without_an_adapter_the_error_names_the_package() {
 
 #[test]
 fn a_device_of_the_caller_is_used_unchanged() {
-    let Gpu { device, queue, info, features, limits, .. } = gpu();
-    let taken = Gpu::from_device(device, queue);
-    assert_eq!((taken.info, taken.features, taken.limits), (info, features, limits));
+    let made = gpu();
+    let taken = Gpu::from_device(made.device().clone(), made.queue().clone());
+    let about = |gpu: &Gpu| (gpu.info().clone(), gpu.features(), gpu.limits().clone());
+    assert_eq!(about(&taken), about(&made));
     assert!(gpu().has_compute(), "lavapipe and every GPU have compute shaders");
 }
 
 #[test]
 fn too_large_or_empty_resources_are_errors() {
     let gpu = gpu();
-    let limit = gpu.limits.max_texture_dimension_2d;
+    let limit = gpu.limits().max_texture_dimension_2d;
     let make = |width, height| {
         block_on(gpu.create_texture("a test", &texture_of(width, height, wgpu::TextureFormat::Rgba8Unorm)))
     };
@@ -42,7 +43,7 @@ fn too_large_or_empty_resources_are_errors() {
     assert_eq!(make(0, 5).err(), Some(GpuError::Empty { width: 0, height: 5 }));
     let descriptor = wgpu::BufferDescriptor {
         label: None,
-        size: gpu_of_the_web().limits.max_buffer_size + 4,
+        size: gpu_of_the_web().limits().max_buffer_size + 4,
         usage: wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     };
@@ -84,7 +85,7 @@ fn rows_come_back_without_padding() {
         let descriptor = texture_of(width, height, wgpu::TextureFormat::Rgba8Unorm);
         let bytes: Vec<u8> = (0..width * height * 4).map(|i| (i * 7 % 251) as u8).collect();
         let texture =
-            gpu.device.create_texture_with_data(&gpu.queue, &descriptor, Default::default(), &bytes);
+            gpu.device().create_texture_with_data(gpu.queue(), &descriptor, Default::default(), &bytes);
         let back = block_on(read_back::read_texture(&gpu, &texture, 0)).expect("it is read back");
         assert_eq!(back, bytes, "{width}x{height}");
     }
@@ -106,7 +107,7 @@ fn depth_textures_are_refused() {
 fn buffers_come_back_and_work_is_waited_for() {
     let gpu = gpu();
     let bytes: Vec<u8> = (0..=255).collect();
-    let buffer = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+    let buffer = gpu.device().create_buffer_init(&wgpu::util::BufferInitDescriptor {
         label: None,
         contents: &bytes,
         usage: wgpu::BufferUsages::COPY_SRC,

@@ -65,7 +65,7 @@ impl Target {
     fn new(gpu: &Gpu, size: (u32, u32)) -> Self {
         let texture = |format, usage| {
             let usage = usage | wgpu::TextureUsages::RENDER_ATTACHMENT;
-            gpu.device.create_texture(&one_level(size, format, usage))
+            gpu.device().create_texture(&one_level(size, format, usage))
         };
         let copied = wgpu::TextureUsages::COPY_SRC;
         Self {
@@ -78,10 +78,10 @@ impl Target {
     fn draw(&self, gpu: &Gpu, drawing: &Drawing, part: Option<Part>, order: Order) {
         let [colour, specular, depth] = [&self.colour, &self.specular, &self.depth]
             .map(|texture| texture.create_view(&Default::default()));
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let mut encoder = gpu.device().create_command_encoder(&Default::default());
         let views = Views { specular: Some(&specular), part, order, ..Views::new(&colour, &depth) };
         drawing.draw(&mut encoder, &views, None);
-        gpu.queue.submit([encoder.finish()]);
+        gpu.queue().submit([encoder.finish()]);
     }
 
     /// Radiance and coverage of each pixel.
@@ -118,12 +118,12 @@ fn a_drawing_fills_a_part_of_its_target() {
             assert_eq!(([*r, *g, *b], *coverage), (scene.background, 0.0), "({x}, {y}) is not of the part");
         } else {
             let j = (y * width + x - width) as usize;
-            assert_eq!(*coverage, alone.coverage[j], "({x}, {y})");
+            assert_eq!(*coverage, alone.coverage()[j], "({x}, {y})");
             let is_moved = |(got, wanted): (&f32, f32)| (got - wanted).abs() > MOVED * wanted.abs().max(1e-2);
-            moved += usize::from([r, g, b].into_iter().zip(alone.radiance[j]).any(is_moved));
+            moved += usize::from([r, g, b].into_iter().zip(alone.radiance()[j]).any(is_moved));
         }
     }
-    let share = moved as f64 / alone.coverage.len() as f64;
+    let share = moved as f64 / alone.coverage().len() as f64;
     assert!(share <= FEW, "{share} of the pixels differ");
 }
 
@@ -150,8 +150,8 @@ fn a_drawing_lies_over_another_and_is_hidden_by_it() {
         hidden.draw(&gpu, &of_floor, None, Order::Next);
         let floor_alone: Vec<[f32; 4]> = (0..floor_alone.len())
             .map(|i| {
-                let [r, g, b] = floor_alone.radiance[i];
-                [r, g, b, floor_alone.coverage[i]]
+                let [r, g, b] = floor_alone.radiance()[i];
+                [r, g, b, floor_alone.coverage()[i]]
             })
             .collect();
         Ok::<_, GpuError>([floor_alone, alone.pixels(&gpu)])

@@ -203,8 +203,8 @@ fn the_comparisons_fail_when_they_should() {
     let mut paper = unfiltered;
     paper.shading_options.form = Form::Paper;
     let mut shifted = cpu(Shading::Lean, &unfiltered);
-    shifted.radiance.rotate_right(1);
-    shifted.specular.rotate_right(1);
+    shifted.radiance_mut().rotate_right(1);
+    shifted.specular_mut().rotate_right(1);
     let others = [
         cpu(Shading::BlinnPhong, &unfiltered),
         cpu(Shading::Lean, &paper),
@@ -228,7 +228,8 @@ fn the_comparisons_fail_when_they_should() {
     }
     let other = cpu(Shading::Clean, &at(1.0, Wrap::Repeat));
     assert!(compare(&scene, &other, &interpolated, 0.0).mean > INTERPOLATED);
-    let broken = Picture { radiance: vec![[f32::NAN; 3]; lean.len()], ..lean.clone() };
+    let mut broken = lean.clone();
+    broken.radiance_mut().fill([f32::NAN; 3]);
     assert_eq!(apart_within_texels(&scene, &lean, &broken).largest, f64::INFINITY);
 }
 

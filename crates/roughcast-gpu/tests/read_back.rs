@@ -35,13 +35,13 @@ fn counted<T>(future: impl Future<Output = T>) -> (T, usize) {
 
 /// Work that takes some tens of milliseconds on a software driver, and the buffer that it writes.
 fn slow_work(gpu: &Gpu) -> wgpu::Buffer {
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+    let buffer = gpu.device().create_buffer(&wgpu::BufferDescriptor {
         label: None,
         size: 4 * 65_536,
         usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
         mapped_at_creation: false,
     });
-    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+    let module = gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor {
         label: None,
         source: wgpu::ShaderSource::Wgsl(
             "@group(0) @binding(0) var<storage, read_write> values: array<u32>;
@@ -53,7 +53,7 @@ fn slow_work(gpu: &Gpu) -> wgpu::Buffer {
             .into(),
         ),
     });
-    let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+    let pipeline = gpu.device().create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label: None,
         layout: None,
         module: &module,
@@ -61,19 +61,19 @@ fn slow_work(gpu: &Gpu) -> wgpu::Buffer {
         compilation_options: Default::default(),
         cache: None,
     });
-    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+    let group = gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
         layout: &pipeline.get_bind_group_layout(0),
         entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
     });
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let mut encoder = gpu.device().create_command_encoder(&Default::default());
     {
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, &group, &[]);
         pass.dispatch_workgroups(65_536 / 64, 1, 1);
     }
-    gpu.queue.submit([encoder.finish()]);
+    gpu.queue().submit([encoder.finish()]);
     buffer
 }
 
@@ -112,7 +112,7 @@ fn several_waits_for_one_device_all_end() {
 fn a_destroyed_device_is_an_error() {
     let gpu = gpu();
     let buffer = slow_work(&gpu);
-    gpu.device.destroy();
+    gpu.device().destroy();
     let error = pollster::block_on(read_back::read_buffer(&gpu, &buffer)).expect_err("nothing is left");
     assert!(matches!(error, GpuError::ReadBack { .. }), "{error:?}");
 }

@@ -77,7 +77,7 @@ fn a_colour_target_has_the_radiance_of_the_picture() {
     let format = wgpu::TextureFormat::Rgba16Float;
     let target = |format, usage| {
         let usage = usage | wgpu::TextureUsages::RENDER_ATTACHMENT;
-        gpu.device.create_texture(&one_level(SIZE, format, usage))
+        gpu.device().create_texture(&one_level(SIZE, format, usage))
     };
     let colour = target(format, wgpu::TextureUsages::COPY_SRC);
     let depth = target(DEPTH_FORMAT, wgpu::TextureUsages::empty());
@@ -91,22 +91,22 @@ fn a_colour_target_has_the_radiance_of_the_picture() {
         drawing.set_view(&renderer, &scene, SIZE).await?;
         let mut timestamps = Timestamps::new(&gpu, 1).await?;
         let span = timestamps.span("draw").expect("there is room for one");
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let mut encoder = gpu.device().create_command_encoder(&Default::default());
         let views = Views::new(&colour_view, &depth_view);
         drawing.draw(&mut encoder, &views, Some(span.of_render_pass()));
         timestamps.resolve(&mut encoder);
-        gpu.queue.submit([encoder.finish()]);
+        gpu.queue().submit([encoder.finish()]);
         timestamps.read(&gpu).await
     })
     .expect("a frame");
     assert!(nanoseconds[0].nanoseconds.is_some_and(|ns| ns > 0.0), "{nanoseconds:?}");
     let bytes = block_on(read_back::read_texture(&gpu, &colour, 0)).expect("pixels");
     let got: Vec<[half::f16; 4]> = bytemuck::pod_collect_to_vec(&bytes);
-    assert!(want.coverage.contains(&1.0));
+    assert!(want.coverage().contains(&1.0));
     for (i, got) in got.iter().enumerate() {
         let [r, g, b, a] = got.map(half::f16::to_f32);
-        assert_eq!(a, want.coverage[i]);
-        for (got, want) in [r, g, b].into_iter().zip(want.radiance[i]) {
+        assert_eq!(a, want.coverage()[i]);
+        for (got, want) in [r, g, b].into_iter().zip(want.radiance()[i]) {
             assert!((got - want).abs() <= HALF_FLOAT * want.abs().max(1e-3), "{i}: {got} and {want}");
         }
     }
@@ -118,9 +118,9 @@ fn the_background_shows_where_there_is_no_surface() {
     // A camera that faces away.
     scene.camera.target = scene.camera.eye * 2.0;
     let picture = picture(&gpu(), &scene, (16, 8)).expect("a picture");
-    assert!(picture.coverage.iter().all(|c| *c == 0.0));
-    assert!(picture.specular.iter().all(|s| *s == [0.0; 3]));
-    assert!(picture.radiance.iter().all(|r| *r == scene.background));
+    assert!(picture.coverage().iter().all(|c| *c == 0.0));
+    assert!(picture.specular().iter().all(|s| *s == [0.0; 3]));
+    assert!(picture.radiance().iter().all(|r| *r == scene.background));
 }
 
 #[test]
@@ -140,7 +140,7 @@ fn a_drawing_follows_the_scene() {
     })
     .expect("three frames");
     assert_ne!(frames[0], frames[1]);
-    assert_eq!(frames[0].coverage, frames[2].coverage);
+    assert_eq!(frames[0].coverage(), frames[2].coverage());
 }
 
 #[test]
@@ -213,7 +213,7 @@ fn textures_baked_on_the_gpu_are_drawn_without_a_copy() {
         .expect("two pictures");
         // The same texels give the same picture, bit for bit.
         assert!(here == back, "{shading} with {bits}");
-        assert!(here.specular.iter().any(|s| s[0] > 0.0));
+        assert!(here.specular().iter().any(|s| s[0] > 0.0));
     }
 }
 

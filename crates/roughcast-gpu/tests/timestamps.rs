@@ -16,7 +16,7 @@ fn each_span_has_its_name_and_a_time() {
     let options = BakeOptions::default().with_sample_type(SampleType::F16);
     let source = SourceOptions::default();
     let mut timestamps = block_on(Timestamps::new(&gpu, 2)).expect("lavapipe and every GPU have them");
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let mut encoder = gpu.device().create_command_encoder(&Default::default());
     for (name, path) in [("compute", BakePath::Compute), ("raster", BakePath::Raster)] {
         let baker = block_on(GpuBaker::for_image(&gpu, &image, &source, None, &options, path)).expect("made");
         let span = timestamps.span(name).expect("there is room for two");
@@ -24,7 +24,7 @@ fn each_span_has_its_name_and_a_time() {
     }
     assert!(timestamps.span("one too many").is_none());
     timestamps.resolve(&mut encoder);
-    gpu.queue.submit([encoder.finish()]);
+    gpu.queue().submit([encoder.finish()]);
     let measured = block_on(timestamps.read(&gpu)).expect("read back");
     assert_eq!(measured.iter().map(|span| span.name.as_str()).collect::<Vec<_>>(), ["compute", "raster"]);
     for span in measured {

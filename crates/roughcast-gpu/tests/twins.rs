@@ -41,7 +41,7 @@ fn run_with(gpu: &Gpu, functions: &str, body: &str, inputs: &[[f32; 4]]) -> Vec<
          @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {{\n\
          let input = inputs[id.x + zero];\nvar output = vec4f(0.0);\n{body}\noutputs[id.x] = output;\n}}\n"
     );
-    let device = &gpu.device;
+    let device = gpu.device();
     let buffer = |contents: &[u8]| {
         device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: None,
@@ -79,7 +79,7 @@ fn run_with(gpu: &Gpu, functions: &str, body: &str, inputs: &[[f32; 4]]) -> Vec<
         pass.set_bind_group(0, &group, &[]);
         pass.dispatch_workgroups((inputs.len() / 64) as u32, 1, 1);
     }
-    gpu.queue.submit([encoder.finish()]);
+    gpu.queue().submit([encoder.finish()]);
     let bytes = block_on(read_back::read_buffer(gpu, &output)).expect("read back");
     bytemuck::pod_collect_to_vec(&bytes)
 }

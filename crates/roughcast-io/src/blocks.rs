@@ -65,22 +65,44 @@ impl BlockFormat {
     }
 }
 
-/// A [`TextureArray`] in blocks.
+/// A [`TextureArray`] in blocks, made by [`compress`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlockArray {
     /// The meaning of the texels.
     pub info: TextureInfo,
-    /// The block format of every layer and level.
-    pub format: BlockFormat,
-    /// Texels in a row of level 0; need not be a multiple of 4.
-    pub width: usize,
-    /// Rows of level 0.
-    pub height: usize,
-    /// The layers; at least one, all with the same number of levels.
-    pub layers: Vec<BlockLayer>,
+    format: BlockFormat,
+    width: usize,
+    height: usize,
+    layers: Vec<BlockLayer>,
 }
 
 impl BlockArray {
+    /// The block format of every layer and level.
+    pub fn format(&self) -> BlockFormat {
+        self.format
+    }
+
+    /// Width and height of level 0, in texels; they need not be multiples of 4.
+    pub fn size(&self) -> (usize, usize) {
+        (self.width, self.height)
+    }
+
+    /// The layers, at least one, all with the same number of levels.
+    pub fn layers(&self) -> &[BlockLayer] {
+        &self.layers
+    }
+
+    /// Sizes, format and numbers of layers and levels.
+    pub(crate) fn shape(&self) -> Shape {
+        Shape {
+            width: self.width,
+            height: self.height,
+            layers: self.layers.len(),
+            levels: self.layers[0].levels.len(),
+            format: TexelFormat::Blocks(self.format.code()),
+        }
+    }
+
     /// Splits the array into one array per layer, as [`roughcast::texture::split_layers`] does for texels.
     pub fn split_layers(self) -> Vec<Self> {
         let infos = split_infos(&self.info);
@@ -96,12 +118,26 @@ impl BlockArray {
 /// One texture of a [`BlockArray`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlockLayer {
+    name: &'static str,
+    channel_names: Vec<&'static str>,
+    levels: Vec<Vec<u8>>,
+}
+
+impl BlockLayer {
     /// As [`Texture::name`].
-    pub name: &'static str,
-    /// As [`Texture::channels`].
-    pub channels: Vec<&'static str>,
+    pub fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// As [`Texture::channel_names`].
+    pub fn channel_names(&self) -> &[&'static str] {
+        &self.channel_names
+    }
+
     /// The blocks of each level, level 0 first, in rows from the top. Levels halve as those of a [`Texture`] do.
-    pub levels: Vec<Vec<u8>>,
+    pub fn levels(&self) -> &[Vec<u8>] {
+        &self.levels
+    }
 }
 
 /// A callback that receives the completed fraction of some work, 0 ..= 1, on any thread, and may stop the work. If
@@ -132,23 +168,24 @@ pub fn compress_watched(
     watch: &FractionDone<'_>,
 ) -> Result<ControlFlow<(), BlockArray>, WriteError> {
     let (width, height) = array.size();
-    let levels = || array.layers.iter().flat_map(|layer| &layer.levels);
+    let levels = || array.layers().iter().flat_map(Texture::levels);
     let all: usize = levels().map(|level| block_side(level.width()) * block_side(level.height())).sum();
     let done = AtomicUsize::new(0);
     let blocks_done = |blocks: usize| {
         let so_far = done.fetch_add(blocks, Ordering::Relaxed) + blocks;
         watch(so_far as f32 / all as f32)
     };
-    let mut layers = Vec::with_capacity(array.layers.len());
-    for layer in &array.layers {
-        let mut levels = Vec::with_capacity(layer.levels.len());
-        for level in &layer.levels {
+    let mut layers = Vec::with_capacity(array.layers().len());
+    for layer in array.layers() {
+        let mut levels = Vec::with_capacity(layer.levels().len());
+        for level in layer.levels() {
             match compress_level(level, format, &blocks_done)? {
                 ControlFlow::Continue(blocks) => levels.push(blocks),
                 ControlFlow::Break(()) => return Ok(ControlFlow::Break(())),
             }
         }
-        layers.push(BlockLayer { name: layer.name, channels: layer.channels.clone(), levels });
+        let channel_names = layer.channel_names().to_vec();
+        layers.push(BlockLayer { name: layer.name(), channel_names, levels });
     }
     Ok(ControlFlow::Continue(BlockArray { info: array.info, format, width, height, layers }))
 }
@@ -205,24 +242,14 @@ fn rgba_of_block(level: &Image, texels: &[u8], column: usize, row: usize) -> [u8
 
 /// The textures as a graphics processor sees them: BC4 and BC5 in 16 bits (they interpolate between 8-bit values),
 /// BC7 in 8 bits.
-///
-/// # Panics
-/// If the number of bytes of a level does not match its number of blocks.
 pub fn decompress(blocks: &BlockArray) -> TextureArray {
-    let format = TexelFormat::Blocks(blocks.format.code());
+    let shape = blocks.shape();
     let layers = blocks.layers.iter().map(|layer| {
-        let shape = Shape {
-            width: blocks.width,
-            height: blocks.height,
-            layers: blocks.layers.len(),
-            levels: layer.levels.len(),
-            format: format.clone(),
-        };
         let levels = layer.levels.iter().enumerate().map(|(level, bytes)| {
             let (width, height) = shape.level_size(level);
             shape.format.decode(bytes, width, height)
         });
-        Texture { name: layer.name, channels: layer.channels.clone(), levels: levels.collect() }
+        Texture::new(layer.name, layer.channel_names.clone(), levels.collect()).expect("levels that halve")
     });
-    TextureArray { info: blocks.info, layers: layers.collect() }
+    TextureArray::new(blocks.info, layers.collect()).expect("the layers were compressed together")
 }

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use roughcast::Image;
-use roughcast::texture::{Texture, TextureArray, TextureInfo, layers_of};
+use roughcast::texture::{ShapeFault, Texture, TextureArray, TextureInfo, layers_of};
 
 use crate::blocks::BlockArray;
 use crate::texels::{
@@ -101,57 +101,25 @@ impl Payload<'_> {
         }
     }
 
-    /// The shape, after checking that every level has the stated size and format.
+    /// The shape, after checking that a container of graphics processors can hold it.
     pub(crate) fn shape(&self, container: &'static str) -> Result<Shape, WriteError> {
         let unsupported =
             |what: String, remedy: &'static str| WriteError::Unsupported { container, what, remedy };
         let shape = match self {
             Payload::Texels(array) => shape_of_texels(array, &unsupported)?,
-            Payload::Blocks(array) => Shape {
-                width: array.width,
-                height: array.height,
-                layers: array.layers.len(),
-                levels: array.layers.first().map_or(0, |layer| layer.levels.len()),
-                format: TexelFormat::Blocks(array.format.code()),
-            },
+            Payload::Blocks(array) => array.shape(),
         };
-        let side_fits = |side: usize| (1..=i32::MAX as usize).contains(&side);
-        if !side_fits(shape.width) || !side_fits(shape.height) {
+        if shape.width.max(shape.height) > i32::MAX as usize {
             return Err(unsupported(format!("{}x{} texels", shape.width, shape.height), "scale it down"));
         }
-        let chain = 1..=full_chain(shape.width, shape.height);
-        if shape.layers == 0 || !chain.contains(&shape.levels) {
-            let what = format!("{} layers of {} levels", shape.layers, shape.levels);
-            return Err(unsupported(what, "give every layer the same levels, each half of the one before"));
-        }
-        if !self.fits(&shape) {
-            let what = "layers or levels of different formats, or sizes that do not halve".to_owned();
-            return Err(unsupported(what, "give all layers the same format and the same sizes"));
-        }
         Ok(shape)
-    }
-
-    fn fits(&self, shape: &Shape) -> bool {
-        let same = |level: usize, image: &Image| {
-            (image.width(), image.height()) == shape.level_size(level)
-                && TexelFormat::Plain(plain_of(image)) == shape.format
-        };
-        match self {
-            Payload::Texels(array) => array.layers.iter().all(|layer| {
-                layer.levels.len() == shape.levels && layer.levels.iter().enumerate().all(|(k, l)| same(k, l))
-            }),
-            Payload::Blocks(array) => array.layers.iter().all(|layer| {
-                let right = |(level, bytes): (usize, &Vec<u8>)| Some(bytes.len()) == shape.layer_bytes(level);
-                layer.levels.len() == shape.levels && layer.levels.iter().enumerate().all(right)
-            }),
-        }
     }
 
     /// The bytes of one layer of a level in file format.
     pub(crate) fn bytes(&self, layer: usize, level: usize) -> Cow<'_, [u8]> {
         match self {
-            Payload::Texels(array) => little_endian_bytes(array.layers[layer].levels[level].samples()),
-            Payload::Blocks(array) => Cow::Borrowed(&array.layers[layer].levels[level]),
+            Payload::Texels(array) => little_endian_bytes(array.layers()[layer].levels()[level].samples()),
+            Payload::Blocks(array) => Cow::Borrowed(&array.layers()[layer].levels()[level]),
         }
     }
 }
@@ -165,9 +133,7 @@ fn shape_of_texels(
     array: &TextureArray,
     unsupported: &dyn Fn(String, &'static str) -> WriteError,
 ) -> Result<Shape, WriteError> {
-    let Some(first) = array.layers.first().and_then(|layer| layer.levels.first()) else {
-        return Err(unsupported("a texture without texels".to_owned(), "bake at least one level"));
-    };
+    let first = array.layers()[0].finest();
     let channels = first.channels();
     if channels == 3 {
         let remedy =
@@ -177,11 +143,15 @@ fn shape_of_texels(
     if channels > 4 {
         return Err(unsupported(format!("{channels} channels"), "write EXR, or choose a layout of up to 4"));
     }
+    if array.layers().iter().any(|layer| layer.finest().channels() != channels) {
+        let what = "layers of different numbers of channels".to_owned();
+        return Err(unsupported(what, "give all layers the same channels, or write EXR"));
+    }
     Ok(Shape {
         width: first.width(),
         height: first.height(),
-        layers: array.layers.len(),
-        levels: array.layers[0].levels.len(),
+        layers: array.layers().len(),
+        levels: array.level_count(),
         format: TexelFormat::Plain(plain_of(first)),
     })
 }
@@ -194,14 +164,16 @@ pub(crate) fn textures_from<'a>(
     bytes_of: impl Fn(usize, usize) -> &'a [u8],
 ) -> Result<TextureArray, ReadError> {
     let names = layer_names(container, &info, shape)?;
+    let malformed = |fault: ShapeFault| ReadError::Malformed { format: container, fault: fault.to_string() };
     let layers = names.into_iter().enumerate().map(|(layer, (name, channels))| {
         let levels = (0..shape.levels).map(|level| {
             let (width, height) = shape.level_size(level);
             shape.format.decode(bytes_of(layer, level), width, height)
         });
-        Texture { name, channels, levels: levels.collect() }
+        Texture::new(name, channels, levels.collect())
     });
-    Ok(TextureArray { info, layers: layers.collect() })
+    let layers = layers.collect::<Result<_, _>>().map_err(malformed)?;
+    TextureArray::new(info, layers).map_err(malformed)
 }
 
 /// The names of each layer and its channels, from the layout. A file whose layers do not match its layout is read too,

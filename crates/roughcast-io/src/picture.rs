@@ -10,20 +10,43 @@ use exr::prelude::{
 use image::ExtendedColorType;
 use image::codecs::jpeg::JpegEncoder;
 
+use roughcast::{ImageError, ImageView, SamplesView};
+
 use crate::WriteError;
 
 /// A picture as a screen shows it: sRGB, 8 bits, row by row from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Srgb8Picture {
-    /// Pixels in a row.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    /// `3 * width * height` bytes.
-    pub pixels: Vec<u8>,
+    width: u32,
+    height: u32,
+    pixels: Vec<u8>,
 }
 
 impl Srgb8Picture {
+    /// A picture of `height` rows of `width` pixels, each with bytes for red, green and blue.
+    ///
+    /// # Errors
+    /// [`ImageError`] if a side is zero or there are not `3 * width * height` bytes.
+    pub fn new(width: u32, height: u32, pixels: Vec<u8>) -> Result<Self, ImageError> {
+        ImageView::new(width as usize, height as usize, 3, SamplesView::U8(&pixels))?;
+        Ok(Self { width, height, pixels })
+    }
+
+    /// Pixels in a row.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// The bytes, `3 * width * height` of them.
+    pub fn pixels(&self) -> &[u8] {
+        &self.pixels
+    }
+
     /// A black picture.
     pub fn black(width: u32, height: u32) -> Self {
         Self { width, height, pixels: vec![0; 3 * width as usize * height as usize] }
@@ -296,6 +319,13 @@ mod tests {
             let largest = decoded.iter().zip(wanted).map(|(a, b)| a.abs_diff(*b)).max();
             assert!(largest <= Some(6), "{channels} channels: {largest:?}");
         }
+    }
+
+    #[test]
+    fn a_picture_has_three_bytes_per_pixel() {
+        assert_eq!(Srgb8Picture::new(2, 1, vec![0; 6]), Ok(Srgb8Picture::black(2, 1)));
+        let line = Srgb8Picture::new(2, 1, vec![0; 5]).expect_err("one is missing").to_string();
+        assert!(line.contains("2x1 pixels of 3 channels need 6 samples, not 5"), "{line}");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use roughcast::texture::{Bounds, DecodeError, TextureArray, TextureInfo, decode, split_layers};
+use roughcast::texture::{Bounds, DecodeError, Texture, TextureArray, TextureInfo, decode, split_layers};
 use roughcast::{Blocks, Moments, SampleType};
 
 use crate::blocks::{BlockArray, BlockFormat, FractionDone, compress_watched, decompress};
@@ -38,22 +38,22 @@ impl Stored {
     pub fn size(&self) -> (usize, usize) {
         match self {
             Stored::Texels(array) => array.size(),
-            Stored::Blocks(blocks) => (blocks.width, blocks.height),
+            Stored::Blocks(blocks) => blocks.size(),
         }
     }
 
     /// Number of layers.
     pub fn layer_count(&self) -> usize {
         match self {
-            Stored::Texels(array) => array.layers.len(),
-            Stored::Blocks(blocks) => blocks.layers.len(),
+            Stored::Texels(array) => array.layers().len(),
+            Stored::Blocks(blocks) => blocks.layers().len(),
         }
     }
 
     /// The sample type of the texels; blocks count as 8-bit.
     pub fn sample_type(&self) -> SampleType {
         match self {
-            Stored::Texels(array) => array.layers[0].sample_type(),
+            Stored::Texels(array) => array.sample_type(),
             Stored::Blocks(_) => SampleType::U8,
         }
     }
@@ -61,15 +61,15 @@ impl Stored {
     /// Channels of a texel.
     pub fn channels(&self) -> usize {
         match self {
-            Stored::Texels(array) => array.layers[0].levels[0].channels(),
-            Stored::Blocks(blocks) => blocks.format.channels(),
+            Stored::Texels(array) => array.layers()[0].finest().channels(),
+            Stored::Blocks(blocks) => blocks.format().channels(),
         }
     }
 
     /// The format of the texels: `RGBA 16-bit float`, `BC5`.
     pub fn format_name(&self) -> String {
         if let Stored::Blocks(blocks) = self {
-            return blocks.format.name().to_owned();
+            return blocks.format().name().to_owned();
         }
         let channels = ["R", "RG", "RGB", "RGBA"].get(self.channels() - 1).copied().unwrap_or("moments");
         let bits = match self.sample_type() {
@@ -121,7 +121,7 @@ pub fn stored_of(
         return Ok((arrays.into_iter().map(Stored::Texels).collect(), None));
     }
     let texels = |array: &TextureArray| -> usize {
-        array.layers.iter().flat_map(|layer| &layer.levels).map(|level| level.width() * level.height()).sum()
+        array.layers().iter().flat_map(Texture::levels).map(|level| level.width() * level.height()).sum()
     };
     let all = arrays.iter().map(texels).sum::<usize>().max(1) as f32;
     let mut done = 0.0;
@@ -142,7 +142,7 @@ pub fn stored_of(
 
 /// One channel in BC4, two in BC5, four in BC7.
 fn block_format(array: &TextureArray) -> BlockFormat {
-    match array.layers[0].levels[0].channels() {
+    match array.layers()[0].finest().channels() {
         1 => BlockFormat::Bc4,
         2 => BlockFormat::Bc5,
         _ => BlockFormat::Bc7,
@@ -173,7 +173,7 @@ impl CompressionError {
         let (mut squares, mut largest, mut texels) = (0.0, 0.0_f64, 0_u64);
         let (mut variance, mut any_direction) = (0.0_f32, 0.0_f32);
         for (before, after) in decode(before)?.iter().zip(&decode(after)?) {
-            for (before, after) in before.moments.iter().zip(&after.moments) {
+            for (before, after) in before.moments().iter().zip(after.moments()) {
                 let error = (sigma(before) - sigma(after)).abs();
                 squares += error * error;
                 largest = largest.max(error);

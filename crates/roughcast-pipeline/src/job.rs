@@ -209,7 +209,7 @@ fn compressed(
     watched: &Watched<'_>,
 ) -> Result<(Vec<Stored>, Option<roughcast_io::CompressionError>), CompressError> {
     let splits = choices.splits(container);
-    if splits && arrays.iter().any(|array| array.layers.len() > 1) {
+    if splits && arrays.iter().any(|array| array.layers().len() > 1) {
         mark_set(&mut arrays);
     }
     let (stored, error) = stored_of(arrays, choices.blocks, &|fraction| watched.report(Some(fraction)))?;

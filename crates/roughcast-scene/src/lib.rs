@@ -53,7 +53,7 @@ pub use light::Light;
 pub use mesh::{MAX_TRIANGLES, MAX_VERTICES, Mesh, MeshFault};
 #[cfg(feature = "render")]
 pub use mipmap::{Level, Mipmap};
-pub use picture::{Picture, luminance};
+pub use picture::{Picture, PictureError, luminance};
 pub use placement::Placement;
 pub use render::MipmapError;
 pub use sampler::{Filter, Sampler};

@@ -85,13 +85,13 @@ impl Mipmap {
     /// Converts a texture for sampling.
     ///
     /// # Errors
-    /// [`MipmapError::Channels`] if it has more than four channels, [`MipmapError::Size`] if it has no level.
+    /// [`MipmapError::Channels`] if it has more than four channels.
     pub fn of(texture: &Texture) -> Result<Self, MipmapError> {
-        let channels = texture.levels.first().map_or(0, Image::channels);
+        let channels = texture.finest().channels();
         if channels > 4 {
-            return Err(MipmapError::Channels { name: texture.name.to_owned(), channels });
+            return Err(MipmapError::Channels { name: texture.name().to_owned(), channels });
         }
-        Self::new(texture.levels.iter().map(Level::of).collect())
+        Self::new(texture.levels().iter().map(Level::of).collect())
     }
 
     /// Creates a texture from these levels, the finest first. Each size need not be half of the previous one.
@@ -178,7 +178,7 @@ mod tests {
 
     fn texture(channels: usize, samples: Samples) -> Texture {
         let image = Image::new(2, 1, channels, samples).unwrap();
-        Texture { name: "t", channels: vec!["c"; channels], levels: vec![image] }
+        Texture::new("t", vec!["c"; channels], vec![image]).unwrap()
     }
 
     #[test]

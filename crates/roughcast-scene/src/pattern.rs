@@ -143,7 +143,7 @@ mod tests {
             .options(options)
             .run()
             .expect("a map");
-        decode(&baked.arrays).expect("moments").last().expect("a level").moments[0]
+        decode(&baked.arrays).expect("moments").last().expect("a level").moments()[0]
     }
 
     #[test]

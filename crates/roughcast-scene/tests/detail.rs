@@ -186,7 +186,7 @@ fn resolved_detail_rendered_once_a_pixel_is_ground_truth_with_one_sample() {
     let once = method.render(&scene, size, &unwatched).expect("a picture");
     let truth = Truth { shading: Shading::Lean, detail: &detail, options, samples: 1024 };
     let many = truth.render(&scene, size, &unwatched).expect("a picture");
-    let mean = |picture: &Picture| picture.specular.iter().map(|s| f64::from(s[0])).sum::<f64>();
+    let mean = |picture: &Picture| picture.specular().iter().map(|s| f64::from(s[0])).sum::<f64>();
     /// One sample for each of 1536 pixels compared with a thousand: noise of about a percent.
     const NOISE: f64 = 0.08;
     assert!((mean(&once) / mean(&many) - 1.0).abs() < NOISE, "{} and {}", mean(&once), mean(&many));

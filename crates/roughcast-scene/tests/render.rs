@@ -121,7 +121,7 @@ fn on_a_flat_map_every_method_matches_its_ground_truth() {
         for shading in Shading::ALL {
             let options = power(32.0, *form);
             let truth = map.truth(*shading, options, 64).render(&plane(2.0), SIZE, &unwatched).unwrap();
-            let brightest = truth.specular.iter().map(|s| f64::from(s[0])).fold(0.0, f64::max);
+            let brightest = truth.specular().iter().map(|s| f64::from(s[0])).fold(0.0, f64::max);
             assert!(brightest > 0.01, "no highlight of {shading}");
             for filter in Filter::ALL {
                 let picture = map.method(&plane(2.0), *shading, *filter, options);
@@ -165,7 +165,7 @@ fn ground_truth_is_the_mean_over_the_pixel_filter() {
         let centre = (f64::from(x) + 0.5 - 32.0) * pixel;
         let deviations = (0.5 - centre) / pixel / 0.5;
         let covered = normal_distribution(deviations);
-        let got = f64::from(picture.coverage[row + x as usize]);
+        let got = f64::from(picture.coverage()[row + x as usize]);
         // The edge cuts a row of 32 strata at some position within one of them.
         assert!((got - covered).abs() < 1.0 / 32.0, "{x}: {got} {covered}");
         partial += usize::from(got > 0.01 && got < 0.99);
@@ -267,13 +267,13 @@ fn curved_shapes_give_finite_radiance() {
             let truth = map.truth(*shading, options, 4).render(&scene, SIZE, &unwatched).unwrap();
             for picture in [&method, &truth] {
                 assert!(
-                    picture.radiance.as_flattened().iter().all(|c| c.is_finite() && *c >= 0.0),
+                    picture.radiance().as_flattened().iter().all(|c| c.is_finite() && *c >= 0.0),
                     "{shading}"
                 );
-                let behind = picture.coverage.iter().position(|c| *c == 0.0);
-                assert!(behind.is_none_or(|i| picture.radiance[i] == [0.5, 0.25, 0.0]));
+                let behind = picture.coverage().iter().position(|c| *c == 0.0);
+                assert!(behind.is_none_or(|i| picture.radiance()[i] == [0.5, 0.25, 0.0]));
                 // Specular light is a part of the total light.
-                let parts = picture.specular.as_flattened().iter().zip(picture.radiance.as_flattened());
+                let parts = picture.specular().as_flattened().iter().zip(picture.radiance().as_flattened());
                 assert!(parts.into_iter().all(|(s, r)| s <= r));
             }
         }
@@ -301,7 +301,7 @@ fn packed_roughness_shades_as_roughness_alone() {
     let (alone, packed) = (picture(RoughnessTexture::Alone), picture(RoughnessTexture::Packed));
     assert_eq!(alone, packed);
     // The roughness is not the red channel's occlusion of one, which would leave hardly any highlight.
-    let brightest = packed.specular.iter().map(|s| s[0]).fold(0.0, f32::max);
+    let brightest = packed.specular().iter().map(|s| s[0]).fold(0.0, f32::max);
     assert!(brightest > 0.02, "{brightest}");
 }
 

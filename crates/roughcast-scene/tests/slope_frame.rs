@@ -400,7 +400,9 @@ fn the_picture_of_a_mirrored_quad_matches_the_reflected_picture() {
     let quad = Quad::sheared();
     let (plain, mirrored) = (picture(quad, |v| v), picture(quad.reflected(), reflect));
     let (mut compared, mut unequal) = (0, 0);
-    for (row, mirrored) in plain.radiance.chunks(plain.width).zip(mirrored.radiance.chunks(plain.width)) {
+    for (row, mirrored) in
+        plain.radiance().chunks(plain.width()).zip(mirrored.radiance().chunks(plain.width()))
+    {
         for (a, b) in row.iter().zip(mirrored.iter().rev()) {
             // A pixel's centre may be so close to an edge that rounding decides.
             let close = a.iter().zip(b).all(|(a, b)| (a - b).abs() < ROUNDING * (1.0 + a.abs()));
@@ -411,6 +413,6 @@ fn the_picture_of_a_mirrored_quad_matches_the_reflected_picture() {
     assert!(compared > 1_000, "{compared}");
     assert!(unequal <= 1, "{unequal} of {compared}");
     // The comparison can fail: without the reflection the pictures differ.
-    let same = plain.radiance.iter().zip(&mirrored.radiance).filter(|(a, b)| a == b && a[0] > 0.0).count();
+    let same = plain.radiance().iter().zip(mirrored.radiance()).filter(|(a, b)| a == b && a[0] > 0.0).count();
     assert!(same * 10 < compared, "{same} of {compared}");
 }

@@ -72,11 +72,11 @@
 //!
 //! // LEAN in 16 bits, of a normal map with green up that repeats: the defaults.
 //! let baked = Bake::of(&map).run()?;
-//! assert_eq!(baked.arrays[0].layers[0].name, "lean1");
+//! assert_eq!(baked.arrays[0].layers()[0].name(), "lean1");
 //! assert_eq!(baked.report.levels.len(), 4); // 8, 4, 2, 1
 //!
 //! let levels = decode(&baked.arrays)?;
-//! let whole = levels[3].moments[0];
+//! let whole = levels[3].moments()[0];
 //! let roughness = whole.covariance();
 //! // Eight bits have no code for 0 or 1/2; the nearest are up to 1/255 off.
 //! assert!(whole.mean.x.abs() < 0.005 && whole.mean.y.abs() < 0.005);

@@ -98,7 +98,7 @@ fn measure_one(baked: &Baked, bits: SampleType, reference: &TextureArray) -> Pre
     let (mut variance, mut eigenvalue) = (0.0_f32, 0.0_f32);
     for level in 0..stored.level_count() {
         let (width, height) =
-            (stored.layers[0].levels[level].width(), stored.layers[0].levels[level].height());
+            (stored.layers()[0].levels()[level].width(), stored.layers()[0].levels()[level].height());
         let worst = parallel::map((0..height).collect(), |y| {
             (0..width).map(|x| errors_at(stored, reference, level, x, y)).fold((0.0, 0.0), larger_of_both)
         });
@@ -127,9 +127,9 @@ fn errors_at(
     y: usize,
 ) -> (f32, f32) {
     let texel = |array: &TextureArray| -> [f32; 8] {
-        std::array::from_fn(|channel| array.layers[channel / 4].levels[level].get(x, y, channel % 4))
+        std::array::from_fn(|channel| array.layers()[channel / 4].levels()[level].get(x, y, channel % 4))
     };
-    let sample_type = stored.layers[0].sample_type();
+    let sample_type = stored.sample_type();
     let decoded = texture::decode_lean_raw(&stored.info, sample_type, &texel(stored));
     let [xx, yy, xy] = raw_covariance(decoded);
     let [_, _, _, d2, _, _, d1, d3] = texel(reference).map(f64::from);

@@ -79,7 +79,7 @@ fn borrowed_memory_gives_the_same_as_images() {
         let Baked { arrays, report } =
             Bake::of(map).source(source).roughness(base).options(options).run().expect("a map");
         // The metadata is excluded: its base variance is NaN for a varying base.
-        (arrays.into_iter().map(|array| array.layers).collect::<Vec<_>>(), report)
+        (arrays.into_iter().map(|array| array.into_layers()).collect::<Vec<_>>(), report)
     };
     let owned = Image::new(width, height, 1, Samples::F32(roughness.clone())).expect("whole rows");
     let expected = bake_with(normals.view(), owned.view());

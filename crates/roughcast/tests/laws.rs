@@ -42,7 +42,7 @@ fn a_constant_slope_stays_exactly_constant() {
                 for wrap in Wrap::ALL {
                     let options = options.with_wrap(*wrap);
                     let arrays = baked(&image, &options, &float_moments(*filter)).arrays;
-                    for level in &arrays[0].layers[0].levels {
+                    for level in arrays[0].layers()[0].levels() {
                         let Samples::F32(samples) = level.samples() else { panic!("floats were asked for") };
                         for texel in samples.chunks_exact(5) {
                             assert_eq!(

@@ -65,7 +65,7 @@ fn the_roughness_of_a_material_includes_base_and_bumps() {
                 let bake_options = floats().with_pbr(pbr);
                 let arrays = baked_with(&image, &source, base, &bake_options).arrays;
                 let file = part(&arrays, Part::Roughness);
-                let alpha_squared = combined([stored(&file.layers[0], "Y")], |[r]| match form {
+                let alpha_squared = combined([stored(&file.layers()[0], "Y")], |[r]| match form {
                     RoughnessStored::Perceptual => r.powi(4),
                     RoughnessStored::Alpha => r * r,
                     RoughnessStored::AlphaSquared => r,
@@ -110,7 +110,7 @@ fn an_anisotropic_material_gives_both_eigenvalues_and_the_direction_back() {
         let bake_options = floats().with_pbr(pbr);
         let roughness = Some(BaseRoughness::Variance(base as f32));
         let arrays = baked_with(&image, &source, roughness, &bake_options).arrays;
-        let across = stored(&part(&arrays, Part::Roughness).layers[0], "Y");
+        let across = stored(&part(&arrays, Part::Roughness).layers()[0], "Y");
         let anisotropy = layer(part(&arrays, Part::Anisotropy), "anisotropy");
         let [x, y, strength] = ["R", "G", "B"].map(|name| stored(anisotropy, name));
         let along = combined([across.clone(), strength], |[b, s]| b + (1.0 - b) * s * s);
@@ -171,7 +171,7 @@ fn a_packed_texture_keeps_occlusion_and_metalness() {
     };
     let alone = baked_with(&image, &source, Some(map(material.view(), 1)), &floats()).arrays;
     let [occlusion, roughness, metalness, one] = channels(Some(map(material.view(), 1)));
-    assert_eq!(roughness, stored(&part(&alone, Part::Roughness).layers[0], "Y"));
+    assert_eq!(roughness, stored(&part(&alone, Part::Roughness).layers()[0], "Y"));
     for (got, channel) in [(occlusion, 0), (metalness, 2)] {
         let wanted = pyramid_oracle::pyramid(channel_of(&material, channel), PyramidFilter::Box, source.wrap);
         expect(compare_planes(&got, &wanted, |_| AVERAGING * EPS).map(|_| ()), &channel);
@@ -198,14 +198,14 @@ fn roughness_is_in_the_channel_of_its_layout() {
             baked_with(&image, &source, Some(BaseRoughness::Variance(0.01)), &options).arrays
         };
         let alone = baked(RoughnessTexture::Alone);
-        let roughness = &part(&alone, Part::Roughness).layers[0].levels;
+        let roughness = part(&alone, Part::Roughness).layers()[0].levels();
         assert_eq!(PbrOptions::default().roughness_texture, RoughnessTexture::Green);
         for (layout, name) in [
             (RoughnessTexture::Green, Part::Roughness),
             (RoughnessTexture::Packed, Part::OcclusionRoughnessMetallic),
         ] {
             let arrays = baked(layout);
-            let levels = &part(&arrays, name).layers[0].levels;
+            let levels = part(&arrays, name).layers()[0].levels();
             for (level, wanted) in levels.iter().zip(roughness) {
                 assert_eq!((level.channels(), wanted.channels()), (4, 1));
                 for (x, y) in (0..level.height()).flat_map(|y| (0..level.width()).map(move |x| (x, y))) {
@@ -233,7 +233,7 @@ fn floats_store_normals_in_the_range_of_their_metadata() {
         // Three roundings to the type's 11 or 24 bits: of both stored values, and of half of one.
         let rounding = if bits == SampleType::F16 { 1.5 / 1024.0 } else { 3.0 * f32::EPSILON };
         for name in [Part::Normal, Part::Anisotropy] {
-            let levels = |arrays| part(arrays, name).layers[0].levels.clone();
+            let levels = |arrays| part(arrays, name).layers()[0].levels().to_vec();
             for (unorm, signed) in levels(&unorm).iter().zip(levels(&signed)) {
                 for (x, y) in (0..unorm.height()).flat_map(|y| (0..unorm.width()).map(move |x| (x, y))) {
                     for channel in 0..2 {
@@ -246,7 +246,8 @@ fn floats_store_normals_in_the_range_of_their_metadata() {
         assert_eq!(part(&unorm, Part::Normal).info.normal_range, NormalRange::Unorm);
         // The slope of a stored normal changes by 1 + b² times its component's error; b is at most 1 in this map.
         let (from_unorm, from_signed) = (decode(&unorm).expect("parts"), decode(&signed).expect("parts"));
-        for (a, b) in from_unorm.iter().zip(&from_signed).flat_map(|(a, b)| a.moments.iter().zip(&b.moments))
+        for (a, b) in
+            from_unorm.iter().zip(&from_signed).flat_map(|(a, b)| a.moments().iter().zip(b.moments()))
         {
             let off = (a.mean.x - b.mean.x).abs().max((a.mean.y - b.mean.y).abs());
             assert!(off <= 8.0 * rounding, "{bits}: {off}");
@@ -264,15 +265,16 @@ fn widths_along_the_axes_match_the_variances() {
     let arrays = baked_with(&image, &source, Some(BaseRoughness::Variance(base)), &bake_options).arrays;
     let wanted = oracle_of(&image, &source, &vec![f64::from(base); 32 * 32]);
     for (axis, name) in [Part::AlphaX, Part::AlphaY].into_iter().enumerate() {
-        let squared = combined([stored(&part(&arrays, name).layers[0], "Y")], |[alpha]| alpha * alpha / 2.0);
+        let squared =
+            combined([stored(&part(&arrays, name).layers()[0], "Y")], |[alpha]| alpha * alpha / 2.0);
         let variance = planes(&wanted, |texel| texel.covariance()[axis]);
         expect(compare_planes(&squared, &variance, |_| AVERAGING * EPS).map(|_| ()), &name);
     }
     let isotropic = baked_with(&image, &source, Some(BaseRoughness::Variance(base)), &floats()).arrays;
-    let roughness = |arrays| part(arrays, Part::Roughness).layers[0].levels.clone();
+    let roughness = |arrays| part(arrays, Part::Roughness).layers()[0].levels().to_vec();
     assert_eq!(roughness(&arrays), roughness(&isotropic), "the roughness of both axes is still there");
     let decoded = decode(&arrays).expect("all parts");
-    let variances = decoded.iter().flat_map(|level| &level.moments).map(|m| m.covariance());
+    let variances = decoded.iter().flat_map(|level| level.moments()).map(|m| m.covariance());
     let of_oracle = wanted.iter().flat_map(|level| level.texels()).map(|texel| texel.covariance());
     for (got, [xx, yy, _]) in variances.zip(of_oracle) {
         assert!(
@@ -321,7 +323,7 @@ fn directions_of_a_brushed_disc_survive_filtering() {
         let anisotropy = Some(AnisotropyOutput::Khr);
         let bake_options = with_choices(bits, PbrOptions::default().with_anisotropy(anisotropy));
         let arrays = baked_with(&image, &source, Some(BaseRoughness::Variance(0.001)), &bake_options).arrays;
-        let levels = &part(&arrays, Part::Anisotropy).layers[0].levels;
+        let levels = part(&arrays, Part::Anisotropy).layers()[0].levels();
         let mut looked_up = 0;
         for pair in levels.windows(2) {
             let texel = 1.0 / pair[1].width() as f64;
@@ -376,7 +378,9 @@ fn the_variance_of_toksvig_is_decoded_from_its_parts_for_any_base() {
         let (from_whole, from_parts) =
             (decode(&whole.arrays).expect("one"), decode(&parts.arrays).expect("two"));
         let mut largest = 0.0_f32;
-        for (a, b) in from_whole.iter().zip(&from_parts).flat_map(|(a, b)| a.moments.iter().zip(&b.moments)) {
+        for (a, b) in
+            from_whole.iter().zip(&from_parts).flat_map(|(a, b)| a.moments().iter().zip(b.moments()))
+        {
             let (a, b) = (a.covariance().xx, b.covariance().xx);
             assert!((a - b).abs() <= bound, "{a} and {b}");
             largest = largest.max(b);

@@ -6,7 +6,7 @@ use std::fmt::Debug;
 use roughcast::detect::GreenVerdict;
 use roughcast::precision::{Precision, measure};
 use roughcast::shading::{Shading, ShadingOptions};
-use roughcast::texture::{Layout, Part, TextureInfo, decode};
+use roughcast::texture::{Layout, MomentLevel, Part, TextureInfo, decode};
 use roughcast::{
     AnisotropyOutput, Bake, BakeOptions, BakePlan, BakeReport, Covariance, Distribution, Green, Image, Kind,
     MaxSlope, Moments, PbrOptions, Samples, ScaleChoice, Slope, SourceOptions, WeightedGaussian,
@@ -42,6 +42,9 @@ fn values_survive() {
     let error = from_value::<Distribution>(empty).expect_err("no Gaussian").to_string();
     assert!(error.contains("1 to 4 Gaussians, not 0"), "{error}");
     round_trip(&decode(&Bake::of(&waves()).run().expect("a map").arrays).expect("textures"));
+    let short = json!({ "width": 2, "height": 2, "moments": [moments] });
+    let error = from_value::<MomentLevel>(short).expect_err("three are missing").to_string();
+    assert!(error.contains("2x2 texels need as many moments, not 1"), "{error}");
     assert_eq!(round_trip(&GreenVerdict::Undecided), json!("undecided"));
 }
 

@@ -103,10 +103,10 @@ async fn timed(
     encode: impl FnOnce(&mut wgpu::CommandEncoder, &Span),
 ) -> Result<Option<f64>> {
     let span = timestamps.span("pass").context("there is room for a span")?;
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let mut encoder = gpu.device().create_command_encoder(&Default::default());
     encode(&mut encoder, &span);
     timestamps.resolve(&mut encoder);
-    gpu.queue.submit([encoder.finish()]);
+    gpu.queue().submit([encoder.finish()]);
     Ok(timestamps.read(gpu).await?.first().and_then(|span| span.nanoseconds))
 }
 

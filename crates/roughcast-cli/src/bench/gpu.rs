@@ -44,7 +44,7 @@ const SOFTWARE: (u32, u32) = (10, 2048);
 pub fn run(args: &Args) -> Result<ExitCode> {
     let gpu = block_on(Gpu::new(&GpuOptions::default()))?;
     if !gpu.has_timestamps() {
-        bail!("'{}' has no clock (timestamp queries) to measure by: update its driver", gpu.info.name);
+        bail!("'{}' has no clock (timestamp queries) to measure by: update its driver", gpu.info().name);
     }
     let (frames, side) = if gpu.is_software() { SOFTWARE } else { HARDWARE };
     let frames = args.frames.unwrap_or(frames);
@@ -106,7 +106,7 @@ impl Report<'_> {
         };
         let Generation { side, bake, copy } = &self.generation;
         json!({
-            "adapter": self.gpu.info.name,
+            "adapter": self.gpu.info().name,
             "driver": self.driver(),
             "software": self.gpu.is_software(),
             "size": [self.size.0, self.size.1],
@@ -124,7 +124,7 @@ impl Report<'_> {
 
     fn text(&self) -> String {
         let mut lines =
-            vec![format!("adapter     {}", self.gpu.info.name), format!("driver      {}", self.driver())];
+            vec![format!("adapter     {}", self.gpu.info().name), format!("driver      {}", self.driver())];
         if self.gpu.is_software() {
             lines.push(
                 "            a software driver: its times are not those of graphics hardware".to_owned(),
@@ -161,7 +161,7 @@ impl Report<'_> {
     }
 
     fn driver(&self) -> String {
-        let info = &self.gpu.info;
+        let info = self.gpu.info();
         let words = [info.driver.as_str(), info.driver_info.as_str(), info.backend.to_str()];
         words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(", ")
     }

@@ -26,7 +26,7 @@ const STEPS: f32 = 24.0;
 pub fn error_picture(width: usize, errors: &[f32]) -> Srgb8Picture {
     let last = STEPS - 1.0;
     let pixels = errors.iter().flat_map(|error| colour((error * last).round() / last)).collect();
-    Srgb8Picture { width: width as u32, height: (errors.len() / width) as u32, pixels }
+    Srgb8Picture::new(width as u32, (errors.len() / width) as u32, pixels).expect("whole rows of errors")
 }
 
 /// The scale itself, from 0 at the left to 1 at the right.
@@ -76,11 +76,11 @@ mod tests {
     #[test]
     fn pictures_have_a_pixel_for_every_error() {
         let picture = error_picture(3, &[0.0, 0.5, 1.0, 1.0, 0.5, 0.0]);
-        assert_eq!((picture.width, picture.height, picture.pixels.len()), (3, 2, 18));
-        assert_eq!(picture.pixels[6..12], [255; 6]);
-        assert_eq!(legend(8, 2).pixels.len(), 48);
+        assert_eq!((picture.width(), picture.height(), picture.pixels().len()), (3, 2, 18));
+        assert_eq!(picture.pixels()[6..12], [255; 6]);
+        assert_eq!(legend(8, 2).pixels().len(), 48);
         let colours: std::collections::BTreeSet<[u8; 3]> =
-            legend(1024, 1).pixels.as_chunks().0.iter().copied().collect();
+            legend(1024, 1).pixels().as_chunks().0.iter().copied().collect();
         assert_eq!(colours.len(), STEPS as usize);
     }
 }

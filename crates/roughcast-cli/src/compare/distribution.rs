@@ -36,8 +36,8 @@ impl Distribution {
         let options = BakeOptions::default().with_layout(Layout::Moments).with_sample_type(SampleType::F32);
         let baked = Bake::of(map).source(*source).options(options).run()?;
         let levels = decode(&baked.arrays).expect("a bake of this layout is complete");
-        let whole = levels.last().expect("there is a level").moments[0];
-        let slopes = levels[0].moments.iter().map(|moments| moments.mean);
+        let whole = levels.last().expect("there is a level").moments()[0];
+        let slopes = levels[0].moments().iter().map(|moments| moments.mean);
         Ok(Self::of_slopes(slopes, whole.mean, whole.covariance(), 1.0 / f64::from(specular_power)))
     }
 
@@ -62,10 +62,9 @@ impl Distribution {
     pub fn pictures(&self) -> [Srgb8Picture; 2] {
         let brightest =
             self.truth.iter().chain(&self.lean).fold(f64::MIN_POSITIVE, |most, part| most.max(*part));
-        [&self.truth, &self.lean].map(|parts| Srgb8Picture {
-            width: CELLS as u32,
-            height: CELLS as u32,
-            pixels: parts.iter().flat_map(|part| [srgb8((part / brightest) as f32); 3]).collect(),
+        [&self.truth, &self.lean].map(|parts| {
+            let pixels = parts.iter().flat_map(|part| [srgb8((part / brightest) as f32); 3]).collect();
+            Srgb8Picture::new(CELLS as u32, CELLS as u32, pixels).expect("a value for each cell")
         })
     }
 }
@@ -185,9 +184,9 @@ mod tests {
         let distribution =
             Distribution::of_slopes(slopes.into_iter(), Slope { x: 0.0, y: 0.0 }, covariance, BASE);
         let [truth, _] = distribution.pictures();
-        let half = truth.pixels.len() / 2;
+        let half = truth.pixels().len() / 2;
         let sum = |pixels: &[u8]| pixels.iter().map(|value| u64::from(*value)).sum::<u64>();
-        assert!(sum(&truth.pixels[half..]) > sum(&truth.pixels[..half]));
-        assert_eq!(truth.pixels.iter().max(), Some(&255));
+        assert!(sum(&truth.pixels()[half..]) > sum(&truth.pixels()[..half]));
+        assert_eq!(truth.pixels().iter().max(), Some(&255));
     }
 }

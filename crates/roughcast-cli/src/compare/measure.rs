@@ -184,7 +184,7 @@ impl Settings<'_> {
         let error = rmse(picture, still)?;
         let flip = hdr_flip(picture, still, DEFAULT_PIXELS_PER_DEGREE)?;
         bar.inc(FLIP_PIXEL * u64::from(self.size.height));
-        let peak = still.radiance.iter().flatten().fold(0.0_f32, |peak, value| peak.max(*value));
+        let peak = still.radiance().iter().flatten().fold(0.0_f32, |peak, value| peak.max(*value));
         Ok(Trial {
             row: Row {
                 rmse: error,

@@ -90,7 +90,7 @@ mod tests {
         let options = BakeOptions::default().with_layout(Layout::Moments).with_sample_type(SampleType::F32);
         let baked = Bake::of(&subject.image).source(subject.options).options(options).run().expect("a map");
         let finest = &decode(&baked.arrays).expect("moments")[0];
-        let slopes = finest.moments.iter().map(|moments| f64::from(moments.mean.x));
+        let slopes = finest.moments().iter().map(|moments| f64::from(moments.mean.x));
         let steep = slopes.filter(|x| (x.abs() - GROOVE_SLOPE).abs() < 1e-3).count();
         // All except the two texels of each groove whose gradient spans both of its sides.
         assert_eq!(steep, GROOVED_TEXELS * (GROOVED_TEXELS - 2 * GROOVES));

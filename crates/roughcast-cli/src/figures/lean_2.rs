@@ -118,7 +118,7 @@ impl Parts {
 fn expected(map: &Pattern) -> Result<f64> {
     let options = BakeOptions::default().with_layout(Layout::Moments).with_sample_type(SampleType::F32);
     let levels = decode(&Bake::of(&map.heights).source(map.source_options()).options(options).run()?.arrays)?;
-    let covariance = levels.last().expect("there is a level").moments[0].covariance();
+    let covariance = levels.last().expect("there is a level").moments()[0].covariance();
     let base = 1.0 / SPECULAR_POWER;
     let with_base = covariance + Covariance::isotropic(base);
     let (large, small) = with_base.eigenvalues();
@@ -127,7 +127,7 @@ fn expected(map: &Pattern) -> Result<f64> {
 
 /// The covariance of the half vectors, as points `h.xy / h.z` of the surface's frame, weighted by the highlight.
 fn highlight(scene: &Scene, picture: &Picture) -> Covariance {
-    let (width, height) = (picture.width as u32, picture.height as u32);
+    let (width, height) = (picture.width() as u32, picture.height() as u32);
     let (mut weight, mut sum, mut squares) = (0.0, DVec2::ZERO, [0.0; 3]);
     for y in 0..height {
         for x in 0..width {
@@ -142,7 +142,7 @@ fn highlight(scene: &Scene, picture: &Picture) -> Covariance {
             }
             // The area in that plane that a pixel represents.
             let area = 4.0 * (right - at).perp_dot(below - at).abs();
-            let w = area * f64::from(luminance(picture.specular[(y * width + x) as usize]));
+            let w = area * f64::from(luminance(picture.specular()[(y * width + x) as usize]));
             weight += w;
             sum += w * at;
             squares =
@@ -159,7 +159,7 @@ fn highlight(scene: &Scene, picture: &Picture) -> Covariance {
 
 /// `h.xy / h.z` at a point of the picture, in the local frame of the surface.
 fn half_slope(scene: &Scene, picture: &Picture, x: f64, y: f64) -> Option<DVec2> {
-    let ray = scene.camera.ray(x, y, picture.width as u32, picture.height as u32);
+    let ray = scene.camera.ray(x, y, picture.width() as u32, picture.height() as u32);
     let hit = scene.shape.hit(&ray)?;
     let (towards_light, _) = scene.lights[0].at(hit.position);
     let half = hit.frame.tangent_from_world(towards_light - ray.direction);

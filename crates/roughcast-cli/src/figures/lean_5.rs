@@ -66,8 +66,8 @@ pub fn make() -> Result<Figure> {
 
 /// The largest difference of two highlights, as a fraction of the second one's peak.
 fn largest_difference(picture: &Picture, other: &Picture) -> f32 {
-    let peak = other.specular.iter().flatten().fold(0.0_f32, |a, b| a.max(*b));
-    let pairs = picture.specular.iter().flatten().zip(other.specular.iter().flatten());
+    let peak = other.specular().iter().flatten().fold(0.0_f32, |a, b| a.max(*b));
+    let pairs = picture.specular().iter().flatten().zip(other.specular().iter().flatten());
     pairs.fold(0.0_f32, |worst, (a, b)| worst.max((a - b).abs())) / peak
 }
 

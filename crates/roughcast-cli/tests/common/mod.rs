@@ -180,10 +180,10 @@ pub struct Difference {
 /// Compares pyramids of the same shape.
 #[track_caller]
 pub fn difference(a: &[MomentLevel], b: &[MomentLevel]) -> Difference {
-    let sizes = |levels: &[MomentLevel]| levels.iter().map(|l| (l.width, l.height)).collect::<Vec<_>>();
+    let sizes = |levels: &[MomentLevel]| levels.iter().map(|l| (l.width(), l.height())).collect::<Vec<_>>();
     assert_eq!(sizes(a), sizes(b));
     let mut largest = Difference::default();
-    let texels = a.iter().zip(b).flat_map(|(a, b)| a.moments.iter().zip(&b.moments));
+    let texels = a.iter().zip(b).flat_map(|(a, b)| a.moments().iter().zip(b.moments()));
     for (a, b) in texels {
         let (of_a, of_b) = (a.covariance(), b.covariance());
         let slope = (a.mean.x - b.mean.x).abs().max((a.mean.y - b.mean.y).abs());

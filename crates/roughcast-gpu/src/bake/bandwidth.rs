@@ -44,7 +44,7 @@ pub async fn bake_bandwidth(
     options: &BakeOptions,
     path: BakePath,
 ) -> Result<Bandwidth, GpuError> {
-    let limit = gpu.limits.max_texture_dimension_2d;
+    let limit = gpu.limits().max_texture_dimension_2d;
     if side > limit {
         return Err(GpuError::TextureTooLarge { width: side, height: side, limit });
     }
@@ -106,11 +106,11 @@ async fn measure(gpu: &Gpu, encode: impl Fn(&mut wgpu::CommandEncoder, &Span)) -
     let mut timestamps = Timestamps::new(gpu, 1).await?;
     let mut times = Vec::new();
     for run in 0..=RUNS {
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let mut encoder = gpu.device().create_command_encoder(&Default::default());
         let span = timestamps.span("run").ok_or_else(|| coarse.clone())?;
         encode(&mut encoder, &span);
         timestamps.resolve(&mut encoder);
-        gpu.queue.submit([encoder.finish()]);
+        gpu.queue().submit([encoder.finish()]);
         let measured = timestamps.read(gpu).await?;
         if run > 0 {
             times.extend(measured.iter().filter_map(|span| span.nanoseconds));

@@ -44,7 +44,7 @@ impl Dispatch {
 
 impl ComputeBake {
     pub async fn new(gpu: &Gpu, job: &Job) -> Result<Self, GpuError> {
-        let levels_a_step = gpu.limits.max_storage_textures_per_shader_stage / job.target.layers();
+        let levels_a_step = gpu.limits().max_storage_textures_per_shader_stage / job.target.layers();
         if !gpu.has_compute() || levels_a_step == 0 {
             let instead = "bake with render passes (BakePath::Raster)";
             return Err(GpuError::Feature { feature: "compute shaders that store to textures", instead });
@@ -107,7 +107,7 @@ async fn dispatch(
     states: &[wgpu::Buffer; 2],
     pipelines: &mut Pipelines<wgpu::ComputePipeline>,
 ) -> Result<Dispatch, GpuError> {
-    let params = job.params(&gpu.device, step.input);
+    let params = job.params(gpu.device(), step.input);
     let views: Vec<Vec<wgpu::TextureView>> = step
         .levels()
         .map(|level| job.textures.iter().map(|texture| level_view(texture, level)).collect())

@@ -203,9 +203,9 @@ impl GpuBaker {
 
     /// Encodes and submits one bake.
     pub fn run(&self) {
-        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        let mut encoder = self.gpu.device().create_command_encoder(&Default::default());
         self.encode(&mut encoder, None);
-        self.gpu.queue.submit([encoder.finish()]);
+        self.gpu.queue().submit([encoder.finish()]);
     }
 
     /// The baked textures, in the order of the layout's layers: `lean1` and `lean2`, or `clean`. Every bake writes to
@@ -405,7 +405,7 @@ fn stores_buffer(gpu: &Gpu, scale: Option<f32>, max_slope: f32) -> wgpu::Buffer 
     if gpu.has_compute() {
         usage |= wgpu::BufferUsages::STORAGE;
     }
-    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+    gpu.device().create_buffer_init(&wgpu::util::BufferInitDescriptor {
         label: Some("scale"),
         contents: bytemuck::cast_slice(&floats),
         usage,

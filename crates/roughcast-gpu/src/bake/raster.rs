@@ -139,7 +139,7 @@ async fn pass(
     targets: Vec<wgpu::TextureView>,
     pipelines: &mut Pipelines<wgpu::RenderPipeline>,
 ) -> Result<Pass, GpuError> {
-    let params = job.params(&gpu.device, input_level);
+    let params = job.params(gpu.device(), input_level);
     let mut bindings = Bindings::new(wgpu::ShaderStages::FRAGMENT);
     bindings.uniform("params", "Params", &params);
     bindings.uniform("packed_stores", "PackedStores", &job.stores);

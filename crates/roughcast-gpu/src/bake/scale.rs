@@ -62,7 +62,7 @@ async fn dispatch(
     entry_point: &str,
     groups: (u32, u32),
 ) -> Result<Dispatch, GpuError> {
-    let params = job.params(&gpu.device, 0);
+    let params = job.params(gpu.device(), 0);
     let mut bindings = Bindings::new(wgpu::ShaderStages::COMPUTE);
     bindings.uniform("params", "Params", &params);
     bindings.storage("survey", "Survey", Access::ReadWrite, survey);

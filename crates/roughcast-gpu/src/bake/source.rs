@@ -185,7 +185,7 @@ pub(super) fn upload(gpu: &Gpu, image: &Image, texture: &wgpu::Texture) {
         Samples::F32(v) => bytes_of(v, image.channels(), channels, 1.0),
     };
     let size = texture.size();
-    gpu.queue.write_texture(
+    gpu.queue().write_texture(
         texture.as_image_copy(),
         &bytes,
         wgpu::TexelCopyBufferLayout {

@@ -125,7 +125,7 @@ impl Target {
         textures: &[wgpu::Texture],
         info: TextureInfo,
     ) -> Result<TextureArray, GpuError> {
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let mut encoder = gpu.device().create_command_encoder(&Default::default());
         let mut staged: Vec<Vec<Staged>> = Vec::new();
         for texture in textures {
             let mut levels = Vec::new();
@@ -134,7 +134,7 @@ impl Target {
             }
             staged.push(levels);
         }
-        gpu.queue.submit([encoder.finish()]);
+        gpu.queue().submit([encoder.finish()]);
         let mut layers = Vec::new();
         for ((texture, levels), spec) in textures.iter().zip(staged).zip(texture::layers_of(&info)) {
             let sizes = level_sizes(texture.width() as usize, texture.height() as usize);
@@ -144,9 +144,10 @@ impl Target {
                 let image = Image::new(width, height, 4, samples);
                 images.push(image.map_err(|error| GpuError::ReadBack { reason: error.to_string() })?);
             }
-            layers.push(Texture { name: spec.name, channels: spec.channels.to_vec(), levels: images });
+            let layer = Texture::new(spec.name, spec.channels.to_vec(), images);
+            layers.push(layer.map_err(|fault| GpuError::ReadBack { reason: fault.to_string() })?);
         }
-        Ok(TextureArray { info, layers })
+        TextureArray::new(info, layers).map_err(|fault| GpuError::ReadBack { reason: fault.to_string() })
     }
 
     fn samples(self, bytes: &[u8]) -> Samples {

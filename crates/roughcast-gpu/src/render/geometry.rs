@@ -59,7 +59,7 @@ pub(super) async fn upload(
     contents: &[u8],
     usage: wgpu::BufferUsages,
 ) -> Result<wgpu::Buffer, GpuError> {
-    let limit = gpu.limits.max_buffer_size;
+    let limit = gpu.limits().max_buffer_size;
     let bytes = contents.len() as u64;
     if bytes > limit {
         return Err(GpuError::BufferTooLarge { what, bytes, limit });

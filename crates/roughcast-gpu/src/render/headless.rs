@@ -29,22 +29,23 @@ pub async fn render(
     let depth = target(gpu, DEPTH_FORMAT, size).await?;
     let [colour_view, specular_view, depth_view] =
         [&colour, &specular, &depth].map(|texture| texture.create_view(&Default::default()));
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let mut encoder = gpu.device().create_command_encoder(&Default::default());
     let views = Views { specular: Some(&specular_view), ..Views::new(&colour_view, &depth_view) };
     drawing.draw(&mut encoder, &views, None);
     let colour = stage_texture(gpu, &mut encoder, &colour, 0).await?;
     let specular = stage_texture(gpu, &mut encoder, &specular, 0).await?;
-    gpu.queue.submit([encoder.finish()]);
+    gpu.queue().submit([encoder.finish()]);
     let colour: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&colour.read(gpu).await?);
     let specular: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&specular.read(gpu).await?);
     let rgb = |pixel: &[f32; 4]| [pixel[0], pixel[1], pixel[2]];
-    Ok(Picture {
-        width: size.0 as usize,
-        height: size.1 as usize,
-        radiance: colour.iter().map(rgb).collect(),
-        specular: specular.iter().map(rgb).collect(),
-        coverage: colour.iter().map(|pixel| pixel[3]).collect(),
-    })
+    let picture = Picture::new(
+        size.0 as usize,
+        size.1 as usize,
+        colour.iter().map(rgb).collect(),
+        specular.iter().map(rgb).collect(),
+        colour.iter().map(|pixel| pixel[3]).collect(),
+    );
+    picture.map_err(|error| GpuError::ReadBack { reason: error.to_string() })
 }
 
 /// Refuses pictures that are empty or too large.

@@ -161,7 +161,7 @@ impl Renderer {
         for format in target.formats() {
             gpu.require_format(format, wgpu::TextureUsages::RENDER_ATTACHMENT)?;
         }
-        if gpu.limits.max_storage_buffers_per_shader_stage == 0 {
+        if gpu.limits().max_storage_buffers_per_shader_stage == 0 {
             let instead = "render on the CPU (--cpu)";
             return Err(GpuError::Feature { feature: "storage buffers in shaders", instead });
         }
@@ -231,7 +231,7 @@ impl Renderer {
     }
 
     async fn lights(&self, words: &[u32]) -> Result<wgpu::Buffer, GpuError> {
-        let (bytes, limit) = (size_of_val(words) as u64, self.gpu.limits.max_storage_buffer_binding_size);
+        let (bytes, limit) = (size_of_val(words) as u64, self.gpu.limits().max_storage_buffer_binding_size);
         if bytes > limit {
             return Err(GpuError::BufferTooLarge { what: "the lights of a scene", bytes, limit });
         }
@@ -284,16 +284,16 @@ impl Drawing {
         let words = light_words(&scene.lights);
         if self.lights.size() < size_of_val(words.as_slice()) as u64 {
             let mut room = words.clone();
-            room.resize(room_for(words.len(), renderer.gpu.limits.max_storage_buffer_binding_size), 0);
+            room.resize(room_for(words.len(), renderer.gpu.limits().max_storage_buffer_binding_size), 0);
             let lights = renderer.lights(&room).await?;
             let groups = BindGroups { gpu: &renderer.gpu, view_layout: &renderer.view_layout };
             self.scene = groups.scene(&self.view, &lights).await?;
             self.lights = lights;
         } else {
-            renderer.gpu.queue.write_buffer(&self.lights, 0, bytemuck::cast_slice(&words));
+            renderer.gpu.queue().write_buffer(&self.lights, 0, bytemuck::cast_slice(&words));
         }
         let view = view_words(scene, size);
-        renderer.gpu.queue.write_buffer(&self.view, 0, bytemuck::cast_slice(&view));
+        renderer.gpu.queue().write_buffer(&self.view, 0, bytemuck::cast_slice(&view));
         self.background = scene.background;
         Ok(())
     }

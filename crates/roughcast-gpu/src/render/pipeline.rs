@@ -170,7 +170,7 @@ impl MapUniforms {
     /// Writes the uniforms that may change from frame to frame.
     pub fn write(&self, gpu: &Gpu, textures: &GpuTextures, options: &DrawOptions, sampling: &Sampling) {
         let words = textures.options(options.shading_options).to_words();
-        gpu.queue.write_buffer(&self.options, 0, bytemuck::cast_slice(&words));
-        gpu.queue.write_buffer(&self.sampling, 0, bytemuck::cast_slice(&sampling.words(textures)));
+        gpu.queue().write_buffer(&self.options, 0, bytemuck::cast_slice(&words));
+        gpu.queue().write_buffer(&self.sampling, 0, bytemuck::cast_slice(&sampling.words(textures)));
     }
 }

@@ -124,11 +124,11 @@ fn format(sample_type: SampleType, channels: usize) -> wgpu::TextureFormat {
 }
 
 async fn upload(gpu: &Gpu, texture: &Texture) -> Result<wgpu::Texture, GpuError> {
-    let base = texture.levels.first().ok_or(GpuError::Empty { width: 0, height: 0 })?;
+    let base = texture.finest();
     if base.channels() > 4 {
         return Err(GpuError::Shape(format!(
             "the texture '{}' has {} channels and a sampler returns four: bake another layout",
-            texture.name,
+            texture.name(),
             base.channels()
         )));
     }
@@ -137,11 +137,10 @@ async fn upload(gpu: &Gpu, texture: &Texture) -> Result<wgpu::Texture, GpuError>
     let side = |texels: usize| u32::try_from(texels).unwrap_or(u32::MAX);
     let size =
         wgpu::Extent3d { width: side(base.width()), height: side(base.height()), depth_or_array_layers: 1 };
-    check_levels(texture, size)?;
     let descriptor = wgpu::TextureDescriptor {
-        label: Some(texture.name),
+        label: Some(texture.name()),
         size,
-        mip_level_count: side(texture.levels.len()),
+        mip_level_count: side(texture.levels().len()),
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format,
@@ -149,29 +148,10 @@ async fn upload(gpu: &Gpu, texture: &Texture) -> Result<wgpu::Texture, GpuError>
         view_formats: &[],
     };
     let on_gpu = gpu.create_texture("the textures", &descriptor).await?;
-    for (level, image) in texture.levels.iter().enumerate() {
+    for (level, image) in texture.levels().iter().enumerate() {
         write_level(gpu, &on_gpu, side(level), image);
     }
     Ok(on_gpu)
-}
-
-/// Checks the sizes of the levels: GPUs halve sides and round down, so the levels must match.
-fn check_levels(texture: &Texture, size: wgpu::Extent3d) -> Result<(), GpuError> {
-    for (level, image) in texture.levels.iter().enumerate() {
-        let wanted = size.mip_level_size(level as u32, wgpu::TextureDimension::D2);
-        let fits = (image.width(), image.height()) == (wanted.width as usize, wanted.height as usize);
-        if !fits || level as u32 >= size.max_mips(wgpu::TextureDimension::D2) {
-            return Err(GpuError::Shape(format!(
-                "level {level} of the texture '{}' is {}x{}, where GPUs have {}x{}: bake the texture again",
-                texture.name,
-                image.width(),
-                image.height(),
-                wanted.width,
-                wanted.height
-            )));
-        }
-    }
-    Ok(())
 }
 
 fn write_level(gpu: &Gpu, texture: &wgpu::Texture, mip_level: u32, image: &Image) {
@@ -192,7 +172,7 @@ fn write_level(gpu: &Gpu, texture: &wgpu::Texture, mip_level: u32, image: &Image
         height: image.height() as u32,
         depth_or_array_layers: 1,
     };
-    gpu.queue.write_texture(target, &bytes, layout, size);
+    gpu.queue().write_texture(target, &bytes, layout, size);
 }
 
 /// The bytes of an image. Three channels are padded to four, because GPUs have no three-channel formats.

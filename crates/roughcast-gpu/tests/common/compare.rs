@@ -19,20 +19,21 @@ pub struct Difference {
 /// If the two differ in shape.
 pub fn difference(a: &TextureArray, b: &TextureArray) -> Result<Difference, String> {
     let mut found = Difference { steps: 0, place: String::new(), texels_that_differ: 0, texels: 0 };
-    if a.layers.len() != b.layers.len() {
-        return Err(format!("{} layers and {}", a.layers.len(), b.layers.len()));
+    if a.layers().len() != b.layers().len() {
+        return Err(format!("{} layers and {}", a.layers().len(), b.layers().len()));
     }
-    for (a, b) in a.layers.iter().zip(&b.layers) {
-        if (a.name, &a.channels, a.levels.len()) != (b.name, &b.channels, b.levels.len()) {
+    for (a, b) in a.layers().iter().zip(b.layers()) {
+        if (a.name(), a.channel_names(), a.levels().len()) != (b.name(), b.channel_names(), b.levels().len())
+        {
             return Err(format!(
                 "{} of {} levels and {} of {}",
-                a.name,
-                a.levels.len(),
-                b.name,
-                b.levels.len()
+                a.name(),
+                a.levels().len(),
+                b.name(),
+                b.levels().len()
             ));
         }
-        for (level, (image_a, image_b)) in a.levels.iter().zip(&b.levels).enumerate() {
+        for (level, (image_a, image_b)) in a.levels().iter().zip(b.levels()).enumerate() {
             let shape = |image: &roughcast::Image| (image.width(), image.height(), image.channels());
             if shape(image_a) != shape(image_b) {
                 return Err(format!("level {level}: {:?} and {:?}", shape(image_a), shape(image_b)));
@@ -48,7 +49,8 @@ pub fn difference(a: &TextureArray, b: &TextureArray) -> Result<Difference, Stri
                     found.steps = steps;
                     found.place = format!(
                         "{} level {level} ({x}, {y}) {}: {va:e} and {vb:e}",
-                        a.name, a.channels[channel]
+                        a.name(),
+                        a.channel_names()[channel]
                     );
                 }
             }

@@ -28,7 +28,7 @@ fn gpu_with(options: &GpuOptions) -> Gpu {
 /// A device with only what WebGPU guarantees.
 pub fn gpu_without_features() -> Gpu {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    descriptor.backends = gpu().info.backend.into();
+    descriptor.backends = gpu().info().backend.into();
     let instance = wgpu::Instance::new(descriptor);
     let adapter = pollster::block_on(instance.request_adapter(&Default::default())).expect("an adapter");
     let device = pollster::block_on(adapter.request_device(&Default::default())).expect("a plain device");

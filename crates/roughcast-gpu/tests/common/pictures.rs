@@ -85,9 +85,9 @@ const DARK: f64 = 0.01;
 
 /// Compares radiance and specular parts at the pixels that `compared` chooses.
 pub fn apart(cpu: &Picture, gpu: &Picture, compared: impl Fn(usize) -> bool) -> Apart {
-    assert_eq!((cpu.width, cpu.height), (gpu.width, gpu.height));
+    assert_eq!((cpu.width(), cpu.height()), (gpu.width(), gpu.height()));
     let values = |picture: &Picture, i: usize| {
-        let [r, s] = [picture.radiance[i], picture.specular[i]];
+        let [r, s] = [picture.radiance()[i], picture.specular()[i]];
         [r[0], r[1], r[2], s[0], s[1], s[2]].map(f64::from)
     };
     let brightest = (0..cpu.len()).flat_map(|i| values(cpu, i)).fold(0.0, f64::max);
@@ -97,7 +97,7 @@ pub fn apart(cpu: &Picture, gpu: &Picture, compared: impl Fn(usize) -> bool) -> 
         mean: 0.0,
         energy: 0.0,
         pixels: 0,
-        covered: cpu.coverage.iter().filter(|c| **c > 0.0).count(),
+        covered: cpu.coverage().iter().filter(|c| **c > 0.0).count(),
     };
     let (mut differences, mut radiance) = (0.0, 0.0);
     let mut energy = [0.0, 0.0];
@@ -110,7 +110,7 @@ pub fn apart(cpu: &Picture, gpu: &Picture, compared: impl Fn(usize) -> bool) -> 
             if difference.is_nan() || difference > apart.largest {
                 apart.largest = if difference.is_nan() { f64::INFINITY } else { difference };
                 apart.place =
-                    format!("({}, {}) channel {channel}: {a:e} and {b:e}", i % cpu.width, i / cpu.width);
+                    format!("({}, {}) channel {channel}: {a:e} and {b:e}", i % cpu.width(), i / cpu.width());
             }
             if channel < 3 {
                 differences += (a - b).abs();
@@ -129,13 +129,13 @@ pub fn apart(cpu: &Picture, gpu: &Picture, compared: impl Fn(usize) -> bool) -> 
 /// Whether all neighbouring pixels have the same coverage in both pictures. At a silhouette they do not, because
 /// rounding decides there.
 pub fn inside(cpu: &Picture, gpu: &Picture, i: usize) -> bool {
-    let (width, height) = (cpu.width, cpu.height);
+    let (width, height) = (cpu.width(), cpu.height());
     let (x, y) = (i % width, i / width);
     let (columns, rows) =
         (x.saturating_sub(1)..=(x + 1).min(width - 1), y.saturating_sub(1)..=(y + 1).min(height - 1));
-    let own = cpu.coverage[i];
+    let own = cpu.coverage()[i];
     rows.flat_map(|y| columns.clone().map(move |x| y * width + x))
-        .all(|j| cpu.coverage[j] == own && gpu.coverage[j] == own)
+        .all(|j| cpu.coverage()[j] == own && gpu.coverage()[j] == own)
 }
 
 /// Least cosine between view and surface normal at which flat triangles can stand for round shapes. Seen more

@@ -90,18 +90,18 @@ pub async fn run(gpu: &Gpu, library: &str, twin: &Twin, cases: &[Case]) -> Vec<V
         .await
         .unwrap_or_else(|error| panic!("{}: {error}", twin.name));
     let storage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
-    let input = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+    let input = gpu.device().create_buffer_init(&wgpu::util::BufferInitDescriptor {
         label: None,
         contents: bytemuck::cast_slice(&words),
         usage: storage,
     });
-    let output = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+    let output = gpu.device().create_buffer(&wgpu::BufferDescriptor {
         label: None,
         size: (cases.len() * outputs * size_of::<f32>()) as u64,
         usage: storage,
         mapped_at_creation: false,
     });
-    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+    let group = gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
         layout: &pipeline.get_bind_group_layout(0),
         entries: &[
@@ -109,14 +109,14 @@ pub async fn run(gpu: &Gpu, library: &str, twin: &Twin, cases: &[Case]) -> Vec<V
             wgpu::BindGroupEntry { binding: 1, resource: output.as_entire_binding() },
         ],
     });
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let mut encoder = gpu.device().create_command_encoder(&Default::default());
     {
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, &group, &[]);
         pass.dispatch_workgroups((cases.len() as u32).div_ceil(WORKGROUP), 1, 1);
     }
-    gpu.queue.submit([encoder.finish()]);
+    gpu.queue().submit([encoder.finish()]);
     let bytes = read_buffer(gpu, &output).await.expect("results");
     let values: Vec<f32> = bytemuck::pod_collect_to_vec(&bytes);
     values.chunks_exact(outputs).map(<[f32]>::to_vec).collect()

@@ -52,18 +52,15 @@ impl<'a> Plan<'a> {
     /// # Errors
     /// [`WriteError::Unsupported`] if a mip-mapped EXR part cannot hold the array.
     pub(super) fn new(array: &'a TextureArray) -> Result<Self, WriteError> {
-        let Some(first) = array.layers.first().filter(|layer| !layer.levels.is_empty()) else {
-            return Err(refusal("a texture without texels".to_owned(), "bake at least one level"));
-        };
-        let sample_type = first.sample_type();
+        let sample_type = array.sample_type();
         if !sample_type.is_float() {
             let bits = 8 * sample_type.bytes();
             return Err(refusal(format!("{bits}-bit unsigned samples"), "store half or single floats"));
         }
-        check_levels(array, sample_type)?;
+        check_levels(array)?;
         let mut channels = Vec::new();
-        for (layer, texture) in array.layers.iter().enumerate() {
-            channels.extend(texture.channels.iter().enumerate().map(|(index, &name)| Channel {
+        for (layer, texture) in array.layers().iter().enumerate() {
+            channels.extend(texture.channel_names().iter().enumerate().map(|(index, &name)| Channel {
                 name,
                 layer,
                 index,
@@ -81,7 +78,7 @@ impl<'a> Plan<'a> {
 
     /// Appends the bytes of a tile in OpenEXR's order: row by row, and within a row channel by channel.
     pub(super) fn gather(&self, tile: TilePlace, bytes: &mut Vec<u8>) {
-        let level = |channel: &Channel| &self.array.layers[channel.layer].levels[tile.level];
+        let level = |channel: &Channel| &self.array.layers()[channel.layer].levels()[tile.level];
         let size = level(&self.channels[0]);
         let left = tile.column * TILE;
         let columns = left..size.width().min(left + TILE);
@@ -127,27 +124,16 @@ fn append<T: Copy, const N: usize>(
     }
 }
 
-/// Checks that all layers have the same levels, and that these are the ones that readers expect from the size.
-fn check_levels(array: &TextureArray, sample_type: SampleType) -> Result<(), WriteError> {
+/// Checks that the levels are those that readers expect from the size.
+fn check_levels(array: &TextureArray) -> Result<(), WriteError> {
     let (width, height) = array.size();
     if width.max(height) > i32::MAX as usize {
         return Err(refusal(format!("{width}x{height} texels"), "use a smaller map"));
     }
-    let expected: Vec<_> = level_sizes(width, height).collect();
-    for texture in &array.layers {
-        let sizes = texture.levels.iter().map(|level| (level.width(), level.height()));
-        if !sizes.eq(expected.iter().copied()) {
-            let what =
-                format!("the levels of '{}': they are not the halves of {width}x{height}", texture.name);
-            return Err(refusal(what, "keep every level down to 1x1"));
-        }
-        let alike = |level: &Image| {
-            level.samples().sample_type() == sample_type && level.channels() == texture.channels.len()
-        };
-        if !texture.levels.iter().all(alike) {
-            let what = format!("the levels of '{}': they differ in type or number of channels", texture.name);
-            return Err(refusal(what, "use one sample type, and a name for each channel"));
-        }
+    let (got, wanted) = (array.level_count(), level_sizes(width, height).count());
+    if got != wanted {
+        let what = format!("{got} of the {wanted} levels of {width}x{height} texels");
+        return Err(refusal(what, "keep every level down to 1x1"));
     }
     Ok(())
 }

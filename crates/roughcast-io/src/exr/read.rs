@@ -12,7 +12,7 @@ use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
 use half::f16;
 use rayon::prelude::*;
-use roughcast::texture::{LayerSpec, Texture, TextureArray, TextureInfo, layers_of};
+use roughcast::texture::{LayerSpec, ShapeFault, Texture, TextureArray, TextureInfo, layers_of};
 use roughcast::{Image, SampleType, Samples};
 
 use super::plan::{TilePlace, level_sizes, tile_places};
@@ -74,7 +74,8 @@ pub(super) fn read_layers(
             file.scatter(*tile, block, &mut levels[tile.level]);
         }
     }
-    Ok(TextureArray { info, layers: file.textures(levels, specs) })
+    let array = file.textures(levels, specs).and_then(|layers| TextureArray::new(info, layers));
+    array.map_err(|fault| malformed(fault.to_string()))
 }
 
 /// Refuses files that [`super::write()`] does not produce.
@@ -236,17 +237,18 @@ impl File<'_> {
         }
     }
 
-    fn textures(&self, levels: Vec<Vec<Samples>>, specs: Vec<LayerSpec>) -> Vec<Texture> {
-        let mut textures: Vec<Texture> = (specs.into_iter())
-            .map(|spec| Texture { name: spec.name, channels: spec.channels.to_vec(), levels: Vec::new() })
-            .collect();
+    /// Builds the textures from the samples of each level and layer.
+    fn textures(&self, levels: Vec<Vec<Samples>>, specs: Vec<LayerSpec>) -> Result<Vec<Texture>, ShapeFault> {
+        let mut images: Vec<Vec<Image>> = specs.iter().map(|_| Vec::new()).collect();
         for ((width, height), layers) in self.sizes.iter().zip(levels) {
-            for (texture, samples) in textures.iter_mut().zip(layers) {
-                let image = Image::new(*width, *height, texture.channels.len(), samples);
-                texture.levels.push(image.expect("the samples were made for this size"));
+            for ((images, spec), samples) in images.iter_mut().zip(&specs).zip(layers) {
+                let image = Image::new(*width, *height, spec.channels.len(), samples);
+                images.push(image.expect("the samples were made for this size"));
             }
         }
-        textures
+        let texture =
+            |(spec, levels): (LayerSpec, _)| Texture::new(spec.name, spec.channels.to_vec(), levels);
+        specs.into_iter().zip(images).map(texture).collect()
     }
 }
 

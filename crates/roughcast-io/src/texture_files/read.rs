@@ -189,8 +189,9 @@ fn read_png(path: &Path, bytes: &[u8], limits: &Limits) -> Result<TextureArray, 
     if layers.len() != 1 || layers[0].channels.len() != channels {
         return Err(ReadFilesError::OtherChannels { path: path.to_owned(), channels });
     }
-    let texture = Texture { name: layers[0].name, channels: layers[0].channels.to_vec(), levels };
-    Ok(TextureArray { info, layers: vec![texture] })
+    let array = Texture::new(layers[0].name, layers[0].channels.to_vec(), levels)
+        .and_then(|texture| TextureArray::new(info, vec![texture]));
+    array.map_err(|fault| of_file(path, ReadError::Malformed { format: "PNG", fault: fault.to_string() }))
 }
 
 /// The other files that may accompany a file with this metadata.

@@ -154,7 +154,7 @@ impl TextureFiles {
     /// `NAME.L0.png` …, one file for each level of the single layer.
     fn png(&mut self, path: &Path, array: &TextureArray) -> Result<(), WriteFilesError> {
         let text = array.info.to_pairs();
-        for (level, image) in array.layers.iter().flat_map(|texture| texture.levels.iter().enumerate()) {
+        for (level, image) in array.layers().iter().flat_map(|texture| texture.levels().iter().enumerate()) {
             self.file(&level_path(path, level), |out| png_levels::write_level(image, &text, out))?;
         }
         Ok(())

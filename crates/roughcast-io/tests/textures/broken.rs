@@ -6,7 +6,7 @@ use roughcast::SampleType;
 use roughcast_io::{BlockFormat, Limits, Payload, ReadError, Supercompression, compress, dds, ktx2};
 
 use crate::support::{
-    Random, assert_same_texels, bytes_of, dds_bytes, ktx2_bytes, names_in, noise_array, read_image,
+    Random, assert_same_texels, bytes_of, dds_bytes, ktx2_bytes, names_in, noise_array, read_image, shortened,
 };
 
 /// Readable files in the folder of broken files.
@@ -234,8 +234,7 @@ fn changed_bytes_never_panic() {
 #[test]
 fn several_zstd_frames_in_a_level_are_read() {
     let array = noise_array(SampleType::U16, 1, (8, 1), 1);
-    let mut single = array.clone();
-    single.layers[0].levels.truncate(1);
+    let single = shortened(&array, 1);
     let file = ktx2_bytes(Payload::Texels(&single), Supercompression::Zstd);
     let raw = zstd::decode_all(&file[file.len() - u64_at(&file, 88) as usize..]).unwrap();
     let frames = [zstd::encode_all(&raw[..5], 1).unwrap(), zstd::encode_all(&raw[5..], 1).unwrap()].concat();

@@ -27,7 +27,7 @@ fn format_of(sample_type: SampleType, channels: usize) -> Format {
 }
 
 fn raw_level(array: &TextureArray, level: usize) -> Vec<u8> {
-    let samples = array.layers.iter().map(|layer| layer.levels[level].samples());
+    let samples = array.layers().iter().map(|layer| layer.levels()[level].samples());
     let bytes = |samples: &roughcast::Samples| match samples {
         roughcast::Samples::U8(v) => v.clone(),
         roughcast::Samples::U16(v) => v.iter().flat_map(|s| s.to_le_bytes()).collect(),
@@ -124,7 +124,7 @@ fn blocks_are_read_by_an_independent_reader() {
             check_frame(&file, format, layers, size, unit_bytes);
             for (level, data) in Reader::new(&file[..]).unwrap().levels().enumerate() {
                 let raw: Vec<u8> =
-                    blocks.layers.iter().flat_map(|layer| layer.levels[level].clone()).collect();
+                    blocks.layers().iter().flat_map(|layer| layer.levels()[level].clone()).collect();
                 assert!(data.data == raw, "{block_format:?}, level {level}");
             }
         }

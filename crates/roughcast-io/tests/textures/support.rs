@@ -70,7 +70,7 @@ pub fn noise_texture(
         let samples = noise(random, sample_type, width * height * channels);
         Image::new(width, height, channels, samples).unwrap()
     });
-    Texture { name: "noise", channels: vec!["c"; channels], levels: levels.collect() }
+    Texture::new("noise", vec!["c"; channels], levels.collect()).unwrap()
 }
 
 pub fn noise_array(
@@ -80,14 +80,18 @@ pub fn noise_array(
     layers: usize,
 ) -> TextureArray {
     let mut random = Random::new((size.0 * 1000 + size.1 * 10 + layers) as u64);
-    TextureArray {
-        info: TextureInfo {
-            scale: 1.25,
-            base_variance: 1.0 / 3.0,
-            ..TextureInfo::new(Layout::Lean, Part::Whole)
-        },
-        layers: (0..layers).map(|_| noise_texture(&mut random, sample_type, channels, size)).collect(),
-    }
+    let info =
+        TextureInfo { scale: 1.25, base_variance: 1.0 / 3.0, ..TextureInfo::new(Layout::Lean, Part::Whole) };
+    let layers = (0..layers).map(|_| noise_texture(&mut random, sample_type, channels, size));
+    TextureArray::new(info, layers.collect()).unwrap()
+}
+
+/// The first levels of an array.
+pub fn shortened(array: &TextureArray, levels: usize) -> TextureArray {
+    let layers = array.layers().iter().map(|layer| {
+        Texture::new(layer.name(), layer.channel_names().to_vec(), layer.levels()[..levels].to_vec()).unwrap()
+    });
+    TextureArray::new(array.info, layers.collect()).unwrap()
 }
 
 pub fn ktx2_bytes(payload: Payload<'_>, supercompression: Supercompression) -> Vec<u8> {
@@ -105,11 +109,11 @@ pub fn dds_bytes(payload: Payload<'_>) -> Vec<u8> {
 /// Asserts equal info, sizes and bits. Names are not compared: they come from the layout, and the noise has none.
 pub fn assert_same_texels(got: &TextureArray, wanted: &TextureArray, what: &str) {
     assert_eq!(got.info, wanted.info, "{what}");
-    assert_eq!(got.layers.len(), wanted.layers.len(), "{what}: layers");
-    for (got, wanted) in got.layers.iter().zip(&wanted.layers) {
-        assert_eq!(got.channels.len(), wanted.channels.len(), "{what}: channels");
-        assert_eq!(got.levels.len(), wanted.levels.len(), "{what}: levels");
-        for (level, (got, wanted)) in got.levels.iter().zip(&wanted.levels).enumerate() {
+    assert_eq!(got.layers().len(), wanted.layers().len(), "{what}: layers");
+    for (got, wanted) in got.layers().iter().zip(wanted.layers()) {
+        assert_eq!(got.channel_names().len(), wanted.channel_names().len(), "{what}: channels");
+        assert_eq!(got.levels().len(), wanted.levels().len(), "{what}: levels");
+        for (level, (got, wanted)) in got.levels().iter().zip(wanted.levels()).enumerate() {
             let size = |image: &Image| (image.width(), image.height(), image.channels());
             assert_eq!(size(got), size(wanted), "{what}: level {level}");
             assert!(bits(got.samples()) == bits(wanted.samples()), "{what}: level {level} differs");

@@ -2,9 +2,7 @@
 
 use roughcast::Anisotropy;
 use roughcast::shading::{Shading, Wanted};
-use roughcast::texture::{
-    DecodeError, Input, Layout, Packing, Part, TexelReader, Texture, TextureArray, TextureInfo,
-};
+use roughcast::texture::{Input, Layout, Packing, Part, TexelReader, Texture, TextureArray, TextureInfo};
 
 use crate::MipmapError;
 
@@ -28,9 +26,6 @@ pub enum DetailError {
     /// There are no textures.
     #[error("there are no textures; give those of a bake")]
     Empty,
-    /// The textures do not have the same shape.
-    #[error(transparent)]
-    Shape(#[from] DecodeError),
     /// A texture cannot be sampled.
     #[error(transparent)]
     Texture(#[from] MipmapError),
@@ -63,8 +58,7 @@ pub fn model_inputs(shading: Shading, arrays: &[TextureArray]) -> Result<Texture
 /// second channel of its texture, or packed with occlusion and metalness.
 ///
 /// # Errors
-/// [`DetailError::MissingTexture`] if a texture is missing, [`DetailError::Shape`] if a texture lacks levels,
-/// [`DetailError::NotSampled`] if a texture has more channels than a sampler returns.
+/// [`DetailError::MissingTexture`] if a texture is missing, [`DetailError::NotSampled`] if a texture has more channels than a sampler returns.
 pub fn texture_inputs(wanted: Wanted, arrays: &[TextureArray]) -> Result<TextureInputs<'_>, DetailError> {
     let first = arrays.first().ok_or(DetailError::Empty)?;
     inputs_of(first.info.layout, wanted, arrays)
@@ -75,7 +69,6 @@ fn inputs_of(
     wanted: Wanted,
     arrays: &[TextureArray],
 ) -> Result<TextureInputs<'_>, DetailError> {
-    arrays.iter().try_for_each(TextureArray::check)?;
     let lobe = match array(Part::Anisotropy, arrays) {
         Some(_) => Anisotropy::Anisotropic,
         None => Anisotropy::Isotropic,
@@ -88,12 +81,12 @@ fn inputs_of(
     let mut roughness_channel = 0;
     let mut textures = Vec::with_capacity(reader.inputs.len());
     for input in reader.inputs {
-        let layer = |texture: &&Texture| texture.name == input.layer;
-        let found = array(input.part, arrays).filter(|array| array.layers.iter().any(|t| layer(&t)));
+        let layer = |texture: &&Texture| texture.name() == input.layer;
+        let found = array(input.part, arrays).filter(|array| array.layers().iter().any(|t| layer(&t)));
         let packed = array(Part::OcclusionRoughnessMetallic, arrays);
         let (found, texture) = match (found, packed) {
-            (Some(array), _) => (array, array.layers.iter().find(layer)),
-            (None, Some(packed)) if input.part == Part::Roughness => (packed, packed.layers.first()),
+            (Some(array), _) => (array, array.layers().iter().find(layer)),
+            (None, Some(packed)) if input.part == Part::Roughness => (packed, packed.layers().first()),
             _ => return Err(missing(*input)),
         };
         if input.part == Part::Roughness {
@@ -101,7 +94,7 @@ fn inputs_of(
         }
         textures.push(texture.ok_or(missing(*input))?);
     }
-    let packing = Packing::new(&first.info, first.layers[0].sample_type());
+    let packing = Packing::new(&first.info, first.sample_type());
     Ok(TextureInputs { reader, textures, roughness_channel, packing, info: first.info })
 }
 

@@ -39,8 +39,8 @@ impl SlopeMap {
 
     /// The mean slopes of a level.
     pub fn of_level(level: &MomentLevel) -> Self {
-        let slopes = level.moments.iter().map(|m| [m.mean.x, m.mean.y]).collect();
-        Self { width: level.width, height: level.height, slopes }
+        let slopes = level.moments().iter().map(|m| [m.mean.x, m.mean.y]).collect();
+        Self { width: level.width(), height: level.height(), slopes }
     }
 
     /// Width and height, in texels.
@@ -81,7 +81,7 @@ mod tests {
 
     fn map(width: usize, slopes: &[f32]) -> SlopeMap {
         let moments = slopes.iter().map(|x| Moments::of_slope(Slope { x: *x, y: -x })).collect();
-        SlopeMap::of_level(&MomentLevel { width, height: slopes.len() / width, moments })
+        SlopeMap::of_level(&MomentLevel::new(width, slopes.len() / width, moments).unwrap())
     }
 
     #[test]

@@ -27,7 +27,7 @@ impl BakedTextures {
     /// The textures from the files of any layout. Roughness may be packed with occlusion and metalness.
     ///
     /// # Errors
-    /// [`DetailError::MissingTexture`] if a texture is missing, [`DetailError::Shape`] if a texture lacks levels.
+    /// [`DetailError::MissingTexture`] if a texture is missing.
     pub fn new(wanted: Wanted, arrays: &[TextureArray]) -> Result<Self, DetailError> {
         Self::of_inputs(texture_inputs(wanted, arrays)?)
     }

@@ -11,7 +11,7 @@ use crate::Picture;
 /// [`MetricError::NothingCovered`].
 pub fn energy_error(picture: &Picture, truth: &Picture) -> Result<f64, MetricError> {
     let pixels = covered(truth, [picture])?;
-    let sum = |of: &Picture| pixels.iter().flat_map(|i| of.specular[*i]).map(f64::from).sum::<f64>();
+    let sum = |of: &Picture| pixels.iter().flat_map(|i| of.specular()[*i]).map(f64::from).sum::<f64>();
     let wanted = sum(truth);
     if wanted > 0.0 { Ok(sum(picture) / wanted - 1.0) } else { Err(MetricError::NoHighlight) }
 }
@@ -35,7 +35,7 @@ mod tests {
     fn only_specular_light_counts_and_it_is_required() {
         let truth = picture(2, 2, |_, _| [1.0; 3]);
         let mut brighter = truth.clone();
-        brighter.radiance.fill([9.0; 3]);
+        brighter.radiance_mut().fill([9.0; 3]);
         assert_eq!(energy_error(&brighter, &truth), Ok(0.0));
         let dark = picture(2, 2, |_, _| [0.0; 3]);
         assert_eq!(energy_error(&truth, &dark), Err(MetricError::NoHighlight));

@@ -25,7 +25,7 @@ pub fn flicker(frames: &[Picture], truth: &[Picture]) -> Result<f64, MetricError
     for pixel in &pixels {
         for channel in 0..3 {
             let variance =
-                |of: &[Picture]| variance(of.iter().map(|p| f64::from(p.radiance[*pixel][channel])));
+                |of: &[Picture]| variance(of.iter().map(|p| f64::from(p.radiance()[*pixel][channel])));
             sum += (variance(frames) - variance(truth)).max(0.0);
         }
     }

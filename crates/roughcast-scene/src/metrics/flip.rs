@@ -51,10 +51,10 @@ pub struct FlipMap {
 /// [`MetricError::Sizes`], [`MetricError::NothingCovered`].
 pub fn ldr_flip(picture: &Picture, truth: &Picture, pixels_per_degree: f32) -> Result<FlipMap, MetricError> {
     let pixels = covered(truth, [picture])?;
-    let clamped = |of: &Picture| of.radiance.iter().map(|rgb| rgb.map(unit)).collect::<Vec<_>>();
+    let clamped = |of: &Picture| of.radiance().iter().map(|rgb| rgb.map(unit)).collect::<Vec<_>>();
     let (test, reference) = (clamped(&alike(picture, truth)), clamped(truth));
-    let errors = errors(&test, &reference, truth.width, pixels_per_degree);
-    Ok(FlipMap::over(&pixels, truth.width, errors))
+    let errors = errors(&test, &reference, truth.width(), pixels_per_degree);
+    Ok(FlipMap::over(&pixels, truth.width(), errors))
 }
 
 /// HDR-FLIP of two pictures of linear radiance: the largest LDR-FLIP over a range of exposures that is determined by
@@ -66,13 +66,14 @@ pub fn hdr_flip(picture: &Picture, truth: &Picture, pixels_per_degree: f32) -> R
     let pixels = covered(truth, [picture])?;
     let picture = alike(picture, truth);
     let mut largest = vec![0.0_f32; truth.len()];
-    for exposure in exposures(pixels.iter().map(|i| luminance(truth.radiance[*i])).collect()) {
-        let shown =
-            |of: &Picture| of.radiance.iter().map(|rgb| rgb.map(|c| toned(c * exposure))).collect::<Vec<_>>();
-        let errors = errors(&shown(&picture), &shown(truth), truth.width, pixels_per_degree);
+    for exposure in exposures(pixels.iter().map(|i| luminance(truth.radiance()[*i])).collect()) {
+        let shown = |of: &Picture| {
+            of.radiance().iter().map(|rgb| rgb.map(|c| toned(c * exposure))).collect::<Vec<_>>()
+        };
+        let errors = errors(&shown(&picture), &shown(truth), truth.width(), pixels_per_degree);
         largest.iter_mut().zip(errors).for_each(|(largest, error)| *largest = largest.max(error));
     }
-    Ok(FlipMap::over(&pixels, truth.width, largest))
+    Ok(FlipMap::over(&pixels, truth.width(), largest))
 }
 
 impl FlipMap {
@@ -89,8 +90,8 @@ impl FlipMap {
 fn alike(picture: &Picture, truth: &Picture) -> Picture {
     let mut picture = picture.clone();
     for i in 0..truth.len() {
-        if picture.coverage[i] < COVERED || truth.coverage[i] < COVERED {
-            picture.radiance[i] = truth.radiance[i];
+        if picture.coverage()[i] < COVERED || truth.coverage()[i] < COVERED {
+            picture.radiance_mut()[i] = truth.radiance()[i];
         }
     }
     picture
@@ -276,7 +277,7 @@ mod tests {
         let mut other = picture(16, 16, |x, _| [if x < 8 { 0.5 } else { 0.9 }; 3]);
         assert!(hdr_flip(&other, &truth, DEFAULT_PIXELS_PER_DEGREE).unwrap().mean > 0.05);
         for i in 0..256 {
-            other.coverage[i] = if i % 16 < 8 { 1.0 } else { 0.9 };
+            other.coverage_mut()[i] = if i % 16 < 8 { 1.0 } else { 0.9 };
         }
         let map = hdr_flip(&other, &truth, DEFAULT_PIXELS_PER_DEGREE).unwrap();
         assert!(map.mean == 0.0 && map.errors.iter().all(|e| *e == 0.0));

@@ -45,12 +45,12 @@ fn covered<'a>(
     first: &Picture,
     others: impl IntoIterator<Item = &'a Picture>,
 ) -> Result<Vec<usize>, MetricError> {
-    let mut all: Vec<usize> = (0..first.len()).filter(|i| first.coverage[*i] >= COVERED).collect();
+    let mut all: Vec<usize> = (0..first.len()).filter(|i| first.coverage()[*i] >= COVERED).collect();
     for other in others {
-        if (other.width, other.height) != (first.width, first.height) {
-            return Err(MetricError::Sizes(first.width, first.height, other.width, other.height));
+        if (other.width(), other.height()) != (first.width(), first.height()) {
+            return Err(MetricError::Sizes(first.width(), first.height(), other.width(), other.height()));
         }
-        all.retain(|i| other.coverage[*i] >= COVERED);
+        all.retain(|i| other.coverage()[*i] >= COVERED);
     }
     if all.is_empty() { Err(MetricError::NothingCovered) } else { Ok(all) }
 }
@@ -64,7 +64,7 @@ mod test_pictures {
     pub fn picture(width: usize, height: usize, radiance: impl Fn(usize, usize) -> [f32; 3]) -> Picture {
         let pixels: Vec<[f32; 3]> = (0..width * height).map(|i| radiance(i % width, i / width)).collect();
         let coverage = vec![1.0; width * height];
-        Picture { width, height, specular: pixels.clone(), radiance: pixels, coverage }
+        Picture::new(width, height, pixels.clone(), pixels, coverage).expect("a value per pixel")
     }
 }
 
@@ -77,9 +77,9 @@ mod tests {
     fn pixels_count_that_both_pictures_cover() {
         let mut a = picture(3, 1, |_, _| [0.0; 3]);
         let mut b = a.clone();
-        (a.coverage[0], b.coverage[2]) = (0.99, 0.0);
+        (a.coverage_mut()[0], b.coverage_mut()[2]) = (0.99, 0.0);
         assert_eq!(covered(&a, [&b]), Ok(vec![1]));
-        b.coverage[1] = 0.5;
+        b.coverage_mut()[1] = 0.5;
         assert_eq!(covered(&a, [&b]), Err(MetricError::NothingCovered));
         assert_eq!(covered(&a, [&picture(1, 3, |_, _| [0.0; 3])]), Err(MetricError::Sizes(3, 1, 1, 3)));
     }

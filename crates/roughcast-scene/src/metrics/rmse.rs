@@ -9,7 +9,7 @@ use crate::Picture;
 /// [`MetricError::Sizes`], [`MetricError::NothingCovered`].
 pub fn rmse(picture: &Picture, truth: &Picture) -> Result<f64, MetricError> {
     let pixels = covered(truth, [picture])?;
-    let squares = pixels.iter().flat_map(|i| picture.radiance[*i].iter().zip(&truth.radiance[*i]));
+    let squares = pixels.iter().flat_map(|i| picture.radiance()[*i].iter().zip(&truth.radiance()[*i]));
     let sum: f64 = squares.map(|(a, b)| (f64::from(*a) - f64::from(*b)).powi(2)).sum();
     Ok((sum / (3 * pixels.len()) as f64).sqrt())
 }
@@ -36,7 +36,7 @@ mod tests {
         let truth = picture(2, 1, |_, _| [1.0; 3]);
         let mut other = picture(2, 1, |x, _| [1.0 + x as f32; 3]);
         assert!(rmse(&other, &truth).unwrap() > 0.5);
-        other.coverage[1] = 0.5;
+        other.coverage_mut()[1] = 0.5;
         assert_eq!(rmse(&other, &truth), Ok(0.0));
     }
 }

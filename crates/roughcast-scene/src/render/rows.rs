@@ -69,10 +69,7 @@ impl Row<'_> {
 fn rows_of_each(pictures: &mut [Picture], height: usize) -> Vec<Vec<Row<'_>>> {
     let mut rows: Vec<Vec<Row<'_>>> = (0..height).map(|_| Vec::with_capacity(pictures.len())).collect();
     for picture in pictures {
-        let width = picture.width;
-        let parts = picture.radiance.chunks_mut(width).zip(picture.specular.chunks_mut(width));
-        let parts = parts.zip(picture.coverage.chunks_mut(width));
-        for (row, ((radiance, specular), coverage)) in rows.iter_mut().zip(parts) {
+        for (row, (radiance, specular, coverage)) in rows.iter_mut().zip(picture.rows_mut()) {
             row.push(Row { radiance, specular, coverage });
         }
     }

@@ -14,20 +14,20 @@ pub(super) fn allocate(
     size: (usize, usize),
 ) -> Vec<TextureArray> {
     let sample_type = options.sample_type;
-    let mut earlier = earlier.into_iter().flat_map(|array| array.layers);
+    let mut earlier = earlier.into_iter().flat_map(TextureArray::into_layers);
     let mut texture = |spec: &LayerSpec, channels: usize| {
-        let levels = level_sizes(size.0, size.1);
-        let fits = |image: &Image, (width, height): (usize, usize)| {
-            (image.width(), image.height(), image.channels()) == (width, height, channels)
-                && image.samples().sample_type() == sample_type
+        let sizes = level_sizes(size.0, size.1);
+        let fits = |texture: &Texture| {
+            texture.size() == size
+                && texture.levels().len() == sizes.len()
+                && texture.channel_names().len() == channels
+                && texture.sample_type() == sample_type
         };
-        let levels = match earlier.next() {
-            Some(texture) if texture.levels.iter().zip(&levels).all(|(image, size)| fits(image, *size)) => {
-                texture.levels
-            }
-            _ => levels.into_iter().map(|(w, h)| Image::zeros(w, h, channels, sample_type)).collect(),
+        let levels = match earlier.next().filter(fits) {
+            Some(texture) => texture.into_levels(),
+            None => sizes.into_iter().map(|(w, h)| Image::zeros(w, h, channels, sample_type)).collect(),
         };
-        Texture { name: spec.name, channels: spec.channels[..channels].to_vec(), levels }
+        Texture::new(spec.name, spec.channels[..channels].to_vec(), levels).expect("levels that halve")
     };
     let parts = options.layout.parts_written(options.blocks, &options.pbr);
     parts
@@ -39,7 +39,7 @@ pub(super) fn allocate(
                 .iter()
                 .map(|spec| texture(spec, if two_channels { 2 } else { spec.channels.len() }))
                 .collect();
-            TextureArray { info, layers }
+            TextureArray::new(info, layers).expect("a layout has layers, all of one size")
         })
         .collect()
 }
@@ -51,10 +51,10 @@ pub(super) fn level_outs<'a>(
     let (width, height) = arrays[0].size();
     let sizes = level_sizes(width, height);
     let mut parts: Vec<Vec<PartOut<'a>>> = sizes.iter().map(|_| Vec::new()).collect();
-    for layer in arrays.iter_mut().flat_map(|array| &mut array.layers) {
-        for (level, image) in layer.levels.iter_mut().enumerate() {
+    for levels in arrays.iter_mut().flat_map(TextureArray::levels_mut) {
+        for (image, parts) in levels.iter_mut().zip(&mut parts) {
             let channels = image.channels();
-            parts[level].push(PartOut { channels, samples: image.samples_mut() });
+            parts.push(PartOut { channels, samples: image.samples_mut() });
         }
     }
     sizes.into_iter().zip(parts).map(|(size, parts)| LevelOut::encoded(size, encoder, parts)).collect()

@@ -3,8 +3,8 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::*;
-use crate::texture::Layout;
-use crate::{Image, PyramidFilter, Samples};
+use crate::texture::{Layout, Texture};
+use crate::{Image, PyramidFilter, SampleType, Samples};
 
 /// Normals computed from integers, so that they are the same on every machine.
 fn map(width: usize, height: usize) -> Image {
@@ -24,12 +24,42 @@ fn bake_of(map: &Image, layout: Layout, filter: PyramidFilter) -> Bake<'_> {
 
 /// FNV-1a hash of all samples of all levels.
 fn hash(baked: &Baked) -> u64 {
-    let layers = baked.arrays.iter().flat_map(|array| &array.layers);
-    let images = layers.flat_map(|layer| &layer.levels);
+    let layers = baked.arrays.iter().flat_map(|array| array.layers());
+    let images = layers.flat_map(|layer| layer.levels());
     let samples = images.flat_map(|image| (0..image.samples().len()).map(|i| image.samples().get(i)));
     samples
         .flat_map(|sample| sample.to_bits().to_le_bytes())
         .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
+}
+
+#[test]
+fn textures_of_any_shape_can_be_reused() {
+    let (small, large) = (map(32, 16), map(64, 64));
+    let bake = |map, sample_type| {
+        let options = BakeOptions { sample_type, ..BakeOptions::default() };
+        Bake::of(map).options(options)
+    };
+    let fresh = |map, sample_type| bake(map, sample_type).run().expect("a map").arrays;
+    let wanted = fresh(&small, SampleType::U16);
+    let chain_that_ends_early = wanted.iter().map(|array| {
+        let layers = array.layers().iter().map(|layer| {
+            let (names, levels) = (layer.channel_names().to_vec(), layer.levels()[..2].to_vec());
+            Texture::new(layer.name(), names, levels).expect("levels that halve")
+        });
+        TextureArray::new(array.info, layers.collect()).expect("layers of one size")
+    });
+    let other_channels = bake_of(&small, Layout::Clean, PyramidFilter::Box).run().expect("a map").arrays;
+    for earlier in [
+        fresh(&small, SampleType::U16),
+        fresh(&small, SampleType::U8),
+        fresh(&large, SampleType::U16),
+        chain_that_ends_early.collect(),
+        other_channels,
+        vec![],
+    ] {
+        let reused = bake(&small, SampleType::U16).reusing(earlier).run().expect("a map");
+        assert_eq!(reused.arrays, wanted);
+    }
 }
 
 /// Runs with all features and with none: the pinned hashes apply to every build. A layout that is not in the list is

@@ -1,21 +1,9 @@
 //! Decodes stored textures into moments.
 
 use super::codec::Units;
-use super::{Layout, Part, ShapeFault, TextureArray, TextureInfo, join_layers};
+use super::{Layout, MomentLevel, Part, ShapeFault, TextureArray, TextureInfo, join_layers};
 use crate::moments::Moments;
 use crate::{Samples, parallel};
-
-/// A level of moments, row by row from the top.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct MomentLevel {
-    /// Number of texels per row.
-    pub width: usize,
-    /// Number of rows.
-    pub height: usize,
-    /// `width * height` moments. Their covariance is positive semidefinite.
-    pub moments: Vec<Moments>,
-}
 
 /// Reasons why textures cannot be decoded.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, thiserror::Error)]
@@ -78,8 +66,8 @@ pub enum DecodeError {
 /// let source = roughcast::SourceOptions::default().with_range(roughcast::NormalRange::Signed);
 /// let options = BakeOptions::default().with_layout(Layout::Clean);
 /// let levels = decode(&Bake::of(&map).source(source).options(options).run()?.arrays)?;
-/// assert_eq!((levels.len(), levels[0].width, levels[0].moments.len()), (3, 4, 16));
-/// let whole = levels[2].moments[0];
+/// assert_eq!((levels.len(), levels[0].width(), levels[0].moments().len()), (3, 4, 16));
+/// let whole = levels[2].moments()[0];
 /// assert!((whole.mean.x + 1.0).abs() < 1e-4 && whole.covariance().trace() < 1e-3);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -87,17 +75,16 @@ pub fn decode(arrays: &[TextureArray]) -> Result<Vec<MomentLevel>, DecodeError> 
     if arrays.iter().any(|array| array.info.layer.is_some()) {
         return decode(&join_layers(arrays.to_vec())?);
     }
-    arrays.iter().try_for_each(TextureArray::check)?;
     let files = Files::find(arrays)?;
     let decoder = files.main().info.layout.rules().decoder(&files);
-    let levels = files.main().layers[0].levels.iter().enumerate().map(|(level, image)| {
+    let levels = files.main().layers()[0].levels().iter().enumerate().map(|(level, image)| {
         let (width, height) = (image.width(), image.height());
         let mut moments = vec![Moments::default(); width * height];
         parallel::map_with(moments.chunks_mut(width).enumerate().collect(), Vec::new, |texels, (y, row)| {
             files.load_row(level, y, texels);
             decoder.decode_row(texels, files.channels(), row);
         });
-        MomentLevel { width, height, moments }
+        MomentLevel::new(width, height, moments).expect("as many as texels")
     });
     Ok(levels.collect())
 }
@@ -156,11 +143,11 @@ impl<'a> Files<'a> {
             return fault(ShapeFault::FileSizes);
         }
         let wanted = super::layers_of(&array.info);
-        if array.layers.len() != wanted.len() {
-            return fault(ShapeFault::LayerCount { got: array.layers.len(), wanted: wanted.len() });
+        if array.layers().len() != wanted.len() {
+            return fault(ShapeFault::LayerCount { got: array.layers().len(), wanted: wanted.len() });
         }
-        for (layer, spec) in array.layers.iter().zip(wanted) {
-            let (got, wanted) = (layer.levels[0].channels(), spec.channels.len());
+        for (layer, spec) in array.layers().iter().zip(wanted) {
+            let (got, wanted) = (layer.levels()[0].channels(), spec.channels.len());
             // A block-compressed normal has lost its third channel and the filler; no other channels may be missing.
             let short_normal = array.info.part == Part::Normal && got == 2;
             if got < wanted && !short_normal {
@@ -182,7 +169,7 @@ impl<'a> Files<'a> {
 
     /// How the texels of the main file are stored.
     pub fn units(&self) -> Units {
-        Units::new(self.main_info(), self.main().layers[0].sample_type())
+        Units::new(self.main_info(), self.main().sample_type())
     }
 
     /// Number of channels of the main file, which come first in a texel.
@@ -208,10 +195,10 @@ impl<'a> Files<'a> {
 
     /// Reads the texels of a row: the channels of all files, interleaved.
     fn load_row(&self, level: usize, y: usize, texels: &mut Vec<f32>) {
-        texels.resize(self.channels() * self.main().layers[0].levels[level].width(), 0.0);
+        texels.resize(self.channels() * self.main().layers()[0].levels()[level].width(), 0.0);
         let mut first_channel = 0;
-        for layer in self.0.iter().flat_map(|array| &array.layers) {
-            let image = &layer.levels[level];
+        for layer in self.0.iter().flat_map(|array| array.layers()) {
+            let image = &layer.levels()[level];
             let row = y * image.width() * image.channels()..(y + 1) * image.width() * image.channels();
             let mut load =
                 RowLoader { texels, stride: self.channels(), first_channel, channels: image.channels() };
@@ -251,5 +238,5 @@ impl RowLoader<'_> {
 
 /// Total number of channels of all layers of a file.
 fn channels_of(array: &TextureArray) -> usize {
-    array.layers.iter().map(|layer| layer.levels[0].channels()).sum()
+    array.layers().iter().map(|layer| layer.levels()[0].channels()).sum()
 }

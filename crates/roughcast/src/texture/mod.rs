@@ -3,6 +3,7 @@
 //! Each layout has one file with its description (answering the questions of `rules.rs`), the encoding of moments
 //! into texels, their decoding, and the bounds of the error. [`Layout`] lists them.
 
+mod array;
 mod bump_slopes;
 mod clean;
 pub(crate) mod codec;
@@ -11,6 +12,7 @@ mod info;
 mod layout;
 mod lean;
 mod models;
+mod moment_level;
 mod moments;
 pub(crate) mod orient;
 pub(crate) mod pack;
@@ -27,10 +29,12 @@ mod toksvig;
 mod variance;
 
 pub use crate::roughness::{Base, Brdf, RoughnessStored};
+pub use array::{Texture, TextureArray};
 pub use codec::{Blocks, Bounds, LayerSpec, Peaks};
-pub use decode::{DecodeError, MomentLevel, decode};
+pub use decode::{DecodeError, decode};
 pub use info::{InfoError, Part, TextureInfo};
 pub use layout::Layout;
+pub use moment_level::MomentLevel;
 pub use packing::Packing;
 pub use pbr::{AnisotropyOutput, PbrOptions};
 pub use rules::{BaseRole, BlockCompression};
@@ -44,52 +48,9 @@ pub use texels::{
     toksvig_normal, variance_moments,
 };
 
+use crate::SampleType;
 use crate::moments::Moments;
-use crate::{Image, SampleType};
 use rules::Storage;
-
-/// A texture with its levels: level 0 first, each `max(1, floor(n / 2))` of the previous one, down to 1x1.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Texture {
-    /// The name of the texture inside the array: `lean1`, `lean2`, `normal` ...
-    pub name: &'static str,
-    /// The name of each channel, as stored in an EXR file: `B.x`, `M.xy`, `b0_h` ...
-    pub channels: Vec<&'static str>,
-    /// The levels. All have the same number of channels and the same sample type.
-    pub levels: Vec<Image>,
-}
-
-impl Texture {
-    /// The storage type of the samples.
-    ///
-    /// # Panics
-    /// If there is no level.
-    pub fn sample_type(&self) -> SampleType {
-        self.levels[0].samples().sample_type()
-    }
-}
-
-/// Textures of equal sizes and equal format that go into one file, as the layers of one array texture.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TextureArray {
-    /// The meaning of the texels.
-    pub info: TextureInfo,
-    /// The layers, at least one.
-    pub layers: Vec<Texture>,
-}
-
-impl TextureArray {
-    /// Width and height of level 0, in texels; zero if there is no level 0.
-    pub fn size(&self) -> (usize, usize) {
-        let level = self.layers.first().and_then(|layer| layer.levels.first());
-        level.map_or((0, 0), |level| (level.width(), level.height()))
-    }
-
-    /// Number of levels of the first layer; zero if there are none.
-    pub fn level_count(&self) -> usize {
-        self.layers.first().map_or(0, |layer| layer.levels.len())
-    }
-}
 
 /// The textures of a file with this meaning, in the order of its layers. A block-compressed normal has only the first
 /// two of the channels listed here.

@@ -9,7 +9,6 @@
 //! first. If no consistent signs exist (half a turn around a point, as in a fingerprint), the seam is therefore
 //! placed where it is least visible.
 
-use super::Texture;
 use super::codec::Affine;
 use crate::convention::Wrap;
 use crate::parallel;
@@ -20,18 +19,18 @@ use crate::{Image, Samples, SamplesMut};
 ///
 /// Texels with zero strength take the direction of the texel of the coarser level, so that the direction does not
 /// rotate between them and their neighbours.
-pub(crate) fn orient(texture: &mut Texture, wrap: Wrap, unit: Affine) {
-    for level in (1..texture.levels.len()).rev() {
-        let (finer, coarser) = texture.levels.split_at_mut(level);
+pub(crate) fn orient(levels: &mut [Image], wrap: Wrap, unit: Affine) {
+    for level in (1..levels.len()).rev() {
+        let (finer, coarser) = levels.split_at_mut(level);
         fill_from_coarser(&mut finer[level - 1], &coarser[0]);
     }
-    let graph = Graph::of(&texture.levels, wrap, unit);
+    let graph = Graph::of(levels, wrap, unit);
     let mut signs = graph.signs();
     if graph.points_left(&mut signs) {
         signs.turned = !signs.turned;
     }
     let mut node = 0;
-    for image in &mut texture.levels {
+    for image in levels {
         node = turn(image, unit, node, &mut signs);
     }
 }

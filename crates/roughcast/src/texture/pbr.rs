@@ -183,8 +183,9 @@ impl LayoutRules for Pbr {
 
     fn finish(&self, arrays: &mut [TextureArray]) {
         if let Some(directions) = arrays.iter_mut().find(|array| array.info.part == Part::Anisotropy) {
-            let unit = Units::new(&directions.info, directions.layers[0].sample_type()).unit();
-            orient(&mut directions.layers[0], directions.info.wrap, unit);
+            let unit = Units::new(&directions.info, directions.sample_type()).unit();
+            let wrap = directions.info.wrap;
+            directions.levels_mut().for_each(|levels| orient(levels, wrap, unit));
         }
     }
 

@@ -11,9 +11,9 @@ use super::TextureArray;
 /// against forgery.
 pub(crate) fn set_id(arrays: &[TextureArray]) -> u64 {
     let mut hash = Hash(arrays.len() as u64);
-    for texture in arrays.iter().flat_map(|array| &array.layers) {
-        hash.add_bytes(texture.name.as_bytes());
-        for level in &texture.levels {
+    for texture in arrays.iter().flat_map(TextureArray::layers) {
+        hash.add_bytes(texture.name().as_bytes());
+        for level in texture.levels() {
             hash.add(level.width() as u64);
             hash.add(level.channels() as u64);
             match level.samples() {

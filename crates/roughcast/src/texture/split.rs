@@ -25,7 +25,6 @@ pub fn split_infos(info: &TextureInfo) -> Vec<TextureInfo> {
 /// [`DecodeError::MissingLayer`] if a layer is missing, [`DecodeError::OtherSet`] and [`DecodeError::Shape`] if
 /// layers do not belong together.
 pub fn join_layers(arrays: Vec<TextureArray>) -> Result<Vec<TextureArray>, DecodeError> {
-    arrays.iter().try_for_each(TextureArray::check)?;
     let (single, mut joined): (Vec<_>, Vec<_>) =
         arrays.into_iter().partition(|array| array.info.layer.is_some());
     let mut parts: Vec<Vec<TextureArray>> = Vec::new();
@@ -66,22 +65,22 @@ fn join(mut layers: Vec<TextureArray>) -> Result<TextureArray, DecodeError> {
             return Err(shape(ShapeFault::LayerSizes));
         }
     }
-    let textures: Vec<Texture> = layers.into_iter().flat_map(|array| array.layers).collect();
+    let textures: Vec<Texture> = layers.into_iter().flat_map(TextureArray::into_layers).collect();
     if textures.len() != layers_of(&info).len() {
         return Err(shape(ShapeFault::SeveralLayers));
     }
-    Ok(TextureArray { info, layers: textures })
+    TextureArray::new(info, textures).map_err(shape)
 }
 
 /// Splits arrays into one file per layer: the inverse of [`join_layers`].
 pub fn split_layers(arrays: Vec<TextureArray>) -> Vec<TextureArray> {
     let split = |array: TextureArray| {
         let infos = split_infos(&array.info);
-        if infos.len() != array.layers.len() || infos.len() == 1 {
+        if infos.len() != array.layers().len() || infos.len() == 1 {
             return vec![array];
         }
-        let layers = infos.into_iter().zip(array.layers);
-        layers.map(|(info, layer)| TextureArray { info, layers: vec![layer] }).collect()
+        let alone = |(info, layer)| TextureArray::new(info, vec![layer]).expect("a layer is alike to itself");
+        infos.into_iter().zip(array.into_layers()).map(alone).collect()
     };
     arrays.into_iter().flat_map(split).collect()
 }
@@ -106,7 +105,7 @@ mod tests {
         let whole = baked();
         let mut split = split_layers(whole.clone());
         assert_eq!(split.len(), 2);
-        assert!(split.iter().all(|array| array.layers.len() == 1 && array.info.set != 0));
+        assert!(split.iter().all(|array| array.layers().len() == 1 && array.info.set != 0));
         split.reverse();
         assert_eq!(join_layers(split.clone()), Ok(whole.clone()));
         assert_eq!(decode(&split), decode(&whole), "decoding joins by itself");
@@ -124,8 +123,15 @@ mod tests {
         assert!(matches!(join_layers(foreign), Err(DecodeError::OtherSet { .. })));
         let twice = vec![split[0].clone(), split[0].clone()];
         assert!(matches!(join_layers(twice), Err(DecodeError::Shape { .. })));
-        let mut smaller = split;
-        smaller[1].layers[0].levels.remove(0);
-        assert!(matches!(join_layers(smaller), Err(DecodeError::Shape { .. })));
+        let fault = |fault| Err(DecodeError::Shape { layout: Layout::Lean, fault });
+        let layer = &split[1].layers()[0];
+        let names = layer.channel_names().to_vec();
+        let levels = layer.levels()[1..].to_vec();
+        let smaller = Texture::new(layer.name(), names, levels).expect("levels that halve");
+        let smaller = TextureArray::new(split[1].info, vec![smaller]).expect("one layer");
+        assert_eq!(join_layers(vec![split[0].clone(), smaller]), fault(ShapeFault::LayerSizes));
+        let mut several = split;
+        several[1] = TextureArray::new(several[1].info, baked().remove(0).into_layers()).expect("two layers");
+        assert_eq!(join_layers(several), fault(ShapeFault::SeveralLayers));
     }
 }

@@ -95,25 +95,26 @@ pub fn channel_of(image: &Image, channel: usize) -> Plane {
 /// The layer of a file with this name.
 pub fn layer<'a>(array: &'a TextureArray, name: &str) -> &'a Texture {
     array
-        .layers
+        .layers()
         .iter()
-        .find(|layer| layer.name == name)
+        .find(|layer| layer.name() == name)
         .unwrap_or_else(|| panic!("no layer is called {name}"))
 }
 
 /// The channel with this name on every level of a texture, as stored.
 pub fn stored(texture: &Texture, channel: &str) -> Vec<Plane> {
-    let index = texture.channels.iter().position(|name| *name == channel);
-    let index =
-        index.unwrap_or_else(|| panic!("{} has no channel {channel}: {:?}", texture.name, texture.channels));
-    texture.levels.iter().map(|image| channel_of(image, index)).collect()
+    let index = texture.channel_names().iter().position(|name| *name == channel);
+    let index = index.unwrap_or_else(|| {
+        panic!("{} has no channel {channel}: {:?}", texture.name(), texture.channel_names())
+    });
+    texture.levels().iter().map(|image| channel_of(image, index)).collect()
 }
 
 /// The levels of a file of the layout `moments`, as stored, without the decoder's changes.
 pub fn raw_moments(baked: &Baked) -> Vec<Level> {
     let texture = layer(&baked.arrays[0], "moments");
     let planes = NAMES.map(|name| stored(texture, name));
-    (0..texture.levels.len())
+    (0..texture.levels().len())
         .map(|level| Level {
             width: planes[0][level].width,
             height: planes[0][level].height,
@@ -158,10 +159,10 @@ pub fn decoded(arrays: &[TextureArray]) -> Vec<Level> {
 
 fn from_decoded(level: &MomentLevel) -> Level {
     let texels = level
-        .moments
+        .moments()
         .iter()
         .map(|m| Texel { b: [m.mean.x.into(), m.mean.y.into()], m: [m.xx.into(), m.yy.into(), m.xy.into()] });
-    Level::from_texels(level.width, level.height, texels)
+    Level::from_texels(level.width(), level.height(), texels)
 }
 
 /// A quantity of every texel of every level.

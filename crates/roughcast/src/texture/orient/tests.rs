@@ -7,7 +7,7 @@ const SIDE: usize = 64;
 const SIGNED: Affine = Affine::IDENTITY;
 
 /// Levels of axes in floats, each with its own sign, chosen to vary as much as possible.
-fn field(axis: impl Fn(f64, f64) -> Option<f64>) -> Texture {
+fn field(axis: impl Fn(f64, f64) -> Option<f64>) -> Vec<Image> {
     let mut random = 1_u32;
     let levels = level_sizes(SIDE, SIDE).into_iter().map(|(width, height)| {
         let mut values = Vec::new();
@@ -21,7 +21,7 @@ fn field(axis: impl Fn(f64, f64) -> Option<f64>) -> Texture {
         }
         Image::new(width, height, 4, Samples::F32(values)).expect("whole pixels")
     });
-    Texture { name: "anisotropy", channels: vec!["R", "G", "B", "A"], levels: levels.collect() }
+    levels.collect()
 }
 
 fn direction(image: &Image, x: usize, y: usize) -> [f64; 2] {
@@ -29,9 +29,9 @@ fn direction(image: &Image, x: usize, y: usize) -> [f64; 2] {
 }
 
 /// The shortest sum of two neighbouring unit directions, over the pairs that `counts` selects.
-fn shortest(texture: &Texture, counts: impl Fn(f64, f64, f64) -> bool) -> f64 {
+fn shortest(levels: &[Image], counts: impl Fn(f64, f64, f64) -> bool) -> f64 {
     let mut shortest = f64::INFINITY;
-    for image in &texture.levels {
+    for image in levels {
         let (width, height) = (image.width(), image.height());
         for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
             for (dx, dy) in [(1, 0), (0, 1)] {
@@ -53,30 +53,30 @@ const LEAST: f64 = 0.866;
 
 #[test]
 fn circles_agree_although_no_reference_axis_works() {
-    let mut texture = field(|u, v| Some((v - 0.5).atan2(u - 0.5)));
+    let mut levels = field(|u, v| Some((v - 0.5).atan2(u - 0.5)));
     // Neighbours less than two texels from the centre differ by more than a sixth of a turn; the circles end beyond
     // the edge of the tile.
     let counts = |u: f64, v: f64, texel: f64| (u - 0.5).hypot(v - 0.5) > 2.0 * texel && u.max(v) < 1.0;
-    assert!(shortest(&texture, counts) < 0.1, "random signs cancel somewhere");
-    orient(&mut texture, Wrap::Repeat, SIGNED);
-    assert!(shortest(&texture, counts) > LEAST, "{}", shortest(&texture, counts));
+    assert!(shortest(&levels, counts) < 0.1, "random signs cancel somewhere");
+    orient(&mut levels, Wrap::Repeat, SIGNED);
+    assert!(shortest(&levels, counts) > LEAST, "{}", shortest(&levels, counts));
 }
 
 #[test]
 fn waves_agree_across_the_edge_of_the_tile() {
-    let mut texture = field(|u, _| Some(2.0 * (std::f64::consts::TAU * u).sin()));
+    let mut levels = field(|u, _| Some(2.0 * (std::f64::consts::TAU * u).sin()));
     // The wave's axes rotate by at most 4 pi per tile: a sixth of a turn per texel from 16 texels on.
     let counts = |_: f64, _: f64, texel: f64| texel <= 1.0 / 16.0;
-    assert!(shortest(&texture, counts) < 0.1);
-    orient(&mut texture, Wrap::Repeat, SIGNED);
-    assert!(shortest(&texture, counts) > LEAST, "{}", shortest(&texture, counts));
+    assert!(shortest(&levels, counts) < 0.1);
+    orient(&mut levels, Wrap::Repeat, SIGNED);
+    assert!(shortest(&levels, counts) > LEAST, "{}", shortest(&levels, counts));
 }
 
 #[test]
 fn levels_agree_with_the_next_coarser_one() {
-    let mut texture = field(|u, v| Some((v - 0.5).atan2(u - 0.5)));
-    orient(&mut texture, Wrap::Clamp, SIGNED);
-    for pair in texture.levels.windows(2) {
+    let mut levels = field(|u, v| Some((v - 0.5).atan2(u - 0.5)));
+    orient(&mut levels, Wrap::Clamp, SIGNED);
+    for pair in levels.windows(2) {
         let size = (pair[1].width(), pair[1].height());
         for (x, y) in (0..pair[0].height()).flat_map(|y| (0..pair[0].width()).map(move |x| (x, y))) {
             let (above_x, above_y) = covering((x, y), size);
@@ -94,11 +94,11 @@ fn levels_agree_with_the_next_coarser_one() {
 fn texels_without_strength_follow_the_coarser_level() {
     // Only the left half has a direction, which points straight up.
     let up = std::f64::consts::FRAC_PI_2;
-    let mut texture = field(|u, _| (u < 0.5).then_some(up));
+    let mut levels = field(|u, _| (u < 0.5).then_some(up));
     // The last level averages both halves.
-    texture.levels[6] = field(|_, _| Some(up)).levels[6].clone();
-    orient(&mut texture, Wrap::Repeat, SIGNED);
-    let all = texture.levels.iter().flat_map(|image| {
+    levels[6] = field(|_, _| Some(up))[6].clone();
+    orient(&mut levels, Wrap::Repeat, SIGNED);
+    let all = levels.iter().flat_map(|image| {
         (0..image.width() * image.height()).map(|i| direction(image, i % image.width(), i / image.width()))
     });
     let all: Vec<_> = all.collect();
@@ -107,9 +107,8 @@ fn texels_without_strength_follow_the_coarser_level() {
 
 #[test]
 fn codes_are_negated_exactly() {
-    let levels =
+    let mut levels =
         vec![Image::new(2, 1, 4, Samples::U8(vec![255, 128, 200, 255, 0, 120, 200, 255])).expect("whole")];
-    let mut texture = Texture { name: "anisotropy", channels: vec!["R", "G", "B", "A"], levels };
-    orient(&mut texture, Wrap::Clamp, Affine { mul: 0.5, add: 0.5 });
-    assert_eq!(*texture.levels[0].samples(), Samples::U8(vec![255, 128, 200, 255, 255, 135, 200, 255]));
+    orient(&mut levels, Wrap::Clamp, Affine { mul: 0.5, add: 0.5 });
+    assert_eq!(*levels[0].samples(), Samples::U8(vec![255, 128, 200, 255, 255, 135, 200, 255]));
 }
