@@ -43,7 +43,7 @@ const IMAGES: &[&str] =
     &["png", "jpg", "jpeg", "tga", "bmp", "webp", "tif", "tiff", "hdr", "exr", "ktx2", "dds", "gltf"];
 
 /// A small limit, so that a file that claims a large texture shows up as a slow run at worst.
-const LIMITS: Limits = Limits { max_pixels: 1 << 18 };
+const LIMITS: Limits = Limits::of_pixels(1 << 18);
 
 /// Tests both readers of KTX2. Anything read as textures must survive a round trip.
 pub fn ktx2(data: &[u8]) {

@@ -210,7 +210,7 @@ pub struct SourceArgs {
 impl SourceArgs {
     /// How much a reader may allocate.
     pub fn limits(&self) -> Limits {
-        Limits { max_pixels: self.max_pixels }
+        Limits::of_pixels(self.max_pixels)
     }
 
     /// How the file is read.

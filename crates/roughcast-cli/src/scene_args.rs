@@ -342,16 +342,15 @@ impl ShadingArgs {
 
     /// How the textures of a model are baked.
     pub fn texture_options(&self) -> TextureOptions {
-        TextureOptions {
-            sample_type: self.bits,
-            anisotropy: self.anisotropy,
-            specular_power: self.specular_power,
-        }
+        TextureOptions::default()
+            .with_sample_type(self.bits)
+            .with_anisotropy(self.anisotropy)
+            .with_specular_power(self.specular_power)
     }
 
     /// The material.
     pub fn material(&self) -> Material {
-        Material { albedo: self.albedo, ambient: self.ambient, specular: self.specular }
+        Material::default().with_albedo(self.albedo).with_ambient(self.ambient).with_specular(self.specular)
     }
 }
 

@@ -41,7 +41,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }
     let info = TextureInfo::new(Layout::Moments, Part::Whole);
     check_destination(&args.output, Container::Exr, &info).map_err(refusals::of_write_files)?;
-    let arrays = textures::read_with_parts(&args.file, &Limits { max_pixels: args.max_pixels })?;
+    let arrays = textures::read_with_parts(&args.file, &Limits::of_pixels(args.max_pixels))?;
     let array = moments_of(&arrays).with_context(|| args.file.display().to_string())?;
     write(args, &Stored::Texels(array)).map_err(refusals::of_write_files)?;
     Ok(ExitCode::SUCCESS)

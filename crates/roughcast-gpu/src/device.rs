@@ -12,6 +12,7 @@ const WANTED_FEATURES: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
 
 /// Which adapters may be used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum AdapterChoice {
     /// The fastest adapter of any kind; a software driver only if there is no other.
     #[default]
@@ -22,6 +23,7 @@ pub enum AdapterChoice {
 
 /// Which limits are requested.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum LimitChoice {
     /// All limits of the adapter.
     #[default]

@@ -18,6 +18,7 @@ use crate::texels::{BlockCode, TexelFormat};
 
 /// A block format that can be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum BlockFormat {
     /// One channel, 4 bits per texel.
     Bc4,

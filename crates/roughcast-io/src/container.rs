@@ -7,6 +7,7 @@ use roughcast::{BakeOptions, Blocks, SampleType, named_enum};
 
 named_enum! {
     /// A file format that textures with all their levels are written to.
+    #[non_exhaustive]
     pub enum Container: "container" {
         /// KTX2: array textures, ready for a GPU.
         Ktx2 = "ktx2",

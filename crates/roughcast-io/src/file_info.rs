@@ -45,15 +45,23 @@ impl From<Limits> for ReadOptions {
 
 /// How much a reader may allocate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Limits {
     /// Maximum number of pixels of level 0, summed over layers. Checked before anything of that size is allocated.
     pub max_pixels: u64,
 }
 
+impl Limits {
+    /// The default limits with this many pixels.
+    pub const fn of_pixels(max_pixels: u64) -> Self {
+        Self { max_pixels }
+    }
+}
+
 impl Default for Limits {
     /// 2^29 pixels: 32768 x 16384.
     fn default() -> Self {
-        Self { max_pixels: 1 << 29 }
+        Self::of_pixels(1 << 29)
     }
 }
 
@@ -70,6 +78,7 @@ pub enum ValueRange {
 
 /// The channels that contain the components of a normal, according to the file itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum NormalEncoding {
     /// The file does not state it.
     #[default]
@@ -82,6 +91,7 @@ pub enum NormalEncoding {
 
 /// Unit of a length on the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum LengthUnit {
     /// Metres.
     Metre,

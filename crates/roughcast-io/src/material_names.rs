@@ -11,6 +11,7 @@ use roughcast::Green;
 
 /// The content of a material's picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum MaterialRole {
     /// Normals; the name may specify which way green points.
     Normal(Option<Green>),

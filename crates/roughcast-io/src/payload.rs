@@ -13,6 +13,7 @@ use crate::{Limits, ReadError, WriteError};
 
 /// The texels to be written.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub enum Payload<'a> {
     /// Uncompressed texels: 1, 2 or 4 channels of any sample type.
     Texels(&'a TextureArray),
@@ -22,6 +23,7 @@ pub enum Payload<'a> {
 
 /// How the levels of a file are compressed beyond the texel format. DDS supports none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Supercompression {
     /// No compression: a reader can pass the bytes of the file to the graphics processor.
     #[default]

@@ -10,6 +10,7 @@ use crate::{Payload, WriteError};
 
 /// The textures of one file, as texels or compressed blocks.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Stored {
     /// Uncompressed texels.
     Texels(TextureArray),

@@ -147,7 +147,7 @@ fn a_file_that_was_cut_is_an_error() {
 /// Damaged copies of each file: enough to reach every branch of the header parsers within a few seconds.
 const DAMAGES: u64 = 400;
 /// Limits that keep a damaged size from making the test slow.
-const SMALL: Limits = Limits { max_pixels: 1 << 18 };
+const SMALL: Limits = Limits::of_pixels(1 << 18);
 
 /// Reads arbitrary bytes, as a fuzzer would.
 fn fuzz_read_image(bytes: &[u8], extension: &str) {
@@ -252,7 +252,7 @@ fn missing_files_and_folders_are_io_errors() {
 #[test]
 fn the_limit_counts_pixels() {
     let bytes = std::fs::read(find("formats/png/go_basn2c08.png")).unwrap();
-    assert!(read_image(&bytes, None, &Limits { max_pixels: 32 * 32 }.into()).is_ok());
-    let refused = read_image(&bytes, None, &Limits { max_pixels: 32 * 32 - 1 }.into());
+    assert!(read_image(&bytes, None, &Limits::of_pixels(32 * 32).into()).is_ok());
+    let refused = read_image(&bytes, None, &Limits::of_pixels(32 * 32 - 1).into());
     assert!(matches!(refused, Err(ReadError::TooLarge { width: 32, height: 32, .. })), "{refused:?}");
 }

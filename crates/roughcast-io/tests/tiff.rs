@@ -287,7 +287,7 @@ fn small(others: &[(u16, u16, u32)]) -> Vec<u8> {
 }
 
 fn error_of(bytes: &[u8]) -> String {
-    read_image(bytes, None, &Limits { max_pixels: 1 << 20 }.into()).expect_err("broken").to_string()
+    read_image(bytes, None, &Limits::of_pixels(1 << 20).into()).expect_err("broken").to_string()
 }
 
 #[test]

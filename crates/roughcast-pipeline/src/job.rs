@@ -23,6 +23,7 @@ pub const TOKSVIG_POWER: f32 = 128.0;
 
 /// What to do with broken texels: NaN, infinite, or normals that point into the surface or have no direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum BrokenTexels {
     /// Repair and count them.
     #[default]

@@ -1,6 +1,6 @@
 //! The textures of a shading model, baked from a map in memory.
 
-use roughcast::shading::Shading;
+use roughcast::shading::{Shading, ShadingOptions};
 use roughcast::texture::{BaseRole, TextureArray};
 use roughcast::{
     Anisotropy, AnisotropyOutput, Bake, BakeError, BakeOptions, BaseRoughness, ImageView, PbrOptions,
@@ -9,6 +9,7 @@ use roughcast::{
 
 /// How a model's textures are baked.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct TextureOptions {
     /// The sample type of the texels.
     pub sample_type: SampleType,
@@ -16,6 +17,37 @@ pub struct TextureOptions {
     pub anisotropy: Anisotropy,
     /// The exponent of the base roughness. `toksvig` and `ggx` store it; the other models add it when shading.
     pub specular_power: f32,
+}
+
+impl TextureOptions {
+    /// The same options with this sample type.
+    #[must_use]
+    pub fn with_sample_type(self, sample_type: SampleType) -> Self {
+        Self { sample_type, ..self }
+    }
+
+    /// The same options with one roughness or two.
+    #[must_use]
+    pub fn with_anisotropy(self, anisotropy: Anisotropy) -> Self {
+        Self { anisotropy, ..self }
+    }
+
+    /// The same options with this exponent.
+    #[must_use]
+    pub fn with_specular_power(self, specular_power: f32) -> Self {
+        Self { specular_power, ..self }
+    }
+}
+
+impl Default for TextureOptions {
+    /// 16 bits, one roughness, and the exponent of the default [`ShadingOptions`].
+    fn default() -> Self {
+        Self {
+            sample_type: SampleType::U16,
+            anisotropy: Anisotropy::Isotropic,
+            specular_power: ShadingOptions::default().specular_power,
+        }
+    }
 }
 
 /// Bakes the layout that a model samples.

@@ -6,6 +6,7 @@ use roughcast_io::Container;
 
 named_enum! {
     /// Where textures will be used.
+    #[non_exhaustive]
     pub enum Target: "target" {
         /// Native programs on Vulkan, Metal, Direct3D or OpenGL.
         Desktop = "desktop",

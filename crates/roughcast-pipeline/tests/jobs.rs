@@ -190,7 +190,7 @@ fn errors_are_data_and_name_no_option_of_a_command_line() {
     assert!(matches!(extension, JobError::Write(WriteFilesError::UnknownExtension { .. })));
     let over = error_of(&|job| job.output = job.input.clone());
     assert!(matches!(over, JobError::Choices(ChoiceError::Container(_))), "{over:?}");
-    let too_large = error_of(&|job| job.settings.map.read.limits = Limits { max_pixels: 5 });
+    let too_large = error_of(&|job| job.settings.map.read.limits = Limits::of_pixels(5));
     assert!(matches!(too_large, JobError::Map { .. }), "{too_large:?}");
     let value = error_of(&|job| {
         let stored = roughcast::texture::RoughnessStored::Perceptual;

@@ -20,6 +20,7 @@ pub struct Camera {
 
 /// Why a camera is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CameraError {
     /// NaN or infinity.
     #[error("the camera has a coordinate that is not finite: give numbers")]

@@ -4,6 +4,7 @@ use roughcast::Wrap;
 
 roughcast::named_enum! {
     /// How a texture is averaged over the pixel's footprint.
+    #[non_exhaustive]
     pub enum Filter: "texture filter" {
         /// No averaging: the nearest texel of level 0.
         Nearest = "nearest",

@@ -11,6 +11,7 @@ use crate::{Camera, Footprint, Hit, Light, Plane, Ray, Scene, Shape};
 
 roughcast::named_enum! {
     /// A distance, defined by how many texels a pixel spans.
+    #[non_exhaustive]
     pub enum View: "view" {
         /// Texels are magnified: a quarter of a texel per pixel.
         Near = "near",

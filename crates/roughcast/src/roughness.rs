@@ -8,6 +8,7 @@ use crate::named::named_enum;
 
 named_enum! {
     /// Whether the second moments already contain the base roughness of the material.
+    #[non_exhaustive]
     pub enum Base: "base" {
         /// Not contained: add it once, at shading.
         None = "none",

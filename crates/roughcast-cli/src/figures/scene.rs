@@ -5,7 +5,7 @@ use std::sync::Arc;
 use anyhow::Result;
 use glam::DVec3;
 use roughcast::shading::{Material, Shading, ShadingOptions};
-use roughcast::{Anisotropy, SampleType, Wrap};
+use roughcast::{SampleType, Wrap};
 use roughcast_pipeline::{TextureOptions, bake_for};
 use roughcast_scene::pattern::Pattern;
 use roughcast_scene::render::{Method, Truth, unwatched};
@@ -14,7 +14,9 @@ use roughcast_scene::{
 };
 
 /// A dielectric with clearly visible highlights: dark, with the reflectance of plastic.
-pub const MATERIAL: Material = Material { albedo: [0.05; 3], ambient: [0.2; 3], specular: [0.04; 3] };
+fn dark_plastic() -> Material {
+    Material::default().with_albedo([0.05; 3]).with_ambient([0.2; 3])
+}
 
 /// A map in a scene, and how it is shaded.
 pub struct Stage {
@@ -33,7 +35,7 @@ pub fn scene(shape: Shape, repeats: f64, camera: Camera, towards_light: DVec3) -
         shape: Arc::new(shape),
         camera,
         lights: vec![Light::Directional { towards: towards_light.normalize(), irradiance: Light::WHITE }],
-        material: MATERIAL,
+        material: dark_plastic(),
         repeats,
         background: [0.0; 3],
     }
@@ -57,11 +59,9 @@ impl Stage {
         sampler: Sampler,
         scenes: &[Scene],
     ) -> Result<Vec<Picture>> {
-        let options = TextureOptions {
-            sample_type: self.sample_type,
-            anisotropy: Anisotropy::Isotropic,
-            specular_power: self.options.specular_power,
-        };
+        let options = TextureOptions::default()
+            .with_sample_type(self.sample_type)
+            .with_specular_power(self.options.specular_power);
         let arrays = bake_for(shading, &self.map.heights, &self.map.source_options(), options)?;
         let textures = BakedTextures::of_model(shading, &arrays)?;
         let method = Method { shading, detail: &textures.sampled(sampler), options: self.options };

@@ -40,6 +40,7 @@ const SLOPE_LIMIT: &str = include_str!("wgsl/slope_limit.wgsl");
 
 /// How a map is baked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum BakePath {
     /// Compute shaders if the device has them, otherwise render passes.
     #[default]

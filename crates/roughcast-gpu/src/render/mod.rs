@@ -44,6 +44,7 @@ use uniforms::{VIEW_WORDS, light_words, room_for, view_words};
 
 /// The kind of target that is rendered to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum RenderTarget {
     /// One colour target of this format, for radiance, with coverage as alpha. Values are only clipped or encoded by
     /// the format.

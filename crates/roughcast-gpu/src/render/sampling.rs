@@ -34,7 +34,7 @@ impl Sampling {
             // As on the CPU, nearest sampling ignores the footprint: level 0, or the level nearest to the given one.
             Filter::Nearest => Some(level.unwrap_or(0.0).round()),
             Filter::Trilinear | Filter::Anisotropic => level,
-            Filter::Ewa | Filter::SummedArea => {
+            _ => {
                 return Err(GpuError::OnlyOnCpu(format!(
                     "graphics hardware has no texture filter '{filter}': render with it on the CPU, or choose nearest, \
                      trilinear or anisotropic"

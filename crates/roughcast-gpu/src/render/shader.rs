@@ -18,6 +18,7 @@ const MAP2: &str = include_str!("map2.wgsl");
 
 /// The source of a sampler's level of detail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum LevelOfDetail {
     /// The hardware's level, from the derivatives of the texture coordinates between pixels, plus a bias.
     Derivatives,
@@ -39,6 +40,7 @@ impl LevelOfDetail {
 
 /// Which slopes of a source of bumps are shaded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Bumps {
     /// The distribution under the pixel.
     #[default]

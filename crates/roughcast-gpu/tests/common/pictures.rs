@@ -22,8 +22,8 @@ pub fn by_cpu(
     let detail = textures.sampled(sampler);
     let resolved = Resolved(&detail);
     let detail: &dyn Detail = match bumps {
-        Bumps::Filtered => &detail,
         Bumps::Resolved => &resolved,
+        _ => &detail,
     };
     Method { shading, detail, options: shading_options }.render(scene, size, &unwatched).expect("a picture")
 }

@@ -246,9 +246,9 @@ fn unsupported_textures_are_refused_with_advice() {
 #[test]
 fn too_many_pixels_are_refused_before_they_are_read() {
     let bytes = written(&array(53, 37, LAYERS[1], SampleType::F16), ExrCompression::Zip);
-    let limits = Limits { max_pixels: 53 * 37 - 1 };
+    let limits = Limits::of_pixels(53 * 37 - 1);
     assert!(matches!(read_textures(&bytes, &limits), Err(ReadError::TooLarge { width: 53, height: 37, .. })));
-    assert!(read_textures(&bytes, &Limits { max_pixels: 53 * 37 }).is_ok());
+    assert!(read_textures(&bytes, &Limits::of_pixels(53 * 37)).is_ok());
 }
 
 /// Sets each byte of a small file in turn to several other values, and truncates the file at every length.

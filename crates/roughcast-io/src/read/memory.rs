@@ -63,7 +63,7 @@ mod tests {
 
     #[test]
     fn the_limit_itself_is_allowed_and_one_more_pixel_is_not() {
-        let limits = Limits { max_pixels: 12 };
+        let limits = Limits::of_pixels(12);
         assert_eq!(check_size("PNG", 4, 3, &limits).unwrap(), (4, 3));
         assert!(matches!(check_size("PNG", 13, 1, &limits), Err(ReadError::TooLarge { .. })));
         assert!(matches!(check_size("PNG", u64::MAX, 2, &limits), Err(ReadError::TooLarge { .. })));

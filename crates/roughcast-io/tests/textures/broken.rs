@@ -69,7 +69,7 @@ const DDS_LAYERS: usize = 140;
 /// The error message shows which check refused the file; all checks run before the allocation.
 #[test]
 fn a_small_file_cannot_claim_a_large_texture() {
-    let unlimited = Limits { max_pixels: u64::MAX };
+    let unlimited = Limits::of_pixels(u64::MAX);
     for side in [65_536, 1 << 20, u32::MAX] {
         for supercompression in [Supercompression::None, Supercompression::Zstd] {
             let mut file = small_ktx2(supercompression);
@@ -88,7 +88,7 @@ fn a_small_file_cannot_claim_a_large_texture() {
             let error = ktx2::read_image(&file, &unlimited).unwrap_err().to_string();
             let stopped = match supercompression {
                 Supercompression::None => error.contains("level 0 has 64 bytes"),
-                Supercompression::Zstd => error.contains("too short for its size"),
+                _ => error.contains("too short for its size"),
             };
             assert!(stopped || error.contains("fit into memory"), "{error}");
             assert!(ktx2::read_textures(&file, &unlimited).is_err());
@@ -108,7 +108,7 @@ fn the_limit_counts_all_layers() {
     let array = noise_array(SampleType::U8, 1, (16, 16), 3);
     let (ktx2_file, dds_file) =
         (ktx2_bytes(Payload::Texels(&array), Supercompression::Zstd), dds_bytes(Payload::Texels(&array)));
-    let (enough, too_few) = (Limits { max_pixels: 768 }, Limits { max_pixels: 767 });
+    let (enough, too_few) = (Limits::of_pixels(768), Limits::of_pixels(767));
     assert!(
         ktx2::read_textures(&ktx2_file, &enough).is_ok() && dds::read_textures(&dds_file, &enough).is_ok()
     );
@@ -208,7 +208,7 @@ fn changed_bytes_never_panic() {
         ktx2_bytes(Payload::Blocks(&blocks), Supercompression::None),
         dds_bytes(Payload::Texels(&array)),
     ];
-    let limits = Limits { max_pixels: 1 << 20 };
+    let limits = Limits::of_pixels(1 << 20);
     let mut random = Random::new(1);
     let mut read = 0;
     for round in 0..10_000 {

@@ -8,6 +8,7 @@ use crate::mipmap::{square_at, whole_and_rest, wrapped};
 
 roughcast::named_enum! {
     /// The shape of the surface between the texels of its map.
+    #[non_exhaustive]
     pub enum Reconstruction: "reconstruction" {
         /// Slopes are interpolated bilinearly, which gives a surface without creases, as seen in a texture viewed from
         /// near. If slopes change from texel to texel, it is a little smoother than the map's own moments indicate.

@@ -40,6 +40,7 @@ pub struct Bounds {
 
 /// Why a shape is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ShapeError {
     /// The plane has no extent.
     #[error("a plane's half size must be positive and finite, not {0}")]

@@ -182,6 +182,7 @@ named_enum! {
 
 /// The input that a shading model needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Wanted {
     /// Only the filtered normal.
     Normal,

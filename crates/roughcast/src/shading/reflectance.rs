@@ -24,10 +24,12 @@ use std::f32::consts::PI;
 
 use super::vector::{Vector, dot, half_vector};
 use super::{Form, ShadingOptions, Surface};
+use crate::setters::setters;
 
 /// Colours of a material, in linear RGB.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Material {
     /// Fraction of the light that is scattered diffusely.
     pub albedo: [f32; 3],
@@ -36,6 +38,12 @@ pub struct Material {
     /// Fresnel reflectance at normal incidence.
     pub specular: [f32; 3],
 }
+
+setters! { Material {
+    with_albedo(albedo: [f32; 3]),
+    with_ambient(ambient: [f32; 3]),
+    with_specular(specular: [f32; 3]),
+} }
 
 impl Default for Material {
     /// A grey dielectric with a little ambient light.

@@ -123,7 +123,7 @@ fn texels(shading: Shading) -> Vec<[f32; 4]> {
 #[test]
 fn a_flat_map_matches_the_microfacet_brdf_at_any_angle() {
     let s = 100.0_f32;
-    let material = Material { albedo: [0.0; 3], ambient: [0.0; 3], specular: [1.0; 3] };
+    let material = Material::default().with_albedo([0.0; 3]).with_ambient([0.0; 3]).with_specular([1.0; 3]);
     for shading in Shading::ALL.iter().copied().filter(|shading| *shading != Shading::Phong) {
         let surface = surface_of_texels(
             shading,
@@ -160,7 +160,7 @@ fn a_flat_map_matches_the_microfacet_brdf_at_any_angle() {
 /// Light that a white surface reflects towards a viewer under uniform incident radiance of one.
 fn white_furnace(surface: &Surface, degrees: f64, options: &ShadingOptions) -> f64 {
     const STEPS: u32 = 300;
-    let white = Material { albedo: [0.0; 3], ambient: [0.0; 3], specular: [1.0; 3] };
+    let white = Material::default().with_albedo([0.0; 3]).with_ambient([0.0; 3]).with_specular([1.0; 3]);
     let (sin, cos) = degrees.to_radians().sin_cos();
     let view = [sin as f32, 0.0, cos as f32];
     let mut total = 0.0;

@@ -14,7 +14,10 @@ const ROUNDING: f32 = 1e-6;
 const UP: [f32; 3] = [0.0, 0.0, 1.0];
 
 fn material() -> Material {
-    Material { albedo: [0.5, 0.25, 0.1], ambient: [0.2, 0.1, 0.0], specular: [0.04, 0.5, 1.0] }
+    Material::default()
+        .with_albedo([0.5, 0.25, 0.1])
+        .with_ambient([0.2, 0.1, 0.0])
+        .with_specular([0.04, 0.5, 1.0])
 }
 
 fn close(a: f32, b: f32) -> bool {
@@ -90,7 +93,7 @@ fn a_white_surface_reflects_no_more_than_it_receives() {
     // The normalised form integrated over all lights, for one viewer: F = 1, no masking, so at most the area that faces
     // the viewer.
     const STEPS: u32 = 400;
-    let white = Material { albedo: [0.0; 3], ambient: [0.0; 3], specular: [1.0; 3] };
+    let white = Material::default().with_albedo([0.0; 3]).with_ambient([0.0; 3]).with_specular([1.0; 3]);
     let view = [0.6, 0.0, 0.8];
     let options = ShadingOptions::default().with_form(Form::Normalised).with_specular_power(200.0);
     for shading in [Shading::Beckmann, Shading::OffCentre, Shading::BlinnPhong, Shading::Ggx] {

@@ -202,7 +202,7 @@ fn unpack_group4(packed: &[u8], unpacked: &mut [u8], shape: Shape) -> Result<usi
 /// WebP: each strip or tile is a separate WebP file, 8-bit RGB or RGBA.
 fn unpack_webp(packed: &[u8], unpacked: &mut [u8], shape: Shape) -> Result<usize, ReadError> {
     let rows = unpacked.len() / shape.row_bytes;
-    let limits = Limits { max_pixels: (shape.width * rows) as u64 };
+    let limits = Limits::of_pixels((shape.width * rows) as u64);
     let picture = read_webp(packed, &limits)
         .map_err(|error| malformed(FORMAT, format_args!("in a strip or tile: {error}")))?
         .image;
