@@ -97,12 +97,24 @@ impl Samples {
     /// Sample `index` as a float: unsigned types as 0 ..= 1, floats as they are.
     pub fn get(&self, index: usize) -> f32 {
         match self {
-            Samples::U8(v) => f32::from(v[index]) / 255.0,
-            Samples::U16(v) => f32::from(v[index]) / 65535.0,
+            Samples::U8(v) => unorm8(v[index]),
+            Samples::U16(v) => unorm16(v[index]),
             Samples::F16(v) => v[index].to_f32(),
             Samples::F32(v) => v[index],
         }
     }
+}
+
+/// The value of an 8-bit unsigned normalised sample.
+#[inline(always)]
+pub(crate) fn unorm8(sample: u8) -> f32 {
+    f32::from(sample) / 255.0
+}
+
+/// The value of a 16-bit unsigned normalised sample.
+#[inline(always)]
+pub(crate) fn unorm16(sample: u16) -> f32 {
+    f32::from(sample) / 65535.0
 }
 
 /// An image of `height` rows of `width` pixels of `channels` interleaved samples. Row 0 is the top.
@@ -287,8 +299,8 @@ impl SamplesView<'_> {
     /// If there is no such sample.
     pub fn get(self, index: usize) -> f32 {
         match self {
-            SamplesView::U8(v) => f32::from(v[index]) / 255.0,
-            SamplesView::U16(v) => f32::from(v[index]) / 65535.0,
+            SamplesView::U8(v) => unorm8(v[index]),
+            SamplesView::U16(v) => unorm16(v[index]),
             SamplesView::F16(v) => v[index].to_f32(),
             SamplesView::F32(v) => v[index],
         }

@@ -11,6 +11,7 @@ pub(crate) use base::{BaseSource, UseOfBase};
 pub(crate) use resize::resized;
 
 use crate::convention::{Kind, Wrap};
+use crate::image::{unorm8, unorm16};
 use crate::options::{MaxSlope, SourceOptions};
 use crate::row::{Extra, Row, RowSource, SourceScratch};
 use crate::slope::{Slope, SourceCounts, repaired_slope};
@@ -294,16 +295,4 @@ fn load<T: Copy>(texels: &[T], channels: usize, channel: usize, out: &mut [f32],
         let texels = texels.chunks_exact(channels);
         texels.zip(out).for_each(|(texel, value)| *value = to(texel[channel]));
     }
-}
-
-/// The value of an 8-bit unsigned normalised sample.
-#[inline(always)]
-pub(crate) fn unorm8(sample: u8) -> f32 {
-    f32::from(sample) / 255.0
-}
-
-/// The value of a 16-bit unsigned normalised sample.
-#[inline(always)]
-pub(crate) fn unorm16(sample: u16) -> f32 {
-    f32::from(sample) / 65535.0
 }

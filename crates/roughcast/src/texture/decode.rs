@@ -2,6 +2,7 @@
 
 use super::codec::Units;
 use super::{Layout, MomentLevel, Part, ShapeFault, TextureArray, TextureInfo, join_layers};
+use crate::image::{unorm8, unorm16};
 use crate::moments::Moments;
 use crate::{Samples, parallel};
 
@@ -203,8 +204,8 @@ impl<'a> Files<'a> {
             let mut load =
                 RowLoader { texels, stride: self.channels(), first_channel, channels: image.channels() };
             match image.samples() {
-                Samples::U8(samples) => load.row(&samples[row], |sample| f32::from(sample) / 255.0),
-                Samples::U16(samples) => load.row(&samples[row], |sample| f32::from(sample) / 65535.0),
+                Samples::U8(samples) => load.row(&samples[row], unorm8),
+                Samples::U16(samples) => load.row(&samples[row], unorm16),
                 Samples::F16(samples) => load.row(&samples[row], half::f16::to_f32),
                 Samples::F32(samples) => load.row(&samples[row], |sample| sample),
             }
