@@ -7,7 +7,7 @@ use indicatif::ProgressBar;
 use pollster::block_on;
 use roughcast::shading::{Shading, ShadingOptions};
 use roughcast::texture::TextureArray;
-use roughcast_gpu::render::{DrawOptions, Drawing, Geometry, GpuTextures, RenderTarget, Renderer};
+use roughcast_gpu::render::{DrawOptions, Drawing, Geometry, GpuDetail, RenderTarget, Renderer};
 use roughcast_gpu::{Gpu, GpuOptions, render};
 use roughcast_scene::render::{Method, Truth};
 use roughcast_scene::{BakedTextures, MAX_DETAIL, Picture, Sampler, Scene, SlopeDetail};
@@ -85,7 +85,7 @@ impl GpuBackend {
     ) -> Result<Self> {
         block_on(async {
             let gpu = Gpu::new(&GpuOptions::default()).await?;
-            let textures = GpuTextures::new(&gpu, shading, arrays).await?;
+            let textures = GpuDetail::of_model(&gpu, shading, arrays).await?;
             let geometry = Geometry::new(&gpu, &scene.shape, MAX_DETAIL).await?;
             let mut renderer = Renderer::new(&gpu, RenderTarget::Parts).await?;
             let drawing = renderer.prepare(&geometry, &textures, options).await?;

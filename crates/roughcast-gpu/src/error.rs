@@ -1,8 +1,10 @@
 //! Errors of the GPU code. Each message is one line and states the remedy.
 
-use roughcast::BakeError;
-use roughcast_scene::DetailError;
+use roughcast::shading::Shading;
+use roughcast::texture::Layout;
+use roughcast::{BakeError, PyramidFilter, SampleType, UnknownName};
 use roughcast_scene::render::RenderError;
+use roughcast_scene::{DetailError, Filter};
 
 /// Why something could not be done on the GPU.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -107,12 +109,88 @@ pub enum GpuError {
     /// The textures are not a source of bumps: they are incomplete, or do not belong to the model.
     #[error(transparent)]
     Detail(#[from] DetailError),
-    /// A texture or an image does not have the required size, channels or type.
-    #[error("{0}")]
-    Shape(String),
+    /// A baker was made for maps of another size or type.
+    #[error(
+        "this bake was made for {}x{} texels in {format:?}, not for {}x{} of {channels} channels in {sample_type} bits: \
+         make another", .wanted.0, .wanted.1, .got.0, .got.1
+    )]
+    OtherMap {
+        /// Width and height of the baker's maps, in texels.
+        wanted: (u32, u32),
+        /// Their format.
+        format: wgpu::TextureFormat,
+        /// Width and height of the given map.
+        got: (usize, usize),
+        /// Its number of channels.
+        channels: usize,
+        /// Its sample type.
+        sample_type: SampleType,
+    },
+    /// The texture of a map was created without a usage that is needed.
+    #[error("the map's texture lacks the usage {missing:?}: create it with that usage")]
+    MapUsage {
+        /// The missing usage.
+        missing: wgpu::TextureUsages,
+    },
+    /// The texture of a map has more than two dimensions or several samples per texel.
+    #[error("a map is a two-dimensional texture of one sample per texel: give such a texture")]
+    MapDimension,
+    /// The textures are not those of the model's layout.
+    #[error(
+        "'{shading}' samples {wanted} textures of the layout '{}', not {got} of '{layout}': bake that layout",
+        .shading.layout()
+    )]
+    OtherTextures {
+        /// The model.
+        shading: Shading,
+        /// The number of textures that it samples.
+        wanted: usize,
+        /// The number of textures given.
+        got: usize,
+        /// Their layout.
+        layout: Layout,
+    },
+    /// Code of a source of bumps needs a module that the library does not have.
+    #[error("the source of bumps needs a module that does not exist: {0}")]
+    Module(#[from] UnknownName),
+    /// A picture can only be read back from a renderer that draws its parts.
+    #[error("pictures are read back from a renderer for RenderTarget::Parts: create one")]
+    NotReadable,
     /// The CPU supports this, but the GPU does not.
-    #[error("{0}")]
-    OnlyOnCpu(String),
+    #[error(transparent)]
+    OnlyOnCpu(#[from] OnlyOnCpu),
+}
+
+/// What only the CPU code can do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, thiserror::Error)]
+#[non_exhaustive]
+pub enum OnlyOnCpu {
+    /// Baking this layout.
+    #[error("the GPU bakes the layouts 'lean' and 'clean', not '{0}': bake that one on the CPU")]
+    Layout(Layout),
+    /// Compressing blocks.
+    #[error("the GPU bakes plain texels: compress blocks on the CPU")]
+    Blocks,
+    /// Filtering levels with this filter.
+    #[error(
+        "the GPU filters with 'box', since wider kernels need neighbours of every tile: bake with '{0}' on the CPU"
+    )]
+    PyramidFilter(PyramidFilter),
+    /// Baking single floats.
+    #[error(
+        "the GPU bakes 8 bits, 16 bits and half floats: single floats cannot be filtered everywhere; store half floats, \
+         or bake on the CPU"
+    )]
+    SingleFloats,
+    /// Folding in a map of base roughness.
+    #[error("the GPU folds in one roughness for the whole map, not a map of it: bake on the CPU")]
+    RoughnessMap,
+    /// Rendering with this texture filter.
+    #[error(
+        "graphics hardware has no texture filter '{0}': render with it on the CPU, or choose nearest, trilinear or \
+         anisotropic"
+    )]
+    TextureFilter(Filter),
 }
 
 /// A multi-line message on one line.

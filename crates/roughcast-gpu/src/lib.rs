@@ -14,6 +14,6 @@ mod timestamps;
 mod wait;
 
 pub use device::{AdapterChoice, Gpu, GpuOptions, LimitChoice};
-pub use error::GpuError;
+pub use error::{GpuError, OnlyOnCpu};
 pub use timestamps::{Measured, Span, Timestamps};
 pub use wgpu;

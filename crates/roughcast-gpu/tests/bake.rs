@@ -355,7 +355,7 @@ fn moving_bumps_reuse_textures_and_follow_their_inputs() {
             "another frame, other texels"
         );
         let other = normals(32, 32, 3, SampleType::U8);
-        assert!(matches!(baker.upload(&other), Err(GpuError::Shape(_))));
+        assert!(matches!(baker.upload(&other), Err(GpuError::OtherMap { .. })));
     }
 }
 

@@ -8,7 +8,7 @@ use pollster::block_on;
 use roughcast::SampleType;
 use roughcast::shading::{Form, Shading, ShadingOptions};
 use roughcast_gpu::render::{
-    DEPTH_FORMAT, DrawOptions, Drawing, Geometry, GpuTextures, Order, PARTS_FORMAT, Part, RenderTarget,
+    DEPTH_FORMAT, DrawOptions, Drawing, Geometry, GpuDetail, Order, PARTS_FORMAT, Part, RenderTarget,
     Renderer, Views, render,
 };
 use roughcast_gpu::{Gpu, GpuError, read_back};
@@ -21,7 +21,7 @@ fn plane() -> Scene {
 async fn drawing(renderer: &mut Renderer, scene: &Scene, options: &DrawOptions) -> Result<Drawing, GpuError> {
     let gpu = renderer.gpu().clone();
     let geometry = Geometry::new(&gpu, &scene.shape, 64).await?;
-    let textures = GpuTextures::new(&gpu, Shading::Lean, &maps(Shading::Lean, SampleType::F16)).await?;
+    let textures = GpuDetail::of_model(&gpu, Shading::Lean, &maps(Shading::Lean, SampleType::F16)).await?;
     renderer.prepare(&geometry, &textures, options).await
 }
 

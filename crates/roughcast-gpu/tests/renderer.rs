@@ -11,8 +11,8 @@ use roughcast::texture::{Layout, Part, TextureInfo};
 use roughcast::{Anisotropy, BakeOptions, SampleType};
 use roughcast_gpu::bake::{BakePath, GpuBaker};
 use roughcast_gpu::render::{
-    Bumps, DEPTH_FORMAT, DrawOptions, Geometry, GpuTextures, LevelOfDetail, RenderTarget, Renderer,
-    ShaderKey, Views, render, shader_source,
+    Bumps, DEPTH_FORMAT, DetailSource, DrawOptions, Geometry, GpuDetail, LevelOfDetail, RenderTarget,
+    Renderer, ShaderKey, Views, render, shader_source,
 };
 use roughcast_gpu::{Gpu, GpuError, Timestamps, read_back};
 use roughcast_scene::{Filter, Picture, Plane, Sampler, Scene, Shape, View, pattern};
@@ -39,7 +39,7 @@ fn every_shader_compiles_within_the_limits_of_the_web() {
         let mut renderer = block_on(Renderer::new(&gpu, target)).expect("a renderer");
         let geometry = block_on(Geometry::new(&gpu, &plane().shape, 4)).expect("a shape");
         for shading in Shading::ALL {
-            let textures = block_on(GpuTextures::new(&gpu, *shading, &maps(*shading, SampleType::F16)));
+            let textures = block_on(GpuDetail::of_model(&gpu, *shading, &maps(*shading, SampleType::F16)));
             let textures = textures.expect("half floats are everywhere");
             for filter in [Filter::Nearest, Filter::Anisotropic] {
                 let sampler = Sampler::default().with_filter(filter);
@@ -57,7 +57,7 @@ fn shaders_sample_as_many_textures_as_the_model_has_inputs() {
             let reader = shading.layout().texel_reader(shading.wanted(), anisotropy).expect("its layout");
             let key = ShaderKey {
                 shading: *shading,
-                reader,
+                detail: DetailSource::Textures(reader),
                 level: LevelOfDetail::Derivatives,
                 bumps: Bumps::Filtered,
             };
@@ -86,7 +86,8 @@ fn a_colour_target_has_the_radiance_of_the_picture() {
     let nanoseconds = block_on(async {
         let mut renderer = Renderer::new(&gpu, RenderTarget::Colour(format)).await?;
         let geometry = Geometry::new(&gpu, &scene.shape, 4).await?;
-        let textures = GpuTextures::new(&gpu, Shading::Lean, &maps(Shading::Lean, SampleType::F16)).await?;
+        let textures =
+            GpuDetail::of_model(&gpu, Shading::Lean, &maps(Shading::Lean, SampleType::F16)).await?;
         let mut drawing = renderer.prepare(&geometry, &textures, &DrawOptions::default()).await?;
         drawing.set_view(&renderer, &scene, SIZE).await?;
         let mut timestamps = Timestamps::new(&gpu, 1).await?;
@@ -129,7 +130,8 @@ fn a_drawing_follows_the_scene() {
     let frames = block_on(async {
         let mut renderer = Renderer::new(&gpu, RenderTarget::Parts).await?;
         let geometry = Geometry::new(&gpu, &scene.shape, 4).await?;
-        let textures = GpuTextures::new(&gpu, Shading::Lean, &maps(Shading::Lean, SampleType::F16)).await?;
+        let textures =
+            GpuDetail::of_model(&gpu, Shading::Lean, &maps(Shading::Lean, SampleType::F16)).await?;
         let mut drawing = renderer.prepare(&geometry, &textures, &DrawOptions::default()).await?;
         let first = render(&renderer, &mut drawing, &scene, SIZE).await?;
         scene.camera.eye *= 1.1;
@@ -169,7 +171,7 @@ fn formats_that_the_device_cannot_filter_are_named() {
     let device = plain_device();
     for (bits, format) in [(SampleType::U16, "Rgba16Unorm"), (SampleType::F32, "Rgba32Float")] {
         let options = BakeOptions::default().with_layout(Layout::Clean).with_sample_type(bits);
-        let error = block_on(GpuTextures::new(&device, Shading::Clean, &maps_with(options)));
+        let error = block_on(GpuDetail::of_model(&device, Shading::Clean, &maps_with(options)));
         let line = error.expect_err("a plain device has no such format").to_string();
         assert!(line.contains(format) && line.contains("half"), "{line}");
     }
@@ -200,8 +202,8 @@ fn textures_baked_on_the_gpu_are_drawn_without_a_copy() {
             baker.run();
             let mut renderer = Renderer::new(&gpu, RenderTarget::Parts).await?;
             let geometry = Geometry::new(&gpu, &scene.shape, 4).await?;
-            let here = GpuTextures::of_baked(&gpu, shading, baker.textures(), &baker.info().await?)?;
-            let back = GpuTextures::new(&gpu, shading, &[baker.read_back().await?]).await?;
+            let here = GpuDetail::of_baked(&gpu, shading, baker.textures(), &baker.info().await?)?;
+            let back = GpuDetail::of_model(&gpu, shading, &[baker.read_back().await?]).await?;
             let mut pictures = Vec::new();
             for textures in [here, back] {
                 let draw = DrawOptions::default();
@@ -221,8 +223,7 @@ fn textures_baked_on_the_gpu_are_drawn_without_a_copy() {
 fn baked_textures_of_another_layout_are_refused() {
     let gpu = gpu();
     let info = TextureInfo::new(Layout::Clean, Part::Whole);
-    let error =
-        GpuTextures::of_baked(&gpu, Shading::Lean, &[], &info).expect_err("LEAN samples two textures");
+    let error = GpuDetail::of_baked(&gpu, Shading::Lean, &[], &info).expect_err("LEAN samples two textures");
     let line = error.to_string();
     assert!(line.contains("lean") && line.contains("clean") && !line.contains('\n'), "{line}");
 }

@@ -7,7 +7,7 @@ use roughcast::Anisotropy;
 use roughcast::shading::Shading;
 use roughcast::texture::Layout;
 use roughcast::wgsl::{MODULES, Role, library, library_of, renamed};
-use roughcast_gpu::render::{Bumps, LevelOfDetail, ShaderKey, shader_source};
+use roughcast_gpu::render::{Bumps, DetailSource, LevelOfDetail, ShaderKey, shader_source};
 
 /// Parses and validates a module with every check that naga has.
 fn validate(source: &str) -> Result<(), String> {
@@ -62,7 +62,7 @@ fn every_shader_of_the_renderer_is_valid_and_has_all_of_its_files() {
             let Some(reader) = layout.texel_reader(shading.wanted(), anisotropy) else { continue };
             for level in [LevelOfDetail::Derivatives, LevelOfDetail::Fixed] {
                 for bumps in [Bumps::Filtered, Bumps::Resolved] {
-                    let key = ShaderKey { shading, reader, level, bumps };
+                    let key = ShaderKey { shading, detail: DetailSource::Textures(reader), level, bumps };
                     let source = shader_source(key).expect("the library has it");
                     validate(&source).unwrap_or_else(|fault| panic!("{layout}, {shading}: {fault}"));
                     sources.push(source);

@@ -8,4 +8,5 @@
 struct DetailPoint {
     uv: vec2f,          // texture coordinates, repeats included
     position: vec3f,    // in world space
+    frame: mat3x3f,     // the tangent frame, in which slopes are: tangent, bitangent and normal, in world space
 }

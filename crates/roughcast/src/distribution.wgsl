@@ -1,5 +1,11 @@
 // The distribution of slopes under a footprint: one to four weighted Gaussians, and the filtered normal.
 
+// Minimum z of a filtered normal.
+const LEAST_NORMAL_Z: f32 = 0.001953125;
+
+const MAPS_WITHOUT_BASE: u32 = 0u;  // the base roughness is added at shading
+const MAPS_WITH_BASE: u32 = 1u;     // the maps include it
+
 struct WeightedGaussian {
     mean: vec2f,        // mean slope
     variance: vec2f,    // along x and y
@@ -31,6 +37,12 @@ fn one_gaussian(normal: vec3f, mean: vec2f, sigma: vec3f, base: u32) -> Distribu
 // A single slope, without bumps that are hidden.
 fn distribution_of_slope(slope: vec2f) -> Distribution {
     return one_gaussian(slope_normal(slope), slope, vec3f(0.0), MAPS_WITHOUT_BASE);
+}
+
+// The slope of a filtered normal of any length, without any spread: the conventional method, which loses the bumps.
+fn distribution_of_normal(normal: vec3f) -> Distribution {
+    let slope = normal.xy / max(normal.z, LEAST_NORMAL_Z);
+    return one_gaussian(normal, slope, vec3f(0.0), MAPS_WITHOUT_BASE);
 }
 
 // A Gaussian's part of the mean slope of the whole.

@@ -8,7 +8,7 @@ use roughcast::shading::{Material, Shading};
 use roughcast::{BakeOptions, Image, SampleType, Samples, SourceOptions, Wrap, normal_from_slope};
 use roughcast_gpu::bake::{BakePath, GpuBaker, bake_bandwidth};
 use roughcast_gpu::render::{
-    Bumps, DEPTH_FORMAT, DrawOptions, Drawing, Geometry, GpuTextures, LevelOfDetail, RenderTarget, Renderer,
+    Bumps, DEPTH_FORMAT, DrawOptions, Drawing, Geometry, GpuDetail, LevelOfDetail, RenderTarget, Renderer,
     ShaderKey, Views, shader_source,
 };
 use roughcast_gpu::wgpu;
@@ -155,14 +155,14 @@ impl PreparedMethod {
         let baker = GpuBaker::for_image(&gpu, &map, &source, None, &options, BakePath::default()).await?;
         baker.run();
         let textures =
-            GpuTextures::of_baked(&gpu, timed_method.shading, baker.textures(), &baker.info().await?)?;
+            GpuDetail::of_baked(&gpu, timed_method.shading, baker.textures(), &baker.info().await?)?;
         let scene = scene(timed_method.side, size);
         let geometry = Geometry::new(&gpu, &scene.shape, 1).await?;
         let mut drawing = renderer.prepare(&geometry, &textures, &DrawOptions::default()).await?;
         drawing.set_view(renderer, &scene, size).await?;
         let key = ShaderKey {
             shading: timed_method.shading,
-            reader: textures.reader(),
+            detail: textures.source(),
             level: LevelOfDetail::Derivatives,
             bumps: Bumps::Filtered,
         };

@@ -24,7 +24,7 @@ pub struct Args {
     #[arg(long, value_name = "WxH", default_value = "1600x1200", value_parser = size)]
     size: Size,
 
-    /// Frames per method; the median counts [default: 200; 10 on a software driver]
+    /// Frames per method; the median is reported [default: 200; 10 on a software driver]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_FRAMES))]
     frames: Option<u32>,
 

@@ -134,7 +134,7 @@ mod tests {
     use roughcast::Anisotropy;
     use roughcast::shading::Shading;
     use roughcast::texture::TexelReader;
-    use roughcast_gpu::render::{Bumps, LevelOfDetail, ShaderKey, shader_source};
+    use roughcast_gpu::render::{Bumps, DetailSource, LevelOfDetail, ShaderKey, shader_source};
 
     use super::*;
 
@@ -182,7 +182,7 @@ mod tests {
         let counted = |shading: Shading| {
             let key = ShaderKey {
                 shading,
-                reader: reader(shading),
+                detail: DetailSource::Textures(reader(shading)),
                 level: LevelOfDetail::Derivatives,
                 bumps: Bumps::Filtered,
             };

@@ -6,13 +6,14 @@ use naga::back::{glsl, hlsl, msl, spv};
 use naga::proc::BoundsCheckPolicies;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use roughcast::Named;
+use roughcast::shading::Shading;
 use roughcast::wgsl::{library, modules};
 
 use super::guest::{with_guards, written};
 use super::header::{header, models};
 use super::names::with_plain_names;
 use super::prefix::Prefix;
-use super::stage::{fragment_shaders, needed_modules};
+use super::stage::{fragment_shaders, modules_of};
 use crate::UsageError;
 
 /// A language of shaders.
@@ -52,8 +53,11 @@ pub enum Export {
 /// The named modules and their dependencies in a language, with prefixed names. SPIR-V is a whole shader, whose names
 /// are private, so it has no prefix.
 pub fn export(names: &[&str], language: Language, prefix: &Prefix) -> Result<Export> {
-    let exported = modules(names)?;
-    let source = library(names)?;
+    let models: Vec<Shading> = models(&modules(names)?).collect();
+    let needed = models.iter().flat_map(|model| modules_of(*model));
+    let names: Vec<&str> = names.iter().copied().chain(needed).collect();
+    let exported = modules(&names)?;
+    let source = library(&names)?;
     let guarded = |generated: &str| {
         with_guards(&with_plain_names(generated), &exported, prefix).map_err(anyhow::Error::msg)
     };
@@ -72,12 +76,11 @@ pub fn export(names: &[&str], language: Language, prefix: &Prefix) -> Result<Exp
         Language::Hlsl => guarded(&to_hlsl(&source)?)?,
         Language::Msl => guarded(&to_msl(&source)?)?,
         Language::Spirv => {
-            let models: Vec<_> = models(&exported).collect();
             if models.is_empty() {
                 let line = "SPIR-V has no libraries, so it is exported as a fragment shader: name a model";
                 return Err(UsageError(line.to_owned()).into());
             }
-            let library = library(&[names, &needed_modules(&models)].concat())?;
+            let library = library(&[&names[..], &["detail", "reflectance"]].concat())?;
             let code = [library, fragment_shaders(&models)?].join("\n");
             return Ok(Export::Binary(to_spirv(&code)?));
         }

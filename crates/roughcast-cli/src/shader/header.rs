@@ -1,12 +1,12 @@
 //! The comment at the start of every export: naga drops comments, so it contains what a user must know.
 
-use roughcast::shading::{Gaussians, Shading};
+use roughcast::shading::Shading;
 use roughcast::wgsl::{CONVENTIONS, Module, Role};
 
 use super::export::Language;
 use super::layout::{Rule, in_words, layout, structs};
 use super::prefix::Prefix;
-use super::stage::{detail_of, reader_of};
+use super::stage::{calls_of, detail_of, reader_of};
 
 /// Maximum characters per line, including `// `.
 const WIDTH: usize = 120;
@@ -53,7 +53,7 @@ pub fn header(modules: &[&Module], parsed: &naga::Module, language: Language, pr
         let texels =
             reader_of(model).inputs.iter().map(|input| texel_variable(input.layer)).collect::<Vec<_>>();
         lines.push(format!("  {model}, with the texels {}:", texels.join(", ")));
-        let calls = model.calls(Gaussians::One);
+        let calls = calls_of(model);
         let of_model = [
             ("surface".to_owned(), format!("{}(distribution, options)", calls.surface)),
             ("lobe".to_owned(), format!("{}(surface, view, light, options)", calls.lobe)),

@@ -2,7 +2,7 @@
 
 use anyhow::{Result, bail};
 use roughcast::Anisotropy;
-use roughcast::shading::{Gaussians, Shading};
+use roughcast::shading::{Calls, Shading};
 use roughcast::texture::{Layout, TexelReader};
 use roughcast::wgsl::{self, Module, renamed};
 
@@ -48,13 +48,19 @@ fn textures_of(layout: Layout) -> Result<&'static str> {
     })
 }
 
-/// The modules that the fragment shaders of these models need in addition to the models themselves.
-pub fn needed_modules(models: &[Shading]) -> Vec<&'static str> {
-    let of_detail = models.iter().flat_map(|model| detail_of(*model).needs.iter().copied());
-    of_detail.chain(["detail", "reflectance"]).collect()
+/// The modules that read the textures of a model's layout and shade them.
+pub fn modules_of(model: Shading) -> Vec<&'static str> {
+    // The host of an export samples the textures itself, so it has no use for a module of detail.
+    let reading = detail_of(model).needs.iter().copied().filter(|name| *name != "detail");
+    reading.chain([calls_of(model).module]).collect()
 }
 
-/// WGSL of fragment shaders `shade_MODEL`, to be appended to the library with [`needed_modules`].
+/// How a model is called for the distributions of its layout.
+pub fn calls_of(model: Shading) -> Calls {
+    model.calls(reader_of(model).gaussians)
+}
+
+/// WGSL of fragment shaders `shade_MODEL`, to be appended to a library with [`modules_of`] each model, `detail` and `reflectance`.
 pub fn fragment_shaders(models: &[Shading]) -> Result<String> {
     let mut declared: Vec<&str> = Vec::new();
     let mut code = RESOURCES.to_owned();
@@ -82,5 +88,5 @@ fn names_of(model: Shading) -> Vec<(&'static str, String)> {
         None => format!("{name}_{identifier}"),
     };
     let own = OWN_FUNCTIONS.iter().map(|name| (*name, own(name)));
-    own.chain(model.calls(Gaussians::One).names().map(|(general, name)| (general, name.to_owned()))).collect()
+    own.chain(calls_of(model).names().map(|(general, name)| (general, name.to_owned()))).collect()
 }

@@ -152,25 +152,21 @@ impl GpuBaker {
     /// Replaces the map with another image of the same size, channels and sample type.
     ///
     /// # Errors
-    /// [`GpuError::Shape`] if the image differs in any of these.
+    /// [`GpuError::OtherMap`] if the image differs in any of these; [`GpuError::MapUsage`] if the map's texture
+    /// cannot be copied to.
     pub fn upload(&self, image: &Image) -> Result<(), GpuError> {
         let size = self.job.size;
         let same_size = (image.width(), image.height()) == (size.width as usize, size.height as usize);
         if !same_size || MapFormat::of_image(image)? != self.job.map_format {
-            return Err(GpuError::Shape(format!(
-                "this bake was made for {}x{} texels in {:?}, not for {}x{} of {} channels in {:?}: make another",
-                size.width,
-                size.height,
-                self.job.map.format(),
-                image.width(),
-                image.height(),
-                image.channels(),
-                image.samples().sample_type(),
-            )));
+            return Err(GpuError::OtherMap {
+                wanted: (size.width, size.height),
+                format: self.job.map.format(),
+                got: (image.width(), image.height()),
+                channels: image.channels(),
+                sample_type: image.samples().sample_type(),
+            });
         }
-        if !self.job.map.usage().contains(wgpu::TextureUsages::COPY_DST) {
-            return Err(GpuError::Shape("the map's texture cannot be copied to: add COPY_DST".to_owned()));
-        }
+        require_usage(&self.job.map, wgpu::TextureUsages::COPY_DST)?;
         source::upload(&self.gpu, image, &self.job.map);
         Ok(())
     }
@@ -291,13 +287,9 @@ impl Job {
         let map_format = MapFormat::of_texture(map.format())?;
         map_format.check_channels(&plan.source)?;
         if map.dimension() != wgpu::TextureDimension::D2 || map.sample_count() != 1 {
-            return Err(GpuError::Shape(
-                "a map is a two-dimensional texture of one sample per texel".to_owned(),
-            ));
+            return Err(GpuError::MapDimension);
         }
-        if !map.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
-            return Err(GpuError::Shape("the map's texture cannot be read: add TEXTURE_BINDING".to_owned()));
-        }
+        require_usage(map, wgpu::TextureUsages::TEXTURE_BINDING)?;
         let usage = match path {
             BakePath::Raster => wgpu::TextureUsages::RENDER_ATTACHMENT,
             BakePath::Compute | BakePath::Fastest => wgpu::TextureUsages::STORAGE_BINDING,
@@ -437,4 +429,9 @@ pub async fn bake(
     let baker = GpuBaker::for_image(gpu, image, source, roughness, options, BakePath::default()).await?;
     baker.run();
     Ok(baker)
+}
+
+/// Checks that the texture of a map has a usage.
+fn require_usage(map: &wgpu::Texture, usage: wgpu::TextureUsages) -> Result<(), GpuError> {
+    if map.usage().contains(usage) { Ok(()) } else { Err(GpuError::MapUsage { missing: usage }) }
 }

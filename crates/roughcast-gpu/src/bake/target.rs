@@ -1,57 +1,81 @@
 //! The target of a bake: a layout's textures with all their levels, and the WGSL that encodes averages as their texels.
 
-use roughcast::texture::{self, Layout, Texture, TextureArray, TextureInfo};
+use roughcast::texture::{self, LayerSpec, Layout, Texture, TextureArray, TextureInfo};
 use roughcast::{
     BakeError, BakeOptions, Blocks, Image, PyramidFilter, SampleType, Samples, SourceError, level_sizes,
 };
 
 use crate::read_back::{Staged, stage_texture};
-use crate::{Gpu, GpuError};
+use crate::{Gpu, GpuError, OnlyOnCpu};
+
+/// The WGSL that is particular to a layout.
+#[derive(Debug, PartialEq, Eq)]
+struct Encoder {
+    layout: Layout,
+    /// `averages_of_slope(slope)`, a texel of level 0.
+    averages: &'static str,
+    /// `store_texels_n`, with which a dispatch stores a texel into the layout's textures.
+    store: &'static str,
+    /// A fragment shader that makes a texel of the layout's textures.
+    output: &'static str,
+}
+
+/// The layouts that the GPU bakes.
+const ENCODERS: [Encoder; 2] = [
+    Encoder {
+        layout: Layout::Lean,
+        averages: include_str!("wgsl/averages_with_normal.wgsl"),
+        store: include_str!("wgsl/store_lean.wgsl"),
+        output: include_str!("wgsl/output_lean.wgsl"),
+    },
+    Encoder {
+        layout: Layout::Clean,
+        averages: include_str!("wgsl/averages_without_normal.wgsl"),
+        store: include_str!("wgsl/store_clean.wgsl"),
+        output: include_str!("wgsl/output_clean.wgsl"),
+    },
+];
 
 /// Layout and format of the textures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Target {
-    pub layout: Layout,
+    encoder: &'static Encoder,
     pub format: wgpu::TextureFormat,
     sample_type: SampleType,
 }
 
 impl Target {
     pub fn new(options: &BakeOptions) -> Result<Self, GpuError> {
-        let refuse = |line: String| Err(GpuError::OnlyOnCpu(line));
-        if !matches!(options.layout, Layout::Lean | Layout::Clean) {
-            return refuse(format!(
-                "the GPU bakes the layouts 'lean' and 'clean', not '{}': bake that one on the CPU",
-                options.layout
-            ));
-        }
+        let encoder = ENCODERS.iter().find(|encoder| encoder.layout == options.layout);
+        let encoder = encoder.ok_or(OnlyOnCpu::Layout(options.layout))?;
         if options.blocks != Blocks::None {
-            return refuse("the GPU bakes plain texels: compress blocks on the CPU".to_owned());
+            return Err(OnlyOnCpu::Blocks.into());
         }
         if options.filter != PyramidFilter::Box {
-            return refuse(format!(
-                "the GPU filters with 'box', since wider kernels need neighbours of every tile: bake with '{}' on the CPU",
-                options.filter
-            ));
+            return Err(OnlyOnCpu::PyramidFilter(options.filter).into());
         }
         let format = match options.sample_type {
             SampleType::U8 => wgpu::TextureFormat::Rgba8Unorm,
             SampleType::U16 => wgpu::TextureFormat::Rgba16Unorm,
             SampleType::F16 => wgpu::TextureFormat::Rgba16Float,
-            SampleType::F32 => {
-                return refuse(
-                    "the GPU bakes 8 bits, 16 bits and half floats: single floats cannot be filtered everywhere; \
-                     store half floats, or bake on the CPU"
-                        .to_owned(),
-                );
-            }
+            SampleType::F32 => return Err(OnlyOnCpu::SingleFloats.into()),
         };
-        Ok(Self { layout: options.layout, format, sample_type: options.sample_type })
+        Ok(Self { encoder, format, sample_type: options.sample_type })
+    }
+
+    /// The layout of the textures.
+    pub fn layout(self) -> Layout {
+        self.encoder.layout
+    }
+
+    /// The textures of the layout.
+    fn specs(self) -> &'static [LayerSpec] {
+        texture::layers_of(&TextureInfo::new(self.layout(), texture::Part::Whole))
     }
 
     /// Number of textures in the layout.
     pub fn layers(self) -> u32 {
-        if self.layout == Layout::Lean { 2 } else { 1 }
+        self.specs().len() as u32
     }
 
     pub fn is_float(self) -> bool {
@@ -67,9 +91,8 @@ impl Target {
     ) -> Result<Vec<wgpu::Texture>, GpuError> {
         let usage = usage | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
         gpu.require_format(self.format, usage)?;
-        let info = TextureInfo::new(self.layout, texture::Part::Whole);
         let mut textures = Vec::new();
-        for layer in texture::layers_of(&info) {
+        for layer in self.specs() {
             let descriptor = wgpu::TextureDescriptor {
                 label: Some(layer.name),
                 size,
@@ -87,18 +110,12 @@ impl Target {
 
     /// WGSL of `store_texels_n`, with which a dispatch stores a texel into the layout's textures.
     pub fn store_wgsl(self) -> &'static str {
-        match self.layout {
-            Layout::Lean => include_str!("wgsl/store_lean.wgsl"),
-            _ => include_str!("wgsl/store_clean.wgsl"),
-        }
+        self.encoder.store
     }
 
     /// WGSL of a fragment shader that makes a texel of the layout's textures.
     pub fn output_wgsl(self) -> &'static str {
-        match self.layout {
-            Layout::Lean => include_str!("wgsl/output_lean.wgsl"),
-            _ => include_str!("wgsl/output_clean.wgsl"),
-        }
+        self.encoder.output
     }
 
     /// WGSL of `nearest(value)`, which rounds as the CPU does.
@@ -112,10 +129,7 @@ impl Target {
 
     /// WGSL of `averages_of_slope(slope)`, a texel of level 0.
     pub fn averages_wgsl(self) -> &'static str {
-        match self.layout {
-            Layout::Lean => include_str!("wgsl/averages_with_normal.wgsl"),
-            _ => include_str!("wgsl/averages_without_normal.wgsl"),
-        }
+        self.encoder.averages
     }
 
     /// Copies the textures into memory.
@@ -191,8 +205,6 @@ pub(super) fn base_variance_of(
         (_, Some(roughcast::BaseRoughness::Variance(variance))) => {
             Err(BakeError::Source(SourceError::BaseVariance { variance }).into())
         }
-        (_, Some(_)) => Err(GpuError::OnlyOnCpu(
-            "the GPU folds in one roughness for the whole map, not a map of it: bake on the CPU".to_owned(),
-        )),
+        (_, Some(_)) => Err(OnlyOnCpu::RoughnessMap.into()),
     }
 }

@@ -19,8 +19,7 @@ pub async fn render(
     size: (u32, u32),
 ) -> Result<Picture, GpuError> {
     if renderer.target() != RenderTarget::Parts {
-        let line = "pictures are read back from a renderer for RenderTarget::Parts: create one";
-        return Err(GpuError::Shape(line.to_owned()));
+        return Err(GpuError::NotReadable);
     }
     let gpu = renderer.gpu();
     drawing.set_view(renderer, scene, size).await?;

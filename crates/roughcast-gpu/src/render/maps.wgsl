@@ -6,7 +6,6 @@ struct Sampling {
     max_anisotropy: f32,    // taps along the footprint; 0 for nearest sampling
 }
 
-@group(1) @binding(0) var<uniform> options: ShadingOptions;
 @group(1) @binding(1) var<uniform> packing: Packing;
 @group(1) @binding(2) var<uniform> sampling: Sampling;
 @group(1) @binding(3) var map_sampler: sampler;

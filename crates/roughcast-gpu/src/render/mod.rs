@@ -1,13 +1,13 @@
 //! The real-time renderer: the scenes and shading models of the CPU renderer, with the GPU's own texture filters.
 //!
 //! A [`Renderer`] draws into one kind of target: a window's surface, an offscreen texture, or a [`Picture`] that is
-//! read back. It combines a [`Geometry`] and [`GpuTextures`], each uploaded once, into a [`Drawing`], whose view may
+//! read back. It combines a [`Geometry`] and [`GpuDetail`], each uploaded once, into a [`Drawing`], whose view may
 //! change every frame.
 //!
 //! ```text
 //! let mut renderer = Renderer::new(&gpu, RenderTarget::Colour(surface_format)).await?;
 //! let geometry = Geometry::new(&gpu, &scene.shape, MAX_DETAIL).await?;
-//! let textures = GpuTextures::new(&gpu, Shading::Lean, &baked.arrays).await?;
+//! let textures = GpuDetail::of_model(&gpu, Shading::Lean, &baked.arrays).await?;
 //! let mut drawing = renderer.prepare(&geometry, &textures, &DrawOptions::default()).await?;
 //! // every frame
 //! drawing.set_view(&renderer, &scene, (width, height)).await?;
@@ -16,6 +16,7 @@
 //!
 //! [`Picture`]: roughcast_scene::Picture
 
+mod detail;
 mod geometry;
 mod headless;
 mod pipeline;
@@ -30,10 +31,10 @@ use std::collections::HashMap;
 use roughcast::shading::ShadingOptions;
 use roughcast_scene::{Filter, Sampler, Scene};
 
+pub use detail::{DetailCode, DetailSource, GpuDetail};
 pub use geometry::Geometry;
 pub use headless::render;
 pub use shader::{Bumps, LevelOfDetail, ShaderKey, shader_source};
-pub use textures::GpuTextures;
 pub use views::{Order, Part, Views};
 
 use crate::{Gpu, GpuError};
@@ -136,12 +137,12 @@ pub struct Renderer {
     pipelines: HashMap<ShaderKey, wgpu::RenderPipeline>,
 }
 
-/// A shape with a model's textures, ready to be drawn.
+/// A shape with a source of bumps and its model, ready to be drawn.
 #[derive(Debug)]
 pub struct Drawing {
     pipeline: wgpu::RenderPipeline,
     geometry: Geometry,
-    textures: GpuTextures,
+    detail: GpuDetail,
     sampling: Sampling,
     bumps: Bumps,
     uniforms: MapUniforms,
@@ -163,7 +164,7 @@ impl Renderer {
             gpu.require_format(format, wgpu::TextureUsages::RENDER_ATTACHMENT)?;
         }
         if gpu.limits().max_storage_buffers_per_shader_stage == 0 {
-            let instead = "render on the CPU (--cpu)";
+            let instead = "render on the CPU";
             return Err(GpuError::Feature { feature: "storage buffers in shaders", instead });
         }
         let (view_layout, map_layouts) = gpu.checked("the layouts of a renderer", create_layouts).await?;
@@ -180,7 +181,7 @@ impl Renderer {
         self.target
     }
 
-    /// Prepares a shape and textures for drawing. Call [`Drawing::set_view`] next.
+    /// Prepares a shape and a source of bumps for drawing. Call [`Drawing::set_view`] next.
     ///
     /// # Errors
     /// [`GpuError::OnlyOnCpu`] for a filter that hardware does not have; [`GpuError::Refused`] if the driver does not
@@ -188,14 +189,14 @@ impl Renderer {
     pub async fn prepare(
         &mut self,
         geometry: &Geometry,
-        textures: &GpuTextures,
+        detail: &GpuDetail,
         options: &DrawOptions,
     ) -> Result<Drawing, GpuError> {
         let sampling = Sampling::new(&options.sampler())?;
-        let pipeline = self.pipeline(key(textures, &sampling, options.bumps)).await?;
+        let pipeline = self.pipeline(key(detail, &sampling, options.bumps)).await?;
         let groups = BindGroups { gpu: &self.gpu, view_layout: &self.view_layout };
-        let uniforms = MapUniforms::new(&self.gpu, textures, options, &sampling).await?;
-        let maps = groups.maps(self.map_layout(textures.views.len()), textures, &uniforms, &sampling).await?;
+        let uniforms = MapUniforms::new(&self.gpu, detail, options, &sampling).await?;
+        let maps = groups.maps(self.map_layout(detail.views.len()), detail, &uniforms, &sampling).await?;
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
         let view =
             upload(&self.gpu, "the view of a scene", bytemuck::cast_slice(&[0_u32; VIEW_WORDS]), usage)
@@ -205,7 +206,7 @@ impl Renderer {
         Ok(Drawing {
             pipeline,
             geometry: geometry.clone(),
-            textures: textures.clone(),
+            detail: detail.clone(),
             sampling,
             bumps: options.bumps,
             uniforms,
@@ -218,14 +219,14 @@ impl Renderer {
     }
 
     fn map_layout(&self, textures: usize) -> &wgpu::BindGroupLayout {
-        &self.map_layouts[textures - 1]
+        &self.map_layouts[textures]
     }
 
     async fn pipeline(&mut self, key: ShaderKey) -> Result<wgpu::RenderPipeline, GpuError> {
         if let Some(pipeline) = self.pipelines.get(&key) {
             return Ok(pipeline.clone());
         }
-        let layouts = [&self.view_layout, self.map_layout(key.reader.inputs.len())];
+        let layouts = [&self.view_layout, self.map_layout(key.detail.texture_count())];
         let pipeline = create_pipeline(&self.gpu, key, self.target, layouts).await?;
         self.pipelines.insert(key, pipeline.clone());
         Ok(pipeline)
@@ -241,9 +242,9 @@ impl Renderer {
     }
 }
 
-/// The key of the shader that samples these textures with this sampler.
-fn key(textures: &GpuTextures, sampling: &Sampling, bumps: Bumps) -> ShaderKey {
-    ShaderKey { shading: textures.shading, reader: textures.reader, level: sampling.level, bumps }
+/// The key of the shader of this detail with this sampler.
+fn key(detail: &GpuDetail, sampling: &Sampling, bumps: Bumps) -> ShaderKey {
+    ShaderKey { shading: detail.shading, detail: detail.source, level: sampling.level, bumps }
 }
 
 impl Drawing {
@@ -259,13 +260,13 @@ impl Drawing {
     ) -> Result<(), GpuError> {
         let sampling = Sampling::new(&options.sampler())?;
         if (sampling, options.bumps) != (self.sampling, self.bumps) {
-            let pipeline = renderer.pipeline(key(&self.textures, &sampling, options.bumps)).await?;
+            let pipeline = renderer.pipeline(key(&self.detail, &sampling, options.bumps)).await?;
             let groups = BindGroups { gpu: &renderer.gpu, view_layout: &renderer.view_layout };
-            let layout = renderer.map_layout(self.textures.views.len());
-            self.maps = groups.maps(layout, &self.textures, &self.uniforms, &sampling).await?;
+            let layout = renderer.map_layout(self.detail.views.len());
+            self.maps = groups.maps(layout, &self.detail, &self.uniforms, &sampling).await?;
             (self.pipeline, self.sampling, self.bumps) = (pipeline, sampling, options.bumps);
         }
-        self.uniforms.write(&renderer.gpu, &self.textures, options, &sampling);
+        self.uniforms.write(&renderer.gpu, &self.detail, options, &sampling);
         Ok(())
     }
 

@@ -1,16 +1,15 @@
 //! Pipelines and bind groups.
 
+use roughcast::texture::MAX_TEXTURES;
+
+use super::detail::GpuDetail;
 use super::geometry::{VERTEX_LAYOUT, upload};
 use super::sampling::Sampling;
 use super::shader::{FIRST_TEXTURE, ShaderKey, shader_source};
-use super::textures::GpuTextures;
 use super::{DEPTH_FORMAT, DrawOptions, RenderTarget};
 use crate::{Gpu, GpuError};
 
-/// Maximum number of textures of a source of bumps.
-const MAX_TEXTURES: u32 = 3;
-
-/// The bind group layout of the view, and those of the maps with one or more textures.
+/// The bind group layout of the view, and those of the maps, by their number of textures.
 pub(super) fn create_layouts(device: &wgpu::Device) -> (wgpu::BindGroupLayout, Vec<wgpu::BindGroupLayout>) {
     let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
     let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
@@ -31,9 +30,9 @@ pub(super) fn create_layouts(device: &wgpu::Device) -> (wgpu::BindGroupLayout, V
     for (binding, entry) in entries.iter_mut().enumerate() {
         entry.binding = binding as u32;
     }
-    let maps = (0..MAX_TEXTURES).map(|index| {
-        entries.push(entry(FIRST_TEXTURE + index, fragment, texture));
-        layout("maps", &entries)
+    let maps = (0..=MAX_TEXTURES as u32).map(|textures| {
+        let of_textures = (0..textures).map(|index| entry(FIRST_TEXTURE + index, fragment, texture));
+        layout("maps", &entries.iter().copied().chain(of_textures).collect::<Vec<_>>())
     });
     (view, maps.collect())
 }
@@ -45,7 +44,7 @@ pub(super) async fn create_pipeline(
     target: RenderTarget,
     [view, maps]: [&wgpu::BindGroupLayout; 2],
 ) -> Result<wgpu::RenderPipeline, GpuError> {
-    let source = shader_source(key).map_err(|error| GpuError::Shape(error.to_string()))?;
+    let source = shader_source(key)?;
     let targets: Vec<_> = target.formats().into_iter().map(|format| Some(format.into())).collect();
     let make = |device: &wgpu::Device| {
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -110,7 +109,7 @@ impl BindGroups<'_> {
     pub async fn maps(
         &self,
         layout: &wgpu::BindGroupLayout,
-        textures: &GpuTextures,
+        detail: &GpuDetail,
         uniforms: &MapUniforms,
         sampling: &Sampling,
     ) -> Result<wgpu::BindGroup, GpuError> {
@@ -121,7 +120,7 @@ impl BindGroups<'_> {
         let resources = fixed
             .into_iter()
             .chain([wgpu::BindingResource::Sampler(&sampler)])
-            .chain(textures.views.iter().map(wgpu::BindingResource::TextureView));
+            .chain(detail.views.iter().map(wgpu::BindingResource::TextureView));
         self.group("the maps of a model", layout, resources).await
     }
 
@@ -152,14 +151,14 @@ pub(super) struct MapUniforms {
 impl MapUniforms {
     pub async fn new(
         gpu: &Gpu,
-        textures: &GpuTextures,
+        detail: &GpuDetail,
         options: &DrawOptions,
         sampling: &Sampling,
     ) -> Result<Self, GpuError> {
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
-        let options = textures.options(options.shading_options).to_words();
-        let packing = textures.packing.to_words();
-        let sampling = sampling.words(textures);
+        let options = detail.options(options.shading_options).to_words();
+        let packing = detail.packing.to_words();
+        let sampling = sampling.words(detail);
         Ok(Self {
             options: upload(gpu, "the options of a lobe", bytemuck::cast_slice(&options), usage).await?,
             packing: upload(gpu, "the packing of textures", bytemuck::cast_slice(&packing), usage).await?,
@@ -168,9 +167,9 @@ impl MapUniforms {
     }
 
     /// Writes the uniforms that may change from frame to frame.
-    pub fn write(&self, gpu: &Gpu, textures: &GpuTextures, options: &DrawOptions, sampling: &Sampling) {
-        let words = textures.options(options.shading_options).to_words();
+    pub fn write(&self, gpu: &Gpu, detail: &GpuDetail, options: &DrawOptions, sampling: &Sampling) {
+        let words = detail.options(options.shading_options).to_words();
         gpu.queue().write_buffer(&self.options, 0, bytemuck::cast_slice(&words));
-        gpu.queue().write_buffer(&self.sampling, 0, bytemuck::cast_slice(&sampling.words(textures)));
+        gpu.queue().write_buffer(&self.sampling, 0, bytemuck::cast_slice(&sampling.words(detail)));
     }
 }

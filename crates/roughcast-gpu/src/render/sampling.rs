@@ -3,9 +3,9 @@
 use roughcast::Wrap;
 use roughcast_scene::{Filter, Sampler};
 
+use super::detail::GpuDetail;
 use super::shader::LevelOfDetail;
-use super::textures::GpuTextures;
-use crate::GpuError;
+use crate::{GpuError, OnlyOnCpu};
 
 /// Maximum number of taps of anisotropic filtering in WebGPU.
 const MAX_TAPS: u16 = 16;
@@ -35,10 +35,7 @@ impl Sampling {
             Filter::Nearest => Some(level.unwrap_or(0.0).round()),
             Filter::Trilinear | Filter::Anisotropic => level,
             _ => {
-                return Err(GpuError::OnlyOnCpu(format!(
-                    "graphics hardware has no texture filter '{filter}': render with it on the CPU, or choose nearest, \
-                     trilinear or anisotropic"
-                )));
+                return Err(OnlyOnCpu::TextureFilter(filter).into());
             }
         };
         let (level, value) = match level {
@@ -55,9 +52,9 @@ impl Sampling {
     }
 
     /// WGSL's `Sampling`.
-    pub fn words(&self, textures: &GpuTextures) -> [u32; 4] {
+    pub fn words(&self, detail: &GpuDetail) -> [u32; 4] {
         let taps = f32::from(self.max_anisotropy);
-        [self.value.to_bits(), textures.roughness_channel, taps.to_bits(), 0]
+        [self.value.to_bits(), detail.roughness_channel, taps.to_bits(), 0]
     }
 
     /// Anisotropic samplers need derivatives; at a fixed level they become trilinear, as on the CPU.

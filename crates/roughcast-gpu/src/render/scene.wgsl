@@ -18,6 +18,7 @@ struct SceneLight {
 
 @group(0) @binding(0) var<uniform> scene_view: SceneView;
 @group(0) @binding(1) var<storage, read> scene_lights: array<SceneLight>;
+@group(1) @binding(0) var<uniform> options: ShadingOptions;
 
 struct Varyings {
     @builtin(position) clip: vec4f,
@@ -87,10 +88,10 @@ struct Parts {
 }
 
 fn shaded(fragment: Varyings, front: bool) -> Parts {
-    let distribution = bumps_at(DetailPoint(fragment.uv, fragment.position));
-    let surface = model_surface(distribution, options);
     let towards_eye = normalize(scene_view.eye - fragment.position);
     let frame = world_from_tangent(fragment, towards_eye, front);
+    let distribution = bumps_at(DetailPoint(fragment.uv, fragment.position, frame));
+    let surface = model_surface(distribution, options);
     let view = towards_eye * frame;
     var diffuse = ambient_radiance(scene_view.albedo, scene_view.ambient);
     var specular = vec3f(0.0);

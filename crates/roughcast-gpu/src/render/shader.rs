@@ -5,6 +5,8 @@ use roughcast::shading::Shading;
 use roughcast::texture::{Part, TexelReader};
 use roughcast::wgsl;
 
+use super::detail::DetailSource;
+
 /// The first texture binding in the maps' group.
 pub(super) const FIRST_TEXTURE: u32 = 4;
 
@@ -61,37 +63,16 @@ impl Bumps {
 }
 
 /// Identifies a shader.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ShaderKey {
     /// The model.
     pub shading: Shading,
-    /// The source of bumps: the textures of a layout.
-    pub reader: &'static TexelReader,
+    /// The source of bumps.
+    pub detail: DetailSource,
     /// The source of the level of detail.
     pub level: LevelOfDetail,
     /// Which slopes are shaded.
     pub bumps: Bumps,
-}
-
-impl PartialEq for ShaderKey {
-    fn eq(&self, other: &Self) -> bool {
-        self.parts() == other.parts()
-    }
-}
-
-impl Eq for ShaderKey {}
-
-impl std::hash::Hash for ShaderKey {
-    fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
-        self.parts().hash(state);
-    }
-}
-
-impl ShaderKey {
-    /// The values that are compared; a reader is identified by its module.
-    fn parts(&self) -> (Shading, &'static str, LevelOfDetail, Bumps) {
-        (self.shading, self.reader.module, self.level, self.bumps)
-    }
 }
 
 /// The WGSL of a model with a source of bumps: the vertex shader `project`, and the fragment shaders `radiance` (one
@@ -102,13 +83,33 @@ impl ShaderKey {
 /// from 4 on the textures in the order of [`TexelReader::inputs`].
 ///
 /// # Errors
-/// [`UnknownName`] if the library lacks the model.
+/// [`UnknownName`] if the library lacks a module that the source of bumps needs.
 pub fn shader_source(key: ShaderKey) -> Result<String, UnknownName> {
-    let ShaderKey { shading, reader, level, bumps } = key;
-    let modules = [&[shading.name(), "reflectance", reader.module], reader.gaussians.modules()].concat();
+    let ShaderKey { shading, detail, level, bumps } = key;
+    let calls = shading.calls(detail.gaussians());
+    let mut modules = vec![calls.module, "reflectance", "detail"];
+    let mut parts = Vec::new();
+    match detail {
+        DetailSource::Textures(reader) => {
+            modules.push(reader.module);
+            parts.extend(sampling_of(reader, level));
+        }
+        DetailSource::Code(code) => {
+            modules.extend(code.needs);
+            parts.push(code.source);
+        }
+    }
     let library = wgsl::library(&modules)?;
+    let scene = wgsl::renamed(SCENE, &calls.names());
+    parts.insert(0, &library);
+    parts.extend([bumps.source(), &scene]);
+    Ok(parts.join("\n"))
+}
+
+/// WGSL of the functions that sample the textures of a layout.
+fn sampling_of(reader: &TexelReader, level: LevelOfDetail) -> Vec<&'static str> {
     let [filtered, variances] = level.sources();
-    let mut parts = vec![library.as_str(), MAPS, filtered];
+    let mut parts = vec![MAPS, filtered];
     parts.extend(reader.inputs.iter().enumerate().map(|(place, input)| match place {
         0 => MAP0,
         1 if input.part == Part::Roughness => MAP1_ROUGHNESS,
@@ -118,8 +119,5 @@ pub fn shader_source(key: ShaderKey) -> Result<String, UnknownName> {
     if reader.mean_input.is_some() {
         parts.extend([variances, FOOTPRINT]);
     }
-    parts.push(bumps.source());
-    let scene = wgsl::renamed(SCENE, &shading.calls(reader.gaussians).names());
-    parts.push(&scene);
-    Ok(parts.join("\n"))
+    parts
 }

@@ -1,104 +1,13 @@
-//! A model's textures in the GPU's memory, in their stored format.
+//! Textures in the GPU's memory, in their stored format.
 
-use roughcast::shading::{Shading, ShadingOptions};
-use roughcast::texture::{Packing, TexelReader, Texture, TextureArray, TextureInfo};
-use roughcast::{Anisotropy, Image, SampleType, Samples};
-use roughcast_scene::{DetailError, model_inputs};
+use roughcast::texture::Texture;
+use roughcast::{Image, SampleType, Samples};
+use roughcast_scene::{DetailError, MipmapError};
 
 use crate::{Gpu, GpuError};
 
-/// The textures that a shading model samples, and the meaning of their texels. Cheap to clone: they are shared.
-#[derive(Clone, Debug)]
-pub struct GpuTextures {
-    pub(super) shading: Shading,
-    pub(super) reader: &'static TexelReader,
-    pub(super) views: Vec<wgpu::TextureView>,
-    pub(super) roughness_channel: u32,
-    pub(super) packing: Packing,
-    info: TextureInfo,
-}
-
-impl GpuTextures {
-    /// Uploads all levels of the model's textures from the files of its [layout](Shading::layout), in their stored
-    /// type: 8-bit or 16-bit unsigned integers, half or single floats. Three channels become four.
-    ///
-    /// # Errors
-    /// [`GpuError::Detail`] if a texture is missing; [`GpuError::Format`] if the device cannot filter the stored type;
-    /// other errors if the textures are too large.
-    pub async fn new(gpu: &Gpu, shading: Shading, arrays: &[TextureArray]) -> Result<Self, GpuError> {
-        let inputs = model_inputs(shading, arrays)?;
-        let mut views = Vec::with_capacity(inputs.textures.len());
-        for texture in inputs.textures {
-            views.push(upload(gpu, texture).await?.create_view(&Default::default()));
-        }
-        Ok(Self {
-            shading,
-            reader: inputs.reader,
-            views,
-            roughness_channel: inputs.roughness_channel as u32,
-            packing: inputs.packing,
-            info: inputs.info,
-        })
-    }
-
-    /// Uses textures that are already on the GPU, such as those that a bake fills every frame: one for each layer of
-    /// the layout, in the layout's order. They need the usage `TEXTURE_BINDING`.
-    ///
-    /// # Errors
-    /// [`GpuError::Shape`] if the textures do not match the model; [`GpuError::Format`] if the device cannot filter
-    /// them.
-    pub fn of_baked(
-        gpu: &Gpu,
-        shading: Shading,
-        textures: &[wgpu::Texture],
-        info: &TextureInfo,
-    ) -> Result<Self, GpuError> {
-        let layout = shading.layout();
-        let reader = layout
-            .texel_reader(shading.wanted(), Anisotropy::Isotropic)
-            .ok_or(DetailError::NotSampled(layout))?;
-        let inputs = reader.inputs;
-        if info.layout != shading.layout() || textures.len() < inputs.len() {
-            return Err(GpuError::Shape(format!(
-                "'{shading}' samples {} textures of the layout '{}', not {} of '{}': bake that layout",
-                inputs.len(),
-                shading.layout(),
-                textures.len(),
-                info.layout
-            )));
-        }
-        let textures = &textures[..inputs.len()];
-        for texture in textures {
-            gpu.require_filterable(texture.format())?;
-        }
-        Ok(Self {
-            shading,
-            reader,
-            views: textures.iter().map(|texture| texture.create_view(&Default::default())).collect(),
-            roughness_channel: 0,
-            packing: Packing::new(info, sample_type(textures[0].format())),
-            info: *info,
-        })
-    }
-
-    /// The model.
-    pub fn shading(&self) -> Shading {
-        self.shading
-    }
-
-    /// How the texels are read.
-    pub fn reader(&self) -> &'static TexelReader {
-        self.reader
-    }
-
-    /// The options, with overrides from properties stored with the textures.
-    pub(super) fn options(&self, options: ShadingOptions) -> ShadingOptions {
-        options.for_maps(&self.info)
-    }
-}
-
 /// The sample type of a baked texture; only integers are scaled.
-fn sample_type(format: wgpu::TextureFormat) -> SampleType {
+pub(super) fn sample_type(format: wgpu::TextureFormat) -> SampleType {
     use wgpu::TextureFormat::{R8Unorm, R16Unorm, Rg8Unorm, Rg16Unorm, Rgba8Unorm, Rgba16Unorm};
     match format {
         R8Unorm | Rg8Unorm | Rgba8Unorm => SampleType::U8,
@@ -123,14 +32,12 @@ fn format(sample_type: SampleType, channels: usize) -> wgpu::TextureFormat {
     }
 }
 
-async fn upload(gpu: &Gpu, texture: &Texture) -> Result<wgpu::Texture, GpuError> {
+/// Uploads all levels of a texture.
+pub(super) async fn upload(gpu: &Gpu, texture: &Texture) -> Result<wgpu::Texture, GpuError> {
     let base = texture.finest();
     if base.channels() > 4 {
-        return Err(GpuError::Shape(format!(
-            "the texture '{}' has {} channels and a sampler returns four: bake another layout",
-            texture.name(),
-            base.channels()
-        )));
+        let (name, channels) = (texture.name().to_owned(), base.channels());
+        return Err(DetailError::Texture(MipmapError::Channels { name, channels }).into());
     }
     let format = format(texture.sample_type(), base.channels());
     gpu.require_filterable(format)?;

@@ -2,7 +2,7 @@
 
 use roughcast::shading::ShadingOptions;
 use roughcast::texture::TextureArray;
-use roughcast_gpu::render::{Bumps, DrawOptions, Geometry, GpuTextures, RenderTarget, Renderer, render};
+use roughcast_gpu::render::{Bumps, DrawOptions, Geometry, GpuDetail, RenderTarget, Renderer, render};
 use roughcast_gpu::{Gpu, GpuError};
 use roughcast_scene::render::{Method, unwatched};
 use roughcast_scene::{BakedTextures, Detail, Picture, Resolved, Sampler, Scene, Shape};
@@ -51,7 +51,7 @@ impl GpuPictures {
         size: (u32, u32),
     ) -> Result<Picture, GpuError> {
         pollster::block_on(async {
-            let textures = GpuTextures::new(self.renderer.gpu(), shading, maps).await?;
+            let textures = GpuDetail::of_model(self.renderer.gpu(), shading, maps).await?;
             let mut drawing = self.renderer.prepare(&self.geometry, &textures, options).await?;
             render(&self.renderer, &mut drawing, scene, size).await
         })

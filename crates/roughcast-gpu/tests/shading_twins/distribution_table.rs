@@ -80,6 +80,13 @@ pub fn distribution_twins() -> Vec<Twin> {
             rust: |a, _, _| distribution_words(&Distribution::of_slope(slope(a))),
         },
         Twin {
+            name: "distribution_of_normal",
+            gives: Gives::Numbers,
+            call: "put_distribution(distribution_of_normal(f3(0u)));",
+            arguments: |inputs| inputs.normal().to_vec(),
+            rust: |a, _, _| distribution_words(&Distribution::of_normal(v3(a).into())),
+        },
+        Twin {
             name: "weighted_mean",
             gives: Gives::Numbers,
             call: "put2(weighted_mean(weighted(0u)));",

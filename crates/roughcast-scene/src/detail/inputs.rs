@@ -20,8 +20,8 @@ pub enum DetailError {
         /// The layer.
         layer: &'static str,
     },
-    /// The layout's textures have more channels than a sampler returns.
-    #[error("textures of the layout '{0}' have more channels than a sampler returns; bake another layout")]
+    /// No renderer samples the layout: its textures have more channels than a sampler returns, or it has no reader.
+    #[error("the renderers cannot sample textures of the layout '{0}'; bake another layout")]
     NotSampled(Layout),
     /// There are no textures.
     #[error("there are no textures; give those of a bake")]
@@ -58,7 +58,7 @@ pub fn model_inputs(shading: Shading, arrays: &[TextureArray]) -> Result<Texture
 /// second channel of its texture, or packed with occlusion and metalness.
 ///
 /// # Errors
-/// [`DetailError::MissingTexture`] if a texture is missing, [`DetailError::NotSampled`] if a texture has more channels than a sampler returns.
+/// [`DetailError::MissingTexture`] if a texture is missing, [`DetailError::NotSampled`] if the layout has no reader.
 pub fn texture_inputs(wanted: Wanted, arrays: &[TextureArray]) -> Result<TextureInputs<'_>, DetailError> {
     let first = arrays.first().ok_or(DetailError::Empty)?;
     inputs_of(first.info.layout, wanted, arrays)
@@ -69,11 +69,11 @@ fn inputs_of(
     wanted: Wanted,
     arrays: &[TextureArray],
 ) -> Result<TextureInputs<'_>, DetailError> {
-    let lobe = match array(Part::Anisotropy, arrays) {
+    let anisotropy = match array(Part::Anisotropy, arrays) {
         Some(_) => Anisotropy::Anisotropic,
         None => Anisotropy::Isotropic,
     };
-    let reader = layout.texel_reader(wanted, lobe).ok_or(DetailError::NotSampled(layout))?;
+    let reader = layout.texel_reader(wanted, anisotropy).ok_or(DetailError::NotSampled(layout))?;
     let first = array(reader.inputs[0].part, arrays).ok_or_else(|| missing(reader.inputs[0]))?;
     if first.info.layout != layout {
         return Err(missing(reader.inputs[0]));

@@ -1,7 +1,7 @@
 //! Baked textures of any layout as a source of bumps.
 
 use roughcast::shading::{FootprintRatio, Shading, ShadingOptions, Wanted};
-use roughcast::texture::{Packing, TexelReader, TextureArray, TextureInfo};
+use roughcast::texture::{MAX_TEXTURES, Packing, TexelReader, TextureArray, TextureInfo};
 use roughcast::{Distribution, Slope};
 
 use super::inputs::{DetailError, TextureInputs, model_inputs, texture_inputs};
@@ -11,8 +11,6 @@ use crate::{Filter, Footprint, Mipmap, Placement, Sampler};
 
 /// The index of a material's roughness among its textures.
 const ROUGHNESS: usize = 1;
-/// Maximum number of textures in a layout.
-const MAX_TEXTURES: usize = 3;
 
 /// The textures of a layout as a sampler reads them, and the meaning of their texels.
 #[derive(Clone, Debug)]

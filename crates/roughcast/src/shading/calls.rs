@@ -6,6 +6,8 @@ use super::Shading;
 /// The WGSL functions of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Calls {
+    /// The WGSL module that has both functions: see [`crate::wgsl`].
+    pub module: &'static str,
     /// `NAME(distribution, options)`, called once per pixel, returns the surface.
     pub surface: &'static str,
     /// `NAME(surface, view, light, options)`, called once per light, returns the lobe.
@@ -29,34 +31,24 @@ pub enum Gaussians {
     Several,
 }
 
-impl Gaussians {
-    /// The WGSL modules that are needed to shade them, in addition to the model's.
-    pub const fn modules(self) -> &'static [&'static str] {
-        match self {
-            Self::One => &[],
-            Self::Several => &["mixture"],
-        }
-    }
-}
-
 impl Shading {
     /// How the model is called in WGSL. Some models shade only the total distribution of several Gaussians.
     pub const fn calls(self, gaussians: Gaussians) -> Calls {
-        let (surface, lobe) = match (self, gaussians) {
-            (Self::Phong, _) => ("phong_surface", "phong_lobe"),
-            (Self::BlinnPhong, _) => ("blinn_phong_surface", "blinn_phong_lobe"),
-            (Self::Beckmann, _) => ("beckmann_surface", "beckmann_lobe"),
-            (Self::OffCentre, _) => ("off_centre_surface", "gaussian_lobe"),
+        let [module, surface, lobe] = match (self, gaussians) {
+            (Self::Phong, _) => ["phong", "phong_surface", "phong_lobe"],
+            (Self::BlinnPhong, _) => ["blinn-phong", "blinn_phong_surface", "blinn_phong_lobe"],
+            (Self::Beckmann, _) => ["beckmann", "beckmann_surface", "beckmann_lobe"],
+            (Self::OffCentre, _) => ["off-centre", "off_centre_surface", "gaussian_lobe"],
             (Self::Lean | Self::Clean | Self::Variance, Gaussians::One) => {
-                ("gaussian_surface", "gaussian_lobe")
+                ["gaussian-surface", "gaussian_surface", "gaussian_lobe"]
             }
             (Self::Lean | Self::Clean | Self::Variance, Gaussians::Several) => {
-                ("mixture_surface", "mixture_lobe")
+                ["mixture", "mixture_surface", "mixture_lobe"]
             }
-            (Self::Toksvig, _) => ("toksvig_surface", "blinn_phong_lobe"),
-            (Self::Ggx, _) => ("ggx_surface", "ggx_lobe"),
+            (Self::Toksvig, _) => ["toksvig", "toksvig_surface", "blinn_phong_lobe"],
+            (Self::Ggx, _) => ["ggx", "ggx_surface", "ggx_lobe"],
         };
-        Calls { surface, lobe }
+        Calls { module, surface, lobe }
     }
 }
 
@@ -71,8 +63,8 @@ mod tests {
         for (model, gaussians) in
             Shading::ALL.iter().flat_map(|model| [(model, Gaussians::One), (model, Gaussians::Several)])
         {
-            let code = library(&[&[model.name()], gaussians.modules()].concat()).expect("they exist");
-            let Calls { surface, lobe } = model.calls(gaussians);
+            let Calls { module, surface, lobe } = model.calls(gaussians);
+            let code = library(&[module]).expect("it exists");
             let made = format!("fn {surface}(distribution: Distribution, options: ShadingOptions) -> ");
             let (_, rest) = code.split_once(&made).unwrap_or_else(|| panic!("{model}: no {made}"));
             let of_type = rest.split_whitespace().next().expect("a type");

@@ -1,8 +1,5 @@
 // A facet of the filtered bump map, shared by the models in the frame of the bump.
 
-// Minimum z of a filtered normal.
-const LEAST_NORMAL_Z: f32 = 0.001953125;
-
 // Smaller cosines count as zero: the square of this can still be divided by.
 const LEAST_COSINE: f32 = 1e-18;
 

@@ -2,5 +2,5 @@
 // normal.
 
 fn off_centre_surface(distribution: Distribution, options: ShadingOptions) -> SlopeGaussian {
-    return gaussian_surface(normal_moments(distribution.normal), options);
+    return gaussian_surface(distribution_of_normal(distribution.normal), options);
 }

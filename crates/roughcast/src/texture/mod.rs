@@ -43,9 +43,9 @@ pub(crate) use set_id::set_id;
 pub use shape::ShapeFault;
 pub use split::{join_layers, mark_set, split_infos, split_layers};
 pub use texels::{
-    Filtered, ISOTROPIC, Input, LEAST_STORED_POWER, TexelReader, bump_normal, clean_moments, lean_moments,
-    normal_moments, pbr_moments, pbr_normal, schilling_isotropic_moments, schilling_moments, toksvig_moments,
-    toksvig_normal, variance_moments,
+    Filtered, ISOTROPIC, Input, LEAST_STORED_POWER, MAX_TEXTURES, TexelReader, bump_normal, clean_moments,
+    lean_moments, normal_moments, pbr_moments, pbr_normal, schilling_isotropic_moments, schilling_moments,
+    toksvig_moments, toksvig_normal, variance_moments,
 };
 
 use crate::SampleType;

@@ -13,9 +13,6 @@ struct Packing {
     roughness_stored: u32,  // STORED_...: how a material's roughness is stored
 }
 
-const MAPS_WITHOUT_BASE: u32 = 0u;  // the base roughness is added at shading
-const MAPS_WITH_BASE: u32 = 1u;     // the maps include it
-
 const STORED_PERCEPTUAL: u32 = 0u;      // sqrt(alpha)
 const STORED_ALPHA: u32 = 1u;           // alpha
 const STORED_ALPHA_SQUARED: u32 = 2u;   // alpha^2

@@ -54,7 +54,7 @@ pub const CONVENTIONS: &[&str] = &[
     "A slope is (N.x / N.z, N.y / N.z). Second moments and covariances are in the order xx, yy, xy, and have no unit.",
     "alpha is the width of a lobe: Beckmann's and GGX's alpha^2 = 2 variance, Blinn-Phong's variance = 1 / s.",
     "Texels are sampled linearly, never as sRGB. Packing says how they are read: value = stored * x + y.",
-    "NAME_moments reads filtered texels as a distribution of slopes; NAME_surface makes a surface of it, once a pixel.",
+    "NAME_moments reads filtered texels as a distribution of slopes; NAME_surface converts it to a surface, once per pixel.",
     "NAME_lobe is its lobe for a direction to the viewer and one to the light, zero where either is not above the surface.",
     "In the normalised form a lobe is a microfacet distribution D; in the physical form D G2 / n.v; in the paper's 2 pi D h.z^4.",
     "No lobe is NaN or infinite for texels that filtering can give and specular powers from 1 to 100000.",

@@ -111,7 +111,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "distribution",
         source: include_str!("../distribution.wgsl"),
-        needs: &["packing"],
+        needs: &[],
         summary: "one to four weighted Gaussians of slopes",
         citation: "",
         role: Role::Part,
@@ -135,7 +135,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "facet",
         source: include_str!("../shading/facet.wgsl"),
-        needs: &["options", "vector", "masking"],
+        needs: &["options", "distribution", "vector", "masking"],
         summary: "a facet of the bump map and cosine lobes",
         citation: "",
         role: Role::Part,
@@ -143,7 +143,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "base",
         source: include_str!("../shading/base.wgsl"),
-        needs: &["options", "packing"],
+        needs: &["options", "distribution"],
         summary: "base roughness in the plane of the surface",
         citation: "Olano & Baker, LEAN Mapping, 2010, 3.4",
         role: Role::Part,
@@ -183,7 +183,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "normal",
         source: include_str!("../texture/texels/normal.wgsl"),
-        needs: &["distribution", "facet"],
+        needs: &["packing", "distribution"],
         summary: "a filtered normal alone as a distribution",
         citation: "",
         role: Role::Part,
@@ -191,7 +191,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "schilling",
         source: include_str!("../texture/texels/schilling.wgsl"),
-        needs: &["distribution"],
+        needs: &["packing", "distribution"],
         summary: "the texels of Schilling's layouts as distributions",
         citation: "Schilling, Antialiasing of Bump-Maps, 1997",
         role: Role::Part,
@@ -199,7 +199,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "phong",
         source: include_str!("../shading/phong.wgsl"),
-        needs: &["normal", "facet"],
+        needs: &["distribution", "facet"],
         summary: "Phong, about the reflected ray, on the filtered bump normal",
         citation: "Phong, Illumination for Computer Generated Pictures, 1975",
         role: Role::Model,
@@ -207,7 +207,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "blinn-phong",
         source: include_str!("../shading/blinn_phong.wgsl"),
-        needs: &["normal", "facet"],
+        needs: &["distribution", "facet"],
         summary: "Blinn-Phong on the filtered bump normal: the conventional method",
         citation: "Blinn, Models of light reflection for computer synthesized pictures, 1977",
         role: Role::Model,
@@ -215,7 +215,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "beckmann",
         source: include_str!("../shading/beckmann.wgsl"),
-        needs: &["normal", "facet", "gaussian"],
+        needs: &["distribution", "facet", "gaussian"],
         summary: "Beckmann in the frame of the filtered bump normal",
         citation: "Beckmann & Spizzichino, 1963; Olano & Baker, LEAN Mapping, 2010, 3.1",
         role: Role::Model,
@@ -223,7 +223,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "off-centre",
         source: include_str!("../shading/off_centre.wgsl"),
-        needs: &["normal", "gaussian-surface"],
+        needs: &["gaussian-surface"],
         summary: "off-centre Beckmann in the surface frame, of the filtered bump's slope",
         citation: "Olano & Baker, LEAN Mapping, 2010, Eq. 1",
         role: Role::Model,
@@ -231,7 +231,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "lean",
         source: include_str!("../texture/texels/lean.wgsl"),
-        needs: &["normal", "pixel", "gaussian-surface"],
+        needs: &["packing", "distribution", "normal"],
         summary: "LEAN mapping, from filtered moments",
         citation: "Olano & Baker, LEAN Mapping, 2010, Eq. 1, 5 and 6, Figure 16",
         role: Role::Model,
@@ -239,7 +239,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "clean",
         source: include_str!("../texture/texels/clean.wgsl"),
-        needs: &["pixel", "gaussian-surface"],
+        needs: &["packing", "distribution"],
         summary: "CLEAN mapping, from the filtered trace of the moments",
         citation: "Olano, Shiny and CLEAN, 2011",
         role: Role::Model,
@@ -247,7 +247,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "toksvig-texels",
         source: include_str!("../texture/texels/toksvig.wgsl"),
-        needs: &["distribution", "facet"],
+        needs: &["options", "packing", "distribution"],
         summary: "Toksvig's texels as distributions",
         citation: "Toksvig, Mipmapping normal maps, 2005",
         role: Role::Part,
@@ -255,7 +255,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "toksvig",
         source: include_str!("../shading/toksvig.wgsl"),
-        needs: &["toksvig-texels", "blinn-phong", "gaussian"],
+        needs: &["distribution", "blinn-phong", "gaussian"],
         summary: "Toksvig: Blinn-Phong, dulled by the averaged normal's length",
         citation: "Toksvig, Mipmapping normal maps, 2005",
         role: Role::Model,
@@ -263,7 +263,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "variance",
         source: include_str!("../texture/texels/variance.wgsl"),
-        needs: &["pixel", "gaussian-surface"],
+        needs: &["packing", "distribution"],
         summary: "off-centre Beckmann with a stored variance",
         citation: "Olano, Shiny and CLEAN, 2011",
         role: Role::Model,
@@ -271,7 +271,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "pbr",
         source: include_str!("../texture/texels/pbr.wgsl"),
-        needs: &["distribution", "facet"],
+        needs: &["packing", "distribution", "facet"],
         summary: "a physically based material's texels as distributions",
         citation: "glTF KHR_materials_anisotropy",
         role: Role::Part,
@@ -279,7 +279,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "ggx",
         source: include_str!("../shading/ggx.wgsl"),
-        needs: &["pbr", "facet", "gaussian"],
+        needs: &["distribution", "facet", "gaussian"],
         summary: "GGX with baked roughness, isotropic or anisotropic",
         citation: "Walter et al., Microfacet Models for Refraction through Rough Surfaces, 2007; glTF KHR_materials_anisotropy",
         role: Role::Model,
@@ -303,7 +303,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "lean-detail",
         source: include_str!("../texture/texels/lean_detail.wgsl"),
-        needs: &["detail", "lean"],
+        needs: &["detail", "lean", "pixel"],
         summary: "LEAN's textures as a source of bumps",
         citation: "",
         role: Role::Detail,
@@ -319,7 +319,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "clean-detail",
         source: include_str!("../texture/texels/clean_detail.wgsl"),
-        needs: &["detail", "clean"],
+        needs: &["detail", "clean", "pixel"],
         summary: "CLEAN's texture as a source of bumps",
         citation: "",
         role: Role::Detail,
@@ -327,7 +327,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "variance-detail",
         source: include_str!("../texture/texels/variance_detail.wgsl"),
-        needs: &["detail", "variance"],
+        needs: &["detail", "variance", "pixel"],
         summary: "the variance texture as a source of bumps",
         citation: "",
         role: Role::Detail,

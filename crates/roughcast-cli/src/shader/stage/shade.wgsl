@@ -9,7 +9,8 @@ fn shade_model(
     options = parameters.options;
     let view = normalize(towards_viewer);
     let light = normalize(towards_light);
-    let distribution = detail_distribution(DetailPoint(uv, vec3f(0.0)));
+    let tangent_frame = mat3x3f(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), vec3f(0.0, 0.0, 1.0));
+    let distribution = detail_distribution(DetailPoint(uv, vec3f(0.0), tangent_frame));
     let surface = model_surface(distribution, options);
     let lobe = model_lobe(surface, view, light, options);
     let albedo = parameters.albedo.xyz;

@@ -34,6 +34,9 @@ pub struct Input {
     pub layer: &'static str,
 }
 
+/// Maximum number of textures that one reader has.
+pub const MAX_TEXTURES: usize = 3;
+
 /// What a texture filter averages, which determines how much of the variance under it belongs to the pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]

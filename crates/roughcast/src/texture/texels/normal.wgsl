@@ -6,6 +6,5 @@ fn bump_normal(lean1: vec4f, packing: Packing) -> vec3f {
 }
 
 fn normal_moments(normal: vec3f) -> Distribution {
-    let slope = normal.xy / max(normal.z, LEAST_NORMAL_Z);
-    return one_gaussian(normal, slope, vec3f(0.0), MAPS_WITHOUT_BASE);
+    return distribution_of_normal(normal);
 }
