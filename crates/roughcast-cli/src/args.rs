@@ -170,8 +170,8 @@ pub struct SourceArgs {
     #[arg(long, value_name = "X", value_parser = finite, allow_negative_numbers = true)]
     pub normal_scale: Option<f32>,
 
-    /// How a normal's components are stored: unorm, 0 to 1 with 0.5 for none, as in pictures; or signed, -1 to 1 [default: by the
-    /// file's format, for floats by the pixels]
+    /// How a normal's components are stored: unorm, 0 to 1, where 0.5 is zero, as in pictures; or signed, -1 to 1 [default: from
+    /// the file's format; for floats, from the pixels]
     #[arg(long, value_parser = one_of::<NormalRange>())]
     pub range: Option<NormalRange>,
 

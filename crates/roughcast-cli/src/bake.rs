@@ -183,7 +183,7 @@ Examples:
   A height map for a film renderer:
     roughcast bake terrain.tif -o terrain.exr --as bump-slopes \\
         --height-scale 0.1
-  For three.js: half floats, one file a layer, the scales in rocks.json:
+  For three.js: half floats, one file per layer, the scales in rocks.json:
     roughcast bake rocks_normal.png -o rocks.ktx2 --target web --sidecar
   All maps of a folder:
     roughcast bake maps -o baked --format dds";

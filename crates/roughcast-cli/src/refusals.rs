@@ -245,7 +245,8 @@ fn broken_texels(counts: SourceCounts, texels: u64) -> Error {
     ];
     let found = kinds.iter().filter(|(count, _)| *count > 0);
     let found = found.map(|(count, what)| format!("{count} {what}")).collect::<Vec<_>>().join(", ");
-    anyhow!("of its {texels} texels {found}: repair the map, or omit --strict")
+    let broken = counts.broken();
+    anyhow!("{broken} of its {texels} texels are broken ({found}): repair the map, or omit --strict")
 }
 
 /// Why no map of a folder was baked.

@@ -16,8 +16,8 @@ pub struct RoughnessArgs {
     #[arg(long, value_name = "S", value_parser = specular_power, conflicts_with = "roughness")]
     pub specular_power: Option<f32>,
 
-    /// The material's roughness: a number, or a picture, which is resampled if its size is not the map's. In a colour picture it is green, as glTF packs
-    /// occlusion, roughness and metalness; pbr keeps the other two
+    /// The material's roughness: a number, or a picture, which is resampled if it differs in size from the map. Colour pictures
+    /// use the green channel, as glTF packs occlusion, roughness and metalness; pbr keeps the other two
     #[arg(long, value_name = "FILE|VALUE")]
     pub roughness: Option<String>,
 
@@ -26,8 +26,8 @@ pub struct RoughnessArgs {
     #[arg(long, value_name = "CHANNEL", requires = "roughness")]
     pub roughness_channel: Option<String>,
 
-    /// What the values of --roughness mean: perceptual is what glTF and most tools paint, alpha its square, the width of
-    /// the highlight; gloss is 1 minus perceptual
+    /// What the values of --roughness mean: perceptual, as in glTF and most tools; alpha, its square, which is the width of
+    /// the highlight; gloss, 1 minus perceptual
     #[arg(long, value_name = "HOW", default_value = "perceptual", value_parser = one_of::<RoughnessStored>())]
     pub roughness_stored: RoughnessStored,
 

@@ -284,8 +284,7 @@ pub struct ShadingArgs {
     #[arg(long, value_name = "S", default_value_t = 256.0, value_parser = specular_power)]
     pub specular_power: f32,
 
-    /// The terms around the lobe: a microfacet BRDF with shadowing and masking, or none of these terms: normalised, or as in the LEAN
-    /// paper
+    /// Reflectance: a microfacet BRDF with shadowing and masking, the normalised distribution alone, or the LEAN paper's form
     #[arg(long, default_value = "physical", value_parser = one_of::<Form>())]
     pub form: Form,
 
@@ -307,7 +306,7 @@ pub struct ShadingArgs {
     #[arg(long, default_value = "clamp", value_parser = one_of::<Repair>())]
     pub repair: Repair,
 
-    /// One roughness for ggx, or two and a direction
+    /// For ggx: one roughness, or two with a direction
     #[arg(long = "lobe", default_value = "isotropic", value_parser = one_of::<Anisotropy>())]
     pub anisotropy: Anisotropy,
 

@@ -36,7 +36,7 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<ExitCode> {
     match Container::of(&args.output) {
         Some(Container::Exr) => {}
-        Some(_) => return Err(usage(&args.output, "moments are floats, five to a texel: name an .exr file")),
+        Some(_) => return Err(usage(&args.output, "moments are floats, five per texel: name an .exr file")),
         None => return Err(refusals::unknown_extension(&args.output)),
     }
     let info = TextureInfo::new(Layout::Moments, Part::Whole);

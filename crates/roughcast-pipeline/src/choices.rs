@@ -81,7 +81,7 @@ pub enum ChoiceError {
     #[error(transparent)]
     Target(#[from] TargetError),
     /// Only `pbr` has this option.
-    #[error("{choice:?} is a choice of the layout 'pbr', and the layout is '{layout}'")]
+    #[error("only the layout 'pbr' supports {choice:?}, and the layout is '{layout}'")]
     OnlyForPbr {
         /// The option.
         choice: PbrChoice,
@@ -95,7 +95,7 @@ pub enum ChoiceError {
         sample_type: SampleType,
     },
     /// Only KTX2 has supercompression.
-    #[error("ktx2 can be supercompressed, {container} cannot")]
+    #[error("only ktx2 supports supercompression, not {container}")]
     Supercompression {
         /// The container.
         container: Container,

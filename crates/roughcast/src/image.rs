@@ -20,7 +20,7 @@ pub enum Samples {
 named_enum! {
     /// The storage type of samples, without the samples. A variant is named by its number of bits if that is
     /// unambiguous.
-    pub enum SampleType: "number of bits" {
+    pub enum SampleType: "sample type" {
         /// 8-bit unsigned normalised.
         U8 = "8",
         /// 16-bit unsigned normalised.

@@ -1,65 +1,71 @@
 //! Filtered surface detail: bumps in, roughness out.
 //!
 //! A shiny, bumpy surface should look duller from far away, because its bumps have become too small to see. Mip-mapped
-//! normals discard them. This crate turns normal and height maps into textures of *moments of slopes*, which any
-//! filter may average, and from which a shader gets the lost bumps back as roughness with a direction (Olano & Baker,
-//! "LEAN Mapping", 2010, and its relatives).
+//! normals discard them. This crate converts normal and height maps to textures of *moments of slopes*. Any filter may
+//! average these, and from them a shader computes the lost bumps as roughness with a direction (Olano & Baker, "LEAN
+//! Mapping", 2010, and related methods).
 //!
-//! # A short tour
+//! # A guided tour
 //!
-//! 1. An [`Image`] has the pixels of a map; an [`ImageView`] sees those that belong to someone else. [`detect`] says what they
-//!    are: normals or heights, in which channels, with green up or down.
-//! 2. [`SourceOptions`] say how the map is read, [`BakeOptions`] what is made of it, and [`BaseRoughness`] what the material has
-//!    already.
-//! 3. [`Bake`] makes a layout's textures of it, every level of them, and a [`BakeReport`] of what was found, repaired and lost. It
-//!    can be watched and stopped. [`texture::Layout`] lists the layouts.
-//! 4. [`texture::decode`] goes back from any layout to [`Moments`], and [`texture::bounds`] says how far off these can be;
-//!    [`precision`] says which storage type carries which shininess.
-//! 5. A [`texture::TexelReader`] makes a [`Distribution`] of slopes of filtered texels, and [`shading`] has the models that shade
-//!    with it. Each has a twin for GPUs in [`wgsl`].
+//! 1. **The map.** An [`Image`] owns a map's pixels; an [`ImageView`] borrows them. [`detect`] determines what the
+//!    pixels contain: normals or heights, in which channels, with green up or down.
+//! 2. **The options.** [`SourceOptions`] specify how the map is read, [`BakeOptions`] the output, and [`BaseRoughness`]
+//!    the material's own roughness.
+//! 3. **The bake.** [`Bake`] bakes all levels of a layout and returns them with a [`BakeReport`], which counts the
+//!    repaired texels and bounds the errors. [`Bake::watched`] reports progress and can stop the bake. The layouts are
+//!    listed in [`texture::Layout`].
+//! 4. **Decoding.** [`texture::decode`] converts textures of any layout to [`Moments`], and [`texture::bounds`]
+//!    bounds their errors. [`precision`] determines which sample type represents which shininess.
+//! 5. **Shading.** A [`texture::TexelReader`] converts filtered texels to a [`Distribution`] of slopes, and the models
+//!    in [`shading`] shade with it. [`wgsl`] contains the same functions for GPUs.
 //!
 //! # Out of scope
 //!
-//! Files (see `roughcast-io`), block compression (there, too), the GPU, colour textures, and normal maps in object
-//! space: slopes are those of the tangent plane.
+//! Files and block compression (see `roughcast-io`), the GPU, colour textures, and normal maps in object space: slopes
+//! are relative to the tangent plane.
 //!
 //! # Conventions
 //!
-//! - Row 0 of an image is its top. The tangent frame has x to the right (growing column), y **up** (falling row), z out of
-//!   the surface: OpenGL's and glTF's normal maps. Maps with green down are flipped as they are read ([`Green`]).
-//! - A [`Slope`] is `(N.x / N.z, N.y / N.z)`, minus the gradient of a height. A height value v means
+//! - Row 0 of an image is its top. The tangent frame has x to the right (growing column), y **up** (falling row), z out
+//!   of the surface, as in normal maps for OpenGL and glTF. Maps with green down are flipped as they are read
+//!   ([`Green`]).
+//! - A [`Slope`] is `(N.x / N.z, N.y / N.z)`; for a height map this is minus the gradient. A height value v represents
 //!   `v * height_scale * width` texels, so slopes have no unit.
-//! - Second moments are in the order xx, yy, xy. Variances are of slopes, per axis: Beckmann's `alpha^2 = 2 sigma^2`,
-//!   Blinn-Phong's `sigma^2 = 1 / s`, and by convention GGX's `alpha^2 = alpha0^2 + 2 sigma^2`. alpha is the width of the
-//!   lobe, neither its square nor perceptual roughness.
-//! - Level k+1 of a texture has `max(1, floor(n / 2))` texels each way. The means of slopes and of second moments are the
-//!   same on every level.
-//! - The same input gives the same bits, for any number of threads and whatever vector instructions the processor has.
+//! - Second moments are in the order xx, yy, xy. Variances are those of slopes, per axis: for Beckmann
+//!   `alpha^2 = 2 sigma^2`, for Blinn-Phong `sigma^2 = 1 / s`, and for GGX, by convention, `alpha^2 = alpha0^2 + 2 sigma^2`.
+//!   alpha is the width of the lobe, neither its square nor perceptual roughness.
+//! - Level k+1 of a texture has `max(1, floor(n / 2))` texels in each direction. The means of slopes and of second
+//!   moments are the same on every level.
+//! - The same input gives the same bits, for any number of threads and with any vector instructions.
 //!
-//! # What stays
+//! # Compatibility
 //!
-//! - *Options* ([`SourceOptions`], [`BakeOptions`], [`PbrOptions`], [`shading::ShadingOptions`]) and what files say of themselves
-//!   ([`texture::TextureInfo`]) are plain structs of public fields. Write `..Default::default()`, or `..TextureInfo::new(…)`, at their
-//!   end, also where all fields are named: a minor version may add a field, whose default changes no byte.
-//! - *Reports* are `#[non_exhaustive]`: they are read, not made.
-//! - *Enums* that will grow (layouts, parts, models, their options, errors) are `#[non_exhaustive]`. Closed are those that whoever
-//!   reads maps or samples textures by other means has to know in full: [`SampleType`], [`Wrap`], [`Gradient`], [`MaxSlope`] and the
-//!   conventions of maps.
-//! - *Values* ([`Slope`], [`Moments`], [`Covariance`]) have the components that they have in the papers, and no others.
+//! - *Options* ([`SourceOptions`], [`BakeOptions`], [`PbrOptions`], [`shading::ShadingOptions`]) are
+//!   `#[non_exhaustive]`: start from `default()` and change fields with the `with_…` methods. A minor version may add a
+//!   field, whose default changes no byte.
+//! - *Metadata* ([`texture::TextureInfo`]) is a plain struct with public fields. End its initialisers with
+//!   `..TextureInfo::new(…)`, even if they name all fields, because a minor version may add one.
+//! - *Reports* are `#[non_exhaustive]`: callers read them and never construct them.
+//! - *Enums* that may grow (layouts, parts, models, errors) are `#[non_exhaustive]`. Enums that every map reader or
+//!   sampler must handle are exhaustive: [`SampleType`], [`Wrap`], [`Gradient`], [`MaxSlope`], [`Kind`], [`Green`],
+//!   [`Red`], [`NormalRange`] and [`HeightSense`].
+//! - *Values* ([`Slope`], [`Moments`], [`Covariance`]) have exactly the components that they have in the papers.
 //!
 //! # Features
 //!
-//! The bytes of a bake depend on none of them.
+//! None of them changes the bytes of a bake.
 //!
-//! - `rayon` (default): work is shared by the threads of the rayon pool in which it is called. Without it the calling thread does all.
-//! - `multiversion` (default): inner loops are compiled for several instruction sets, and the best is chosen as the program runs.
-//! - `serde`: `Serialize` and `Deserialize` for values, options and reports; named enums by their names. What is left out of options
-//!   is the default, what is unknown in them is an error. JSON has no infinity, which the bounds of a report may be.
+//! - `rayon` (default): shares the work among the threads of the rayon pool in which it is called. Without it, the
+//!   calling thread does everything.
+//! - `multiversion` (default): compiles inner loops for several instruction sets and chooses the best one at run time.
+//! - `serde`: `Serialize` and `Deserialize` for values, options and reports; named enums are stored by name. Missing
+//!   options take their defaults; unknown ones are errors. JSON cannot represent infinity, which the bounds of a report
+//!   may contain.
 //!
 //! # Example
 //!
-//! Bakes a washboard of 8x8 texels, whose slopes along x are 1/2 and -1/2 in turn, and reads the last level back: no mean
-//! slope is left, and all of the bumps are variance along x.
+//! Bakes a washboard of 8x8 texels, whose slopes along x alternate between 1/2 and -1/2, and decodes the last level: its
+//! mean slope is zero, and all bumps have become variance along x.
 //!
 //! ```
 //! use roughcast::texture::decode;

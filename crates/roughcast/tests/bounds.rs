@@ -282,7 +282,7 @@ fn too_wide_bounds_are_detected() {
 }
 
 /// Checks the covariance along every direction, including the mixed term, before the decoder makes it semidefinite.
-fn check_before_mending(baked: &Baked, case: &Case, wanted: &[Level]) {
+fn check_before_repair(baked: &Baked, case: &Case, wanted: &[Level]) {
     let raw = match case.options.layout {
         Layout::Lean => raw_lean(baked),
         Layout::Moments => raw_moments(baked),
@@ -330,7 +330,7 @@ fn decoded_files_are_within_tight_bounds() {
             let got = decoded(&baked.arrays);
             expect(check_semidefinite(&got, SEMIDEFINITE), &(map.name, case));
             let here = check(&map, case, &baked.report, &got, wanted, &normals);
-            check_before_mending(&baked, case, wanted);
+            check_before_repair(&baked, case, wanted);
             worst.slope = worst.slope.max(here.slope);
             worst.variance = worst.variance.max(here.variance);
             worst.eigenvalue = worst.eigenvalue.max(here.eigenvalue);

@@ -364,7 +364,7 @@ fn contradictory_options_are_refused() {
         ("holds floats", &image, source, None, with(Layout::Moments, SampleType::U16)),
         ("holds floats", &image, source, None, with(Layout::BumpSlopes, SampleType::U8)),
         ("needs a roughness", &image, source, None, folded),
-        ("depends on the base roughness", &image, source, None, with(Layout::Toksvig, SampleType::U8)),
+        ("needs a base roughness", &image, source, None, with(Layout::Toksvig, SampleType::U8)),
         ("specular powers", &image, source, None, power),
         ("no scale to choose", &image, source, None, fixed(1.0).with_sample_type(SampleType::F32)),
         ("above zero", &image, source, None, fixed(0.0)),

@@ -40,7 +40,7 @@ Examples:
     roughcast compare bricks_normal.png -o report/
   Quickly, on a sphere, from afar:
     roughcast compare bricks_normal.png -o report/ --scene sphere --views far --frames 0
-  As textures of 8 bits have it, at a high exponent:
+  With 8-bit textures, at a high exponent:
     roughcast compare bricks_normal.png -o report/ --bits 8 --specular-power 2048")]
 pub struct Args {
     /// A normal or height map
@@ -72,7 +72,7 @@ pub struct Args {
     #[arg(long, value_name = "WxH", default_value = "256x192", value_parser = size)]
     size: Size,
 
-    /// Frames of a slow camera move for measuring flicker, at least 2; 0 leaves flicker out
+    /// Frames of a slow camera move for measuring flicker, at least 2; 0 omits flicker
     #[arg(long, value_name = "N", default_value = "8", value_parser = frames)]
     frames: u32,
 

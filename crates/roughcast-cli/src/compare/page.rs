@@ -140,7 +140,7 @@ fn overview(page: &mut Page, settings: &Settings<'_>, compared: &[Compared]) {
             "FLIP, LEAN",
             "flicker, conventional",
             "flicker, LEAN",
-            "least RMSE of all",
+            "lowest RMSE",
         ],
         &rows,
     );
@@ -174,7 +174,7 @@ fn film(page: &mut Page, settings: &Settings<'_>, comparison: &Comparison) {
 }
 
 fn span(view: View) -> String {
-    let across = format!("{} texels a pixel", view.texels_per_pixel());
+    let across = format!("{} texels per pixel", view.texels_per_pixel());
     if view == View::Grazing { format!("{across} across, many more along") } else { across }
 }
 
@@ -198,7 +198,7 @@ fn table(page: &mut Page, comparison: &Comparison) {
 fn pictures(page: &mut Page, comparison: &Comparison, filters: &[Filter]) {
     for (reference, truth) in &comparison.truths {
         page.begin_row();
-        page.photograph(truth, &format!("{reference}: truth"));
+        page.photograph(truth, &format!("{reference}: ground truth"));
         for method in Shading::ALL.iter().filter(|method| method.reference() == *reference) {
             for filter in filters {
                 let trial = comparison.trial(*method, *filter);
@@ -236,7 +236,7 @@ fn limits(page: &mut Page, settings: &Settings<'_>, compared: &[Compared]) {
     for Compared { subject, distribution, .. } in compared {
         let [truth, lean] = distribution.pictures();
         let (name, reach) = (&subject.name, distribution.reach);
-        page.picture(&truth, &format!("{name}: truth, slopes from -{reach:.2} to {reach:.2}"));
+        page.picture(&truth, &format!("{name}: ground truth, slopes from -{reach:.2} to {reach:.2}"));
         page.picture(&lean, &format!("{name}: LEAN, {} misplaced", percent(distribution.misplaced)));
     }
     page.end_row();

@@ -42,10 +42,7 @@ pub(super) fn encode(plan: &Plan, info: &TextureInfo, options: &ExrOptions) -> R
             return Err(refusal(format!("an attribute called {name:?}"), "use a name of 1 to 255 bytes"));
         }
         if attributes.contains_key(&name) {
-            return Err(refusal(
-                format!("a text attribute called '{name}'"),
-                "OpenEXR keeps this name for itself",
-            ));
+            return Err(refusal(format!("a text attribute called '{name}'"), "OpenEXR reserves this name"));
         }
         if i32::try_from(value.len()).is_err() {
             return Err(refusal(format!("the value of '{name}'"), "it has more than 2 GiB"));

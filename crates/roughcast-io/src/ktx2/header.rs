@@ -92,7 +92,7 @@ impl<'a> Container<'a> {
         let scheme = scheme_of(scheme)?;
         let universal = universal_of(bytes, vk_format, field(9))?;
         if scheme == Scheme::BasisLz && universal != Some(Universal::Etc1s) {
-            return Err(malformed("BasisLZ supercompression of something else than ETC1S"));
+            return Err(malformed("BasisLZ supercompression of data other than ETC1S"));
         }
         Ok(Self {
             bytes,
@@ -121,13 +121,16 @@ impl<'a> Container<'a> {
             .ok_or_else(|| malformed(format!("level {level} lies outside of the file")))?;
         if entry.uncompressed_length != expected as u64 {
             let stated = entry.uncompressed_length;
-            return Err(malformed(format!("level {level} states {stated} bytes, its size needs {expected}")));
+            return Err(malformed(format!(
+                "level {level} states {stated} bytes, but its size needs {expected}"
+            )));
         }
         let failed = |why: &str| malformed(format!("level {level} does not unpack: {why}"));
         match self.scheme {
-            Scheme::None if data.len() != expected => {
-                Err(malformed(format!("level {level} has {} bytes, its size needs {expected}", data.len())))
-            }
+            Scheme::None if data.len() != expected => Err(malformed(format!(
+                "level {level} has {} bytes, but its size needs {expected}",
+                data.len()
+            ))),
             Scheme::BasisLz => Err(failed("it is no plain level")),
             Scheme::None => Ok(Cow::Borrowed(data)),
             Scheme::Zstd => inflate_zstd(data, expected).map(Cow::Owned).map_err(failed),

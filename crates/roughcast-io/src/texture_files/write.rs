@@ -38,7 +38,7 @@ pub enum WriteFilesError {
         source: WriteError,
     },
     /// A file cannot be moved to its destination; the message of the source starts with its path.
-    #[error("the files cannot take their places")]
+    #[error("the files cannot be moved into place")]
     Commit(#[source] io::Error),
 }
 

@@ -33,10 +33,8 @@ pub enum MetricError {
         "the ground truth has no specular radiance; give the scene a light whose highlight the camera sees"
     )]
     NoHighlight,
-    /// A sequence is too short for a variance.
-    #[error(
-        "{0} frames are too few for a variance; render at least 2 of both, and as many of one as of the other"
-    )]
+    /// A sequence is too short for a variance, or the sequences differ in length.
+    #[error("the shorter sequence has {0} frames; use at least 2 frames, the same number in both")]
     Frames(usize),
 }
 

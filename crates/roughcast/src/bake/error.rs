@@ -24,7 +24,7 @@ pub enum BakeError {
     #[error("folding in the base roughness needs a roughness: give one")]
     NoBaseToFoldIn,
     /// The layout cannot be made without a base roughness.
-    #[error("what the layout '{layout}' stores depends on the base roughness: give one")]
+    #[error("the layout '{layout}' needs a base roughness: give one")]
     NeedsBase {
         /// The layout.
         layout: Layout,

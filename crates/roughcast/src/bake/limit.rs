@@ -16,7 +16,7 @@ use crate::texture::rules::Stores;
 /// What is known about a map before it is stored.
 pub(super) struct Ranges {
     /// A survey of all slopes, if the scale had to be determined.
-    pub looked_at: Option<Survey>,
+    pub survey: Option<Survey>,
     /// What the ranges of unsigned texels have to represent.
     pub needed: NeededRange,
     /// The limit that was found.
@@ -32,23 +32,23 @@ pub(super) fn find_ranges(
     options: &BakeOptions,
     progress: &Progress<'_>,
 ) -> Result<Ranges, Stopped> {
-    let looked_at = scale_is_open(options).then(|| survey(&source.slopes_only(), progress)).transpose()?;
+    let survey = scale_is_open(options).then(|| survey(&source.slopes_only(), progress)).transpose()?;
     let variance = (options.layout.stores_variance())
         .then(|| largest_variance(&source.slopes_only(), pyramid_options, progress))
         .transpose()?;
-    let mut needed = NeededRange { peaks: looked_at.as_ref().map(|looked_at| looked_at.peaks), variance };
-    let limit = match (&looked_at, max_slope) {
-        (Some(looked_at), MaxSlope::Auto) => limit_of_most(
+    let mut needed = NeededRange { peaks: survey.as_ref().map(|survey| survey.peaks), variance };
+    let limit = match (&survey, max_slope) {
+        (Some(survey), MaxSlope::Auto) => limit_of_most(
             source,
             &mut needed,
-            looked_at,
+            survey,
             options.layout.rules().stores(),
             pyramid_options,
             progress,
         )?,
         _ => None,
     };
-    Ok(Ranges { looked_at, needed, limit })
+    Ok(Ranges { survey, needed, limit })
 }
 
 fn scale_is_open(options: &BakeOptions) -> bool {
@@ -74,13 +74,13 @@ pub(super) fn work(
 fn limit_of_most(
     source: &mut MapSource<'_>,
     needed: &mut NeededRange,
-    looked_at: &Survey,
+    survey: &Survey,
     stores: Stores,
     pyramid_options: PyramidOptions,
     progress: &Progress<'_>,
 ) -> Result<Option<SlopeLimit>, Stopped> {
-    let peaks = &looked_at.peaks;
-    let max_slope = looked_at.slope_exceeded_by_one_in(STEEP_ONE_IN).max(MaxSlope::LEAST_AUTOMATIC);
+    let peaks = &survey.peaks;
+    let max_slope = survey.slope_exceeded_by_one_in(STEEP_ONE_IN).max(MaxSlope::LEAST_AUTOMATIC);
     let limited = Peaks {
         component: peaks.component.min(max_slope),
         slope: peaks.slope.min(max_slope),

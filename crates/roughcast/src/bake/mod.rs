@@ -239,7 +239,7 @@ fn bake(parts: Bake<'_>) -> Result<Baked, BakeError> {
     let last = pyramid::work(size.0, size.1, pyramid_options);
     let before = limit::work(size, source_options.max_slope, pyramid_options, options);
     let progress = Progress::of(before + last, watch);
-    let Ranges { looked_at, needed, limit } =
+    let Ranges { survey, needed, limit } =
         find_ranges(&mut source, source_options.max_slope, pyramid_options, options, &progress)?;
     progress.skip_to_last(last);
     set_scales(&mut info, &needed, options);
@@ -256,7 +256,7 @@ fn bake(parts: Bake<'_>) -> Result<Baked, BakeError> {
         variance: needed.variance.unwrap_or(finest.max_variance),
     };
     // If no scale had to be determined, estimate the distribution of slopes from a few rows.
-    let looked_at = looked_at.unwrap_or_else(|| survey_of_some_rows(&source.slopes_only()));
+    let survey = survey.unwrap_or_else(|| survey_of_some_rows(&source.slopes_only()));
     let [rms_slope, rms_slope_with_base] = rms_slopes(&built.whole, finest);
     let report = BakeReport {
         counts: built.counts,
@@ -270,8 +270,8 @@ fn bake(parts: Bake<'_>) -> Result<Baked, BakeError> {
         rms_slope_with_base,
         whole: built.whole,
         bounds: rules.bounds(&storage, &peaks),
-        bounds_of_most: rules.bounds(&storage, &peaks_of_most(&looked_at, &peaks)),
-        advice: advice(&storage, options, &looked_at, &peaks),
+        bounds_of_most: rules.bounds(&storage, &peaks_of_most(&survey, &peaks)),
+        advice: advice(&storage, options, &survey, &peaks),
         levels: level_sizes(image.width(), image.height()).into_iter().zip(built.levels).collect(),
         roughness_resampled_from,
     };

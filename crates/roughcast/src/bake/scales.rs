@@ -52,8 +52,8 @@ pub(super) fn set_scales(info: &mut TextureInfo, needed: &NeededRange, options: 
 }
 
 /// The peaks after excluding the steepest texels that [`ScaleAdvice`] refers to.
-pub(super) fn peaks_of_most(looked_at: &Survey, peaks: &Peaks) -> Peaks {
-    let slope = looked_at.slope_exceeded_by_one_in(STEEP_ONE_IN).min(peaks.slope);
+pub(super) fn peaks_of_most(survey: &Survey, peaks: &Peaks) -> Peaks {
+    let slope = survey.slope_exceeded_by_one_in(STEEP_ONE_IN).min(peaks.slope);
     Peaks { component: slope.min(peaks.component), slope, ..*peaks }
 }
 
@@ -62,7 +62,7 @@ pub(super) fn peaks_of_most(looked_at: &Survey, peaks: &Peaks) -> Peaks {
 pub(super) fn advice(
     storage: &Storage<'_>,
     options: &BakeOptions,
-    looked_at: &Survey,
+    survey: &Survey,
     peaks: &Peaks,
 ) -> Option<ScaleAdvice> {
     let (rules, Storage { info, sample_type, .. }) = (options.layout.rules(), *storage);
@@ -70,7 +70,7 @@ pub(super) fn advice(
     if is_chosen || sample_type == SampleType::F32 {
         return None;
     }
-    let limited = peaks_of_most(looked_at, peaks);
+    let limited = peaks_of_most(survey, peaks);
     let max_slope = limited.slope;
     let scale = if sample_type.is_float() { info.scale } else { rules.stores().smallest_scale(&limited) };
     let limited_info = TextureInfo { scale, ..*info };

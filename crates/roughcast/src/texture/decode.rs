@@ -14,7 +14,7 @@ pub enum DecodeError {
     #[error("there are no textures: give at least one file of a layout")]
     NoFiles,
     /// One of the files of a layout with several files is missing.
-    #[error("the layout '{layout}' needs its '{part}' file beside the others, and it is not there")]
+    #[error("the layout '{layout}' needs its '{part}' file, which is missing: put it beside the others")]
     MissingPart {
         /// The layout.
         layout: Layout,
@@ -23,7 +23,7 @@ pub enum DecodeError {
     },
     /// One of the files of a layout whose layers have files of their own is missing.
     #[error(
-        "the layout '{layout}' needs the file of its layer '{layer}' beside the others, and it is not there"
+        "the layout '{layout}' needs the file of its layer '{layer}', which is missing: put it beside the others"
     )]
     MissingLayer {
         /// The layout.

@@ -142,7 +142,7 @@ impl TextureInfo {
             layer: None,
             wrap: Wrap::Repeat,
             normal_range: if layout.reads_pbr_options() { NormalRange::Unorm } else { NormalRange::Signed },
-            roughness_texture: before_there_was_a_choice(part),
+            roughness_texture: default_roughness_texture(part),
         }
     }
 
@@ -228,7 +228,7 @@ impl TextureInfo {
             wrap: value_or(pairs, WRAP, Wrap::Repeat)?,
             // Earlier versions always stored signed floats.
             normal_range: value_or(pairs, NORMAL_RANGE, NormalRange::Signed)?,
-            roughness_texture: value_or(pairs, ROUGHNESS_LAYOUT, before_there_was_a_choice(part))?,
+            roughness_texture: value_or(pairs, ROUGHNESS_LAYOUT, default_roughness_texture(part))?,
         };
         let layer = match pairs.get(LAYER) {
             None => None,
@@ -275,14 +275,14 @@ impl TextureInfo {
         let roughness_texture = if self.layout.reads_pbr_options() {
             self.roughness_texture
         } else {
-            before_there_was_a_choice(self.part)
+            default_roughness_texture(self.part)
         };
         Ok(Self { roughness_texture, ..self })
     }
 }
 
 /// The channels of a roughness part in files of earlier versions, which had no choice.
-fn before_there_was_a_choice(part: Part) -> RoughnessTexture {
+fn default_roughness_texture(part: Part) -> RoughnessTexture {
     match part {
         Part::OcclusionRoughnessMetallic => RoughnessTexture::Packed,
         _ => RoughnessTexture::Alone,

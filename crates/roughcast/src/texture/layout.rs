@@ -87,8 +87,8 @@ impl Layout {
         self.rules().default_sample_type()
     }
 
-    /// How a renderer reads this layout's textures, depending on what it needs; `None` for layouts with more channels
-    /// than a sampler returns. `anisotropy` tells whether a material has an anisotropy texture; other layouts ignore
+    /// How a renderer reads this layout's textures, depending on what it needs; `None` for layouts that no renderer
+    /// samples. `anisotropy` tells whether a material has an anisotropy texture; other layouts ignore
     /// it.
     pub fn texel_reader(self, wanted: Wanted, anisotropy: Anisotropy) -> Option<&'static TexelReader> {
         self.rules().texel_reader(wanted, anisotropy)

@@ -176,7 +176,8 @@ pub(crate) trait LayoutRules: Sync {
     fn decoder(&self, files: &Files<'_>) -> TexelDecoder;
 
     /// How a renderer reads filtered texels of this layout, depending on what it needs. `anisotropy` tells whether a
-    /// material has an anisotropy texture. `None` if a texture has more channels than a sampler returns.
+    /// material has an anisotropy texture. `None` if no renderer samples it, such as a layout with more
+    /// channels than a sampler returns.
     fn texel_reader(&self, wanted: Wanted, anisotropy: Anisotropy) -> Option<&'static TexelReader> {
         let _ = (wanted, anisotropy);
         None

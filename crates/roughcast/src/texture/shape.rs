@@ -101,7 +101,7 @@ pub enum ShapeFault {
         wanted: usize,
     },
     /// Two files contain the same layer.
-    #[error("a layer is there twice")]
+    #[error("a layer occurs twice")]
     RepeatedLayer,
     /// The files of a part's layers have contradictory metadata.
     #[error("the files of its layers have contradictory metadata")]

@@ -116,7 +116,7 @@ fn groups(meta: &MetaData) -> Result<Vec<Group<'_>>, ReadError> {
         let stored = &header.channels.list;
         if stored.len() > MAX_STORED_CHANNELS {
             let what = format!("a file of {} channels", stored.len());
-            return Err(unsupported(FORMAT, what, "save the channels that are meant to a file of their own"));
+            return Err(unsupported(FORMAT, what, "save the channels you need to a separate file"));
         }
         let part_name = header.own_attributes.layer_name.as_ref().map(super::text).filter(|_| several_parts);
         for (bytes_before, channel) in header.channels.channels_with_byte_offset() {

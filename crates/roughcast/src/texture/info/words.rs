@@ -3,7 +3,7 @@
 use super::{
     BASE, BRDF, Base, Brdf, InfoError, LAYOUT, Layout, NORMAL_RANGE, NormalRange, PART, Part,
     ROUGHNESS_LAYOUT, ROUGHNESS_STORED, RoughnessStored, RoughnessTexture, TextureInfo, WRAP, Wrap,
-    before_there_was_a_choice,
+    default_roughness_texture,
 };
 use crate::Named;
 
@@ -66,7 +66,7 @@ impl TextureInfo {
 
 /// The tenth word that a DDS file of an earlier version would have today.
 fn choices_before(part: Part) -> u32 {
-    bits_of(NormalRange::Signed) << 8 | bits_of(before_there_was_a_choice(part)) << 16
+    bits_of(NormalRange::Signed) << 8 | bits_of(default_roughness_texture(part)) << 16
 }
 
 /// An enum whose values have numbers in files. The number of a value never changes, since files contain it.
