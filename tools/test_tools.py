@@ -108,6 +108,10 @@ class Modules(unittest.TestCase):
     def test_a_longer_circle_fails(self):
         self.assertEqual(len(self.faults(a="use crate::b::B;", b="use crate::c::C;", c="use crate::a::A;")), 3)
 
+    def test_code_after_a_declared_file_of_tests_counts(self):
+        back = "#[cfg(test)]\nmod tests;\n\nuse crate::options::Options;\n"
+        self.assertEqual(len(self.faults(options="use crate::texture::Layout;", texture__mod=back)), 2)
+
     def test_comments_and_unit_tests_are_free(self):
         free = "/// [`crate::options`]\nstruct A;\n#[cfg(test)]\nmod tests {\n    use crate::options::Options;\n}\n"
         self.assertEqual(self.faults(options="use crate::texture::Layout;", texture=free), [])

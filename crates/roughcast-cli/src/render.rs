@@ -246,7 +246,7 @@ impl Args {
     fn backend(&self, subject: &Subject, scene: &Scene) -> Result<Backend> {
         let named = || self.map.display().to_string();
         let size = (self.size.width, self.size.height);
-        let mut options = self.shading_options.shading_options();
+        let options = self.shading_options.shading_options();
         let shading = self.model(subject)?;
         let filter = match (self.filter, subject) {
             (FilterChoice::Truth(samples), Subject::Map(map)) => {
@@ -275,10 +275,6 @@ impl Args {
             }
             Subject::Baked(arrays) => (Cow::Borrowed(arrays), arrays[0].info.wrap),
         };
-        // Toksvig's factor is valid only for the exponent with which it was baked.
-        if let (Shading::Toksvig, Some(power)) = (shading, arrays[0].info.specular_power()) {
-            options.specular_power = power;
-        }
         let sampler = Sampler::default()
             .with_filter(filter)
             .with_level(self.level)

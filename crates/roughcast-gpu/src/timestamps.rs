@@ -9,13 +9,21 @@ const QUERY_BYTES: u64 = 8;
 
 /// Spans of passes, measured as the encoder's commands run.
 ///
-/// ```text
+/// ```
+/// use roughcast_gpu::{Gpu, GpuOptions, Timestamps, wgpu};
+///
+/// # pollster::block_on(async {
+/// let gpu = Gpu::new(&GpuOptions::default()).await?;
 /// let mut timestamps = Timestamps::new(&gpu, 2).await?;
-/// let span = timestamps.span("reduce").ok_or(...)?;
-/// encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { timestamp_writes: Some(span.of_compute_pass()), .. });
-/// timestamps.resolve(&mut encoder);       // after the last pass
+/// let span = timestamps.span("reduce").expect("there is room for two");
+/// let mut encoder = gpu.device().create_command_encoder(&Default::default());
+/// let timed = wgpu::ComputePassDescriptor { timestamp_writes: Some(span.of_compute_pass()), ..Default::default() };
+/// drop(encoder.begin_compute_pass(&timed));
+/// timestamps.resolve(&mut encoder); // after the last pass
 /// gpu.queue().submit([encoder.finish()]);
-/// let measured = timestamps.read(&gpu).await?;
+/// assert_eq!(timestamps.read(&gpu).await?[0].name, "reduce");
+/// # Ok::<(), roughcast_gpu::GpuError>(())
+/// # }).unwrap();
 /// ```
 #[derive(Debug)]
 pub struct Timestamps {

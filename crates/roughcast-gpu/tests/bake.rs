@@ -11,7 +11,7 @@ use roughcast::{
     BakeOptions, BaseRoughness, Gradient, Green, HeightSense, Image, Kind, MaxSlope, NormalChannels,
     NormalRange, PyramidFilter, Red, SampleType, Samples, ScaleChoice, SourceOptions, Wrap,
 };
-use roughcast_gpu::bake::{BakePath, GpuBaker};
+use roughcast_gpu::bake::{BakePath, GpuBake, GpuBaker};
 use roughcast_gpu::{Gpu, GpuError};
 use wgpu::util::DeviceExt;
 
@@ -44,6 +44,10 @@ struct Case<'a> {
     path: BakePath,
 }
 
+fn bake_of(source: SourceOptions, options: BakeOptions) -> GpuBake<'static> {
+    GpuBake::new().source(source).options(options)
+}
+
 impl<'a> Case<'a> {
     fn new(image: &'a Image, source: SourceOptions, layout: Layout, bits: SampleType) -> Self {
         let options = BakeOptions::default().with_layout(layout).with_sample_type(bits);
@@ -52,8 +56,8 @@ impl<'a> Case<'a> {
 
     fn on_gpu(&self, gpu: &Gpu) -> (GpuBaker, TextureArray) {
         let Self { image, source, roughness, options, path } = self;
-        let baker = block_on(GpuBaker::for_image(gpu, image, source, *roughness, options, *path))
-            .unwrap_or_else(|error| panic!("{self}: {error}"));
+        let bake = GpuBake::new().source(*source).roughness(*roughness).options(*options).path(*path);
+        let baker = block_on(bake.for_image(gpu, *image)).unwrap_or_else(|error| panic!("{self}: {error}"));
         baker.run();
         let array = block_on(baker.read_back()).unwrap_or_else(|error| panic!("{self}: {error}"));
         (baker, array)
@@ -336,7 +340,7 @@ fn moving_bumps_reuse_textures_and_follow_their_inputs() {
     for path in PATHS {
         let first = &frames[0];
         let baker =
-            block_on(GpuBaker::for_image(&gpu, first, &normal_source(), None, &options, path)).expect("made");
+            block_on(bake_of(normal_source(), options).path(path).for_image(&gpu, first)).expect("made");
         let textures = baker.textures().to_vec();
         let mut read = Vec::new();
         for frame in &frames {
@@ -380,8 +384,7 @@ fn textures_already_on_the_gpu_match_the_cpu() {
         let map = gpu.device().create_texture_with_data(gpu.queue(), &descriptor, Default::default(), bytes);
         let cpu = roughcast::Bake::of(&image).source(source).options(options).run().expect("baked");
         for path in PATHS {
-            let baker =
-                block_on(GpuBaker::for_texture(&gpu, &map, &source, None, &options, path)).expect("made");
+            let baker = block_on(bake_of(source, options).path(path).for_texture(&gpu, &map)).expect("made");
             baker.run();
             let array = block_on(baker.read_back()).expect("read back");
             let found = difference(&array, &cpu.arrays[0]).expect("one shape");
@@ -396,7 +399,7 @@ fn a_device_without_16_bit_unorm_is_refused_by_name() {
     let image = normals(8, 8, 3, SampleType::U16);
     let make = |bits| {
         let options = BakeOptions::default().with_sample_type(bits);
-        block_on(GpuBaker::for_image(&gpu, &image, &normal_source(), None, &options, BakePath::Fastest))
+        block_on(bake_of(normal_source(), options).for_image(&gpu, &image))
     };
     let line = make(SampleType::U16).err().expect("a feature").to_string();
     assert!(line.contains("Rgba16Unorm") && line.contains("use half floats"), "{line}");
@@ -422,8 +425,7 @@ fn unsupported_requests_are_refused_with_a_reason() {
     let gpu = gpu();
     let image = normals(8, 8, 3, SampleType::U8);
     let refused = |options: BakeOptions, word: &str| {
-        let error =
-            block_on(GpuBaker::for_image(&gpu, &image, &normal_source(), None, &options, BakePath::Fastest));
+        let error = block_on(bake_of(normal_source(), options).for_image(&gpu, &image));
         let line = error.err().expect("refused").to_string();
         assert!(line.contains(word) && !line.contains('\n'), "{line}");
     };
@@ -435,13 +437,6 @@ fn unsupported_requests_are_refused_with_a_reason() {
     refused(BakeOptions::default().with_layout(Layout::Schilling), "schilling");
     refused(BakeOptions::default().with_base(Base::Baked), "needs a roughness");
     let narrow = normals(8, 8, 2, SampleType::U8);
-    let error = block_on(GpuBaker::for_image(
-        &gpu,
-        &narrow,
-        &normal_source(),
-        None,
-        &BakeOptions::default(),
-        BakePath::Fastest,
-    ));
+    let error = block_on(bake_of(normal_source(), BakeOptions::default()).for_image(&gpu, &narrow));
     assert!(error.err().expect("refused").to_string().contains("channels"));
 }

@@ -9,7 +9,7 @@ use pollster::block_on;
 use roughcast::shading::{Shading, ShadingOptions};
 use roughcast::texture::{Layout, Part, TextureInfo};
 use roughcast::{Anisotropy, BakeOptions, SampleType};
-use roughcast_gpu::bake::{BakePath, GpuBaker};
+use roughcast_gpu::bake::GpuBake;
 use roughcast_gpu::render::{
     Bumps, DEPTH_FORMAT, DetailSource, DrawOptions, Geometry, GpuDetail, LevelOfDetail, RenderTarget,
     Renderer, ShaderKey, Views, render, shader_source,
@@ -197,8 +197,8 @@ fn textures_baked_on_the_gpu_are_drawn_without_a_copy() {
         let options = BakeOptions::default().with_layout(shading.layout()).with_sample_type(bits);
         let source = bumps.source_options();
         let [here, back] = block_on(async {
-            let path = BakePath::Fastest;
-            let baker = GpuBaker::for_image(&gpu, &bumps.heights, &source, None, &options, path).await?;
+            let bake = GpuBake::new().source(source).options(options);
+            let baker = bake.for_image(&gpu, &bumps.heights).await?;
             baker.run();
             let mut renderer = Renderer::new(&gpu, RenderTarget::Parts).await?;
             let geometry = Geometry::new(&gpu, &scene.shape, 4).await?;

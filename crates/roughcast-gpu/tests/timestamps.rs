@@ -5,8 +5,8 @@ mod common;
 use common::maps::normals;
 use common::{gpu, gpu_without_features};
 use pollster::block_on;
-use roughcast::{BakeOptions, SampleType, SourceOptions};
-use roughcast_gpu::bake::{BakePath, GpuBaker, bake_bandwidth, copy_bandwidth};
+use roughcast::{BakeOptions, SampleType};
+use roughcast_gpu::bake::{BakePath, GpuBake, bake_bandwidth, copy_bandwidth};
 use roughcast_gpu::{GpuError, Timestamps};
 
 #[test]
@@ -14,11 +14,11 @@ fn each_span_has_its_name_and_a_time() {
     let gpu = gpu();
     let image = normals(44, 36, 3, SampleType::U8);
     let options = BakeOptions::default().with_sample_type(SampleType::F16);
-    let source = SourceOptions::default();
     let mut timestamps = block_on(Timestamps::new(&gpu, 2)).expect("lavapipe and every GPU have them");
     let mut encoder = gpu.device().create_command_encoder(&Default::default());
     for (name, path) in [("compute", BakePath::Compute), ("raster", BakePath::Raster)] {
-        let baker = block_on(GpuBaker::for_image(&gpu, &image, &source, None, &options, path)).expect("made");
+        let bake = GpuBake::new().options(options).path(path);
+        let baker = block_on(bake.for_image(&gpu, &image)).expect("made");
         let span = timestamps.span(name).expect("there is room for two");
         baker.encode(&mut encoder, Some(&span));
     }

@@ -70,6 +70,17 @@ pub enum PbrChoice {
     RoughnessStored,
 }
 
+impl std::fmt::Display for PbrChoice {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Anisotropy => "anisotropy",
+            Self::RoughnessTexture => "a choice of the roughness texture",
+            Self::NormalRange => "a choice of the range of normals",
+            Self::RoughnessStored => "a choice of the stored roughness",
+        })
+    }
+}
+
 /// Why choices contradict each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -81,7 +92,7 @@ pub enum ChoiceError {
     #[error(transparent)]
     Target(#[from] TargetError),
     /// Only `pbr` has this option.
-    #[error("only the layout 'pbr' supports {choice:?}, and the layout is '{layout}'")]
+    #[error("only the layout 'pbr' supports {choice}, and the layout is '{layout}'")]
     OnlyForPbr {
         /// The option.
         choice: PbrChoice,

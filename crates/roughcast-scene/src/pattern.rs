@@ -127,8 +127,7 @@ fn random(seed: u64, index: u64) -> [f64; 3] {
 
 #[cfg(test)]
 mod tests {
-    use roughcast::texture::{Layout, decode};
-    use roughcast::{Bake, BakeOptions, Moments, SampleType};
+    use roughcast::{Bake, Moments};
 
     use super::*;
 
@@ -137,13 +136,8 @@ mod tests {
 
     /// The moments of the whole map, computed by the library.
     fn whole(pattern: &Pattern) -> Moments {
-        let options = BakeOptions::default().with_layout(Layout::Moments).with_sample_type(SampleType::F32);
-        let baked = Bake::of(&pattern.heights)
-            .source(pattern.source_options())
-            .options(options)
-            .run()
-            .expect("a map");
-        decode(&baked.arrays).expect("moments").last().expect("a level").moments()[0]
+        let bake = Bake::of(&pattern.heights).source(pattern.source_options());
+        bake.moments().expect("a map").last().expect("a level").moments()[0]
     }
 
     #[test]

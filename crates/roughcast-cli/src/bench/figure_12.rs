@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use glam::DVec2;
 use roughcast::shading::{Material, Shading};
 use roughcast::{BakeOptions, Image, SampleType, Samples, SourceOptions, Wrap, normal_from_slope};
-use roughcast_gpu::bake::{BakePath, GpuBaker, bake_bandwidth};
+use roughcast_gpu::bake::{BakePath, GpuBake, GpuBaker, bake_bandwidth};
 use roughcast_gpu::render::{
     Bumps, DEPTH_FORMAT, DrawOptions, Drawing, Geometry, GpuDetail, LevelOfDetail, RenderTarget, Renderer,
     ShaderKey, Views, shader_source,
@@ -152,7 +152,7 @@ impl PreparedMethod {
         let gpu = renderer.gpu().clone();
         let (map, source) = (normal_map(timed_method.side)?, SourceOptions::default());
         let options = bake_options(timed_method.shading);
-        let baker = GpuBaker::for_image(&gpu, &map, &source, None, &options, BakePath::default()).await?;
+        let baker = GpuBake::new().source(source).options(options).for_image(&gpu, &map).await?;
         baker.run();
         let textures =
             GpuDetail::of_baked(&gpu, timed_method.shading, baker.textures(), &baker.info().await?)?;

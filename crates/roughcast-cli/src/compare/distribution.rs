@@ -3,8 +3,7 @@
 //! Both are densities over the plane of `h.xy / h.z`: the ground truth has the map's slopes, each spread by the base roughness;
 //! LEAN has one Gaussian of their mean and covariance (LEAN mapping, Eq. 1, 5).
 
-use roughcast::texture::{Layout, decode};
-use roughcast::{Bake, BakeError, BakeOptions, Covariance, Image, SampleType, Slope, SourceOptions};
+use roughcast::{Bake, BakeError, Covariance, Image, Slope, SourceOptions};
 use roughcast_io::picture::Srgb8Picture;
 
 use crate::display::srgb8;
@@ -33,9 +32,7 @@ impl Distribution {
     /// # Errors
     /// [`BakeError`] if the map cannot be read.
     pub fn of(map: &Image, source: &SourceOptions, specular_power: f32) -> Result<Self, BakeError> {
-        let options = BakeOptions::default().with_layout(Layout::Moments).with_sample_type(SampleType::F32);
-        let baked = Bake::of(map).source(*source).options(options).run()?;
-        let levels = decode(&baked.arrays).expect("a bake of this layout is complete");
+        let levels = Bake::of(map).source(*source).moments()?;
         let whole = levels.last().expect("there is a level").moments()[0];
         let slopes = levels[0].moments().iter().map(|moments| moments.mean);
         Ok(Self::of_slopes(slopes, whole.mean, whole.covariance(), 1.0 / f64::from(specular_power)))

@@ -3,8 +3,7 @@
 use anyhow::Result;
 use glam::{DVec2, DVec3};
 use roughcast::shading::{Shading, ShadingOptions};
-use roughcast::texture::{Layout, decode};
-use roughcast::{Bake, BakeOptions, Covariance, SampleType};
+use roughcast::{Bake, Covariance, SampleType};
 use roughcast_scene::pattern::{Pattern, random_bumps, random_ridges};
 use roughcast_scene::{Camera, Filter, Picture, Sampler, Scene, Shape, Sphere, luminance};
 use serde_json::{Map, Value, json};
@@ -116,8 +115,7 @@ impl Parts {
 
 /// The aspect ratio that the whole map's covariance and the base roughness predict.
 fn expected(map: &Pattern) -> Result<f64> {
-    let options = BakeOptions::default().with_layout(Layout::Moments).with_sample_type(SampleType::F32);
-    let levels = decode(&Bake::of(&map.heights).source(map.source_options()).options(options).run()?.arrays)?;
+    let levels = Bake::of(&map.heights).source(map.source_options()).moments()?;
     let covariance = levels.last().expect("there is a level").moments()[0].covariance();
     let base = 1.0 / SPECULAR_POWER;
     let with_base = covariance + Covariance::isotropic(base);

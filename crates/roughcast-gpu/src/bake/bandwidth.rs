@@ -1,11 +1,11 @@
 //! Compares the bandwidth of a bake with that of a plain copy of the same bytes, an upper bound.
 
-use roughcast::{BakeOptions, Image, Samples, SourceOptions};
+use roughcast::{BakeOptions, Image, Samples};
 
 use super::bindings::Bindings;
 use super::compute::{Dispatch, begin_pass, compute_pipeline};
 use super::target::level_view;
-use super::{BakePath, GpuBaker};
+use super::{BakePath, GpuBake, GpuBaker};
 use crate::{Gpu, GpuError, Span, Timestamps};
 
 const COPY: &str = include_str!("wgsl/copy.wgsl");
@@ -37,7 +37,7 @@ impl Bandwidth {
 /// level of every texture.
 ///
 /// # Errors
-/// [`GpuError::Feature`] without timestamps; otherwise as [`GpuBaker::for_image`].
+/// [`GpuError::Feature`] without timestamps; otherwise as [`GpuBake::for_image`](super::GpuBake::for_image).
 pub async fn bake_bandwidth(
     gpu: &Gpu,
     side: u32,
@@ -49,7 +49,7 @@ pub async fn bake_bandwidth(
         return Err(GpuError::TextureTooLarge { width: side, height: side, limit });
     }
     let image = washboard(side as usize)?;
-    let baker = GpuBaker::for_image(gpu, &image, &SourceOptions::default(), None, options, path).await?;
+    let baker = GpuBake::new().options(*options).path(path).for_image(gpu, &image).await?;
     let nanoseconds = measure(gpu, |encoder, span| {
         baker.encode(encoder, Some(span));
     })

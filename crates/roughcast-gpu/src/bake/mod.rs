@@ -5,6 +5,7 @@
 
 mod bandwidth;
 mod bindings;
+mod builder;
 mod compute;
 mod pipelines;
 mod plan;
@@ -17,15 +18,14 @@ use std::sync::LazyLock;
 
 use roughcast::texture::{TextureArray, TextureInfo};
 use roughcast::wgsl::Role;
-use roughcast::{
-    BakeOptions, BakePlan, BaseRoughness, Image, MaxSlope, ScaleChoice, SourceCounts, SourceOptions,
-};
+use roughcast::{BakePlan, ImageView, MaxSlope, ScaleChoice, SourceCounts};
 use wgpu::util::DeviceExt;
 
 use crate::read_back::read_buffer;
 use crate::{Gpu, GpuError, Span};
 pub use bandwidth::{Bandwidth, bake_bandwidth, copy_bandwidth};
 use bindings::Bindings;
+pub use builder::GpuBake;
 use compute::ComputeBake;
 use raster::RasterBake;
 use scale::AutoScale;
@@ -51,7 +51,7 @@ pub enum BakePath {
     Raster,
 }
 
-/// Bakes a map of one size and format repeatedly: pipelines, bindings and textures are created once.
+/// Bakes a map of one size and format repeatedly: pipelines, bindings and textures are created once, by a [`GpuBake`].
 pub struct GpuBaker {
     gpu: Gpu,
     job: Job,
@@ -86,61 +86,14 @@ const SCALE_AT: usize = 10;
 const LIMIT_AT: usize = 11;
 
 impl GpuBaker {
-    /// Creates a baker for images like this one and uploads the image. Nothing is baked yet.
-    ///
-    /// # Errors
-    /// [`GpuError`] if options contradict each other or are unsupported on a GPU, the map is too large, or a format is
-    /// missing.
-    pub async fn for_image(
-        gpu: &Gpu,
-        image: &Image,
-        source: &SourceOptions,
-        roughness: Option<BaseRoughness<'_>>,
-        options: &BakeOptions,
-        path: BakePath,
-    ) -> Result<Self, GpuError> {
-        let format = MapFormat::of_image(image)?;
-        let side = |texels: usize| u32::try_from(texels).unwrap_or(u32::MAX);
-        let size = wgpu::Extent3d {
-            width: side(image.width()),
-            height: side(image.height()),
-            depth_or_array_layers: 1,
-        };
-        let descriptor = wgpu::TextureDescriptor {
-            label: Some("map"),
-            size,
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: format.texture_format(),
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        };
-        let map = gpu.create_texture("the map", &descriptor).await?;
-        source::upload(gpu, image, &map);
-        Self::for_texture(gpu, &map, source, roughness, options, path).await
-    }
-
-    /// Creates a baker for a texture that is already on the GPU, such as bumps drawn every frame. Each bake reads its
-    /// level 0. The texture needs the usage `TEXTURE_BINDING`.
-    ///
-    /// # Errors
-    /// As [`GpuBaker::for_image`].
-    pub async fn for_texture(
-        gpu: &Gpu,
-        map: &wgpu::Texture,
-        source: &SourceOptions,
-        roughness: Option<BaseRoughness<'_>>,
-        options: &BakeOptions,
-        path: BakePath,
-    ) -> Result<Self, GpuError> {
-        let path = match path {
+    async fn new(gpu: &Gpu, map: &wgpu::Texture, bake: &GpuBake<'_>) -> Result<Self, GpuError> {
+        let path = match bake.path {
             BakePath::Fastest if gpu.has_compute() => BakePath::Compute,
             BakePath::Fastest => BakePath::Raster,
             chosen => chosen,
         };
-        let job = Job::new(gpu, map, source, roughness, options, path).await?;
-        let finds_scale = !job.target.is_float() && options.scale == ScaleChoice::Auto;
+        let job = Job::new(gpu, map, bake, path).await?;
+        let finds_scale = !job.target.is_float() && bake.options.scale == ScaleChoice::Auto;
         let auto_scale = if finds_scale { Some(AutoScale::new(gpu, &job).await?) } else { None };
         let work = match path {
             BakePath::Raster => Work::Raster(RasterBake::new(gpu, &job).await?),
@@ -154,10 +107,11 @@ impl GpuBaker {
     /// # Errors
     /// [`GpuError::OtherMap`] if the image differs in any of these; [`GpuError::MapUsage`] if the map's texture
     /// cannot be copied to.
-    pub fn upload(&self, image: &Image) -> Result<(), GpuError> {
+    pub fn upload<'i>(&self, image: impl Into<ImageView<'i>>) -> Result<(), GpuError> {
+        let image = image.into();
         let size = self.job.size;
         let same_size = (image.width(), image.height()) == (size.width as usize, size.height as usize);
-        if !same_size || MapFormat::of_image(image)? != self.job.map_format {
+        if !same_size || MapFormat::of_image(&image)? != self.job.map_format {
             return Err(GpuError::OtherMap {
                 wanted: (size.width, size.height),
                 format: self.job.map.format(),
@@ -167,7 +121,7 @@ impl GpuBaker {
             });
         }
         require_usage(&self.job.map, wgpu::TextureUsages::COPY_DST)?;
-        source::upload(&self.gpu, image, &self.job.map);
+        source::upload(&self.gpu, &image, &self.job.map);
         Ok(())
     }
 
@@ -276,14 +230,13 @@ impl Job {
     async fn new(
         gpu: &Gpu,
         map: &wgpu::Texture,
-        source: &SourceOptions,
-        roughness: Option<BaseRoughness<'_>>,
-        options: &BakeOptions,
+        bake: &GpuBake<'_>,
         path: BakePath,
     ) -> Result<Self, GpuError> {
-        let plan = BakePlan::new(source, roughness, options)?;
+        let GpuBake { source, roughness, options, .. } = bake;
+        let plan = BakePlan::new(source, *roughness, options)?;
         let target = Target::new(options)?;
-        let base_variance = base_variance_of(&plan.info, roughness)?;
+        let base_variance = base_variance_of(&plan.info, *roughness)?;
         let map_format = MapFormat::of_texture(map.format())?;
         map_format.check_channels(&plan.source)?;
         if map.dimension() != wgpu::TextureDimension::D2 || map.sample_count() != 1 {
@@ -413,22 +366,6 @@ async fn counts_buffer(gpu: &Gpu) -> Result<wgpu::Buffer, GpuError> {
     let descriptor =
         wgpu::BufferDescriptor { label: Some("repaired texels"), size: 16, usage, mapped_at_creation: false };
     gpu.create_buffer("counts", &descriptor).await
-}
-
-/// Bakes one image without waiting: the textures are ready before any later command reads them.
-///
-/// # Errors
-/// As [`GpuBaker::for_image`].
-pub async fn bake(
-    gpu: &Gpu,
-    image: &Image,
-    source: &SourceOptions,
-    roughness: Option<BaseRoughness<'_>>,
-    options: &BakeOptions,
-) -> Result<GpuBaker, GpuError> {
-    let baker = GpuBaker::for_image(gpu, image, source, roughness, options, BakePath::default()).await?;
-    baker.run();
-    Ok(baker)
 }
 
 /// Checks that the texture of a map has a usage.

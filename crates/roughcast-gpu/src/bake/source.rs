@@ -2,7 +2,7 @@
 
 use half::f16;
 use roughcast::{
-    BakeError, Gradient, HeightSense, Image, Kind, NormalRange, SampleType, Samples, SourceError,
+    BakeError, Gradient, HeightSense, ImageView, Kind, NormalRange, SampleType, SamplesView, SourceError,
     SourceOptions, Wrap,
 };
 
@@ -58,7 +58,7 @@ impl MapFormat {
 
     /// The format of the texture that an image is copied into. Unsigned samples are stored as codes, which every device
     /// reads exactly.
-    pub fn of_image(image: &Image) -> Result<Self, GpuError> {
+    pub fn of_image(image: &ImageView<'_>) -> Result<Self, GpuError> {
         use wgpu::TextureFormat as F;
         let formats = match image.samples().sample_type() {
             SampleType::U8 => [F::R8Uint, F::Rg8Uint, F::Rgba8Uint],
@@ -176,13 +176,13 @@ pub(super) fn texels_from_height(options: &SourceOptions, width: u32) -> f32 {
 }
 
 /// Copies an image into a texture made for one like it.
-pub(super) fn upload(gpu: &Gpu, image: &Image, texture: &wgpu::Texture) {
+pub(super) fn upload(gpu: &Gpu, image: &ImageView<'_>, texture: &wgpu::Texture) {
     let channels = usize::from(texture.format().components());
     let bytes = match image.samples() {
-        Samples::U8(v) => bytes_of(v, image.channels(), channels, 255),
-        Samples::U16(v) => bytes_of(v, image.channels(), channels, u16::MAX),
-        Samples::F16(v) => bytes_of(v, image.channels(), channels, f16::ONE),
-        Samples::F32(v) => bytes_of(v, image.channels(), channels, 1.0),
+        SamplesView::U8(v) => bytes_of(v, image.channels(), channels, 255),
+        SamplesView::U16(v) => bytes_of(v, image.channels(), channels, u16::MAX),
+        SamplesView::F16(v) => bytes_of(v, image.channels(), channels, f16::ONE),
+        SamplesView::F32(v) => bytes_of(v, image.channels(), channels, 1.0),
     };
     let size = texture.size();
     gpu.queue().write_texture(

@@ -1,17 +1,52 @@
 //! The real-time renderer: the scenes and shading models of the CPU renderer, with the GPU's own texture filters.
 //!
 //! A [`Renderer`] draws into one kind of target: a window's surface, an offscreen texture, or a [`Picture`] that is
-//! read back. It combines a [`Geometry`] and [`GpuDetail`], each uploaded once, into a [`Drawing`], whose view may
+//! read back. It combines a [`Geometry`] and a [`GpuDetail`], each uploaded once, into a [`Drawing`], whose view may
 //! change every frame.
 //!
-//! ```text
-//! let mut renderer = Renderer::new(&gpu, RenderTarget::Colour(surface_format)).await?;
+//! ```
+//! use std::sync::Arc;
+//!
+//! use roughcast::shading::Shading;
+//! use roughcast::{Bake, BakeOptions, SampleType};
+//! use roughcast_gpu::render::{DEPTH_FORMAT, DrawOptions, Geometry, GpuDetail, RenderTarget, Renderer, Views};
+//! use roughcast_gpu::{Gpu, GpuOptions, wgpu};
+//! use roughcast_scene::{MAX_DETAIL, Plane, Shape, View, pattern};
+//!
+//! # pollster::block_on(async {
+//! let bumps = pattern::random_bumps(64, 0.3, 1);
+//! let options = BakeOptions::default().with_sample_type(SampleType::F16);
+//! let baked = Bake::of(&bumps.heights).source(bumps.source_options()).options(options).run()?;
+//! let shape = Arc::new(Shape::Plane(Plane::default()));
+//! let scene = View::Mid.scene(shape, (64, 64), (320, 240), Default::default());
+//!
+//! let gpu = Gpu::new(&GpuOptions::default()).await?;
+//! let format = wgpu::TextureFormat::Rgba8UnormSrgb; // the window's
+//! let mut renderer = Renderer::new(&gpu, RenderTarget::Colour(format)).await?;
 //! let geometry = Geometry::new(&gpu, &scene.shape, MAX_DETAIL).await?;
-//! let textures = GpuDetail::of_model(&gpu, Shading::Lean, &baked.arrays).await?;
-//! let mut drawing = renderer.prepare(&geometry, &textures, &DrawOptions::default()).await?;
-//! // every frame
-//! drawing.set_view(&renderer, &scene, (width, height)).await?;
+//! let detail = GpuDetail::of_model(&gpu, Shading::Lean, &baked.arrays).await?;
+//! let mut drawing = renderer.prepare(&geometry, &detail, &DrawOptions::default()).await?;
+//!
+//! # let target = |format| {
+//! #     gpu.device().create_texture(&wgpu::TextureDescriptor {
+//! #         label: None,
+//! #         size: wgpu::Extent3d { width: 320, height: 240, depth_or_array_layers: 1 },
+//! #         mip_level_count: 1,
+//! #         sample_count: 1,
+//! #         dimension: wgpu::TextureDimension::D2,
+//! #         format,
+//! #         usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+//! #         view_formats: &[],
+//! #     }).create_view(&Default::default())
+//! # };
+//! # let (colour, depth) = (target(format), target(DEPTH_FORMAT));
+//! // Every frame, with views of the window's texture and of a depth texture:
+//! let mut encoder = gpu.device().create_command_encoder(&Default::default());
+//! drawing.set_view(&renderer, &scene, (320, 240)).await?;
 //! drawing.draw(&mut encoder, &Views::new(&colour, &depth), None);
+//! gpu.queue().submit([encoder.finish()]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! # }).unwrap();
 //! ```
 //!
 //! [`Picture`]: roughcast_scene::Picture

@@ -37,6 +37,7 @@ pub enum ExrCompression {
 
 /// Options for writing a texture as EXR.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ExrOptions {
     /// Compression of the tiles.
     pub compression: ExrCompression,
@@ -46,4 +47,18 @@ pub struct ExrOptions {
     ///
     /// An entry here replaces `software` and `textureformat`, but not the texture's metadata.
     pub attributes: BTreeMap<String, String>,
+}
+
+impl ExrOptions {
+    /// The same options with this compression.
+    #[must_use]
+    pub fn with_compression(self, compression: ExrCompression) -> Self {
+        Self { compression, ..self }
+    }
+
+    /// The same options with these attributes.
+    #[must_use]
+    pub fn with_attributes(self, attributes: BTreeMap<String, String>) -> Self {
+        Self { attributes, ..self }
+    }
 }

@@ -1,8 +1,8 @@
 //! A map's slopes at level 0. The ground truth interpolates between its texels.
 
 use glam::DVec2;
-use roughcast::texture::{Layout, MomentLevel, decode};
-use roughcast::{Bake, BakeError, BakeOptions, Image, SampleType, Slope, SourceOptions, Wrap};
+use roughcast::texture::MomentLevel;
+use roughcast::{Bake, BakeError, ImageView, Slope, SourceOptions, Wrap};
 
 use crate::mipmap::{square_at, whole_and_rest, wrapped};
 
@@ -31,10 +31,8 @@ impl SlopeMap {
     ///
     /// # Errors
     /// [`BakeError`] if the map cannot be read.
-    pub fn of(map: &Image, options: &SourceOptions) -> Result<Self, BakeError> {
-        let floats = BakeOptions::default().with_layout(Layout::Moments).with_sample_type(SampleType::F32);
-        let baked = Bake::of(map).source(*options).options(floats).run()?;
-        let levels = decode(&baked.arrays).expect("a bake of this layout is complete");
+    pub fn of<'m>(map: impl Into<ImageView<'m>>, options: &SourceOptions) -> Result<Self, BakeError> {
+        let levels = Bake::of(map).source(*options).moments()?;
         Ok(Self::of_level(&levels[0]))
     }
 

@@ -21,10 +21,19 @@ const COVERED: f32 = 1.0 - 1e-5;
 
 /// Why pictures cannot be compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MetricError {
     /// The pictures differ in size.
-    #[error("the pictures differ in size: {0}x{1} and {2}x{3}; render both at the same size")]
-    Sizes(usize, usize, usize, usize),
+    #[error(
+        "the pictures differ in size: {}x{} and {}x{}; render both at the same size",
+        .first.0, .first.1, .other.0, .other.1
+    )]
+    Sizes {
+        /// Width and height of the first picture.
+        first: (usize, usize),
+        /// Width and height of the other.
+        other: (usize, usize),
+    },
     /// No pixel is covered by the surface in both pictures.
     #[error("no pixel is covered by the surface in both pictures; move the camera so that it sees it")]
     NothingCovered,
@@ -45,8 +54,9 @@ fn covered<'a>(
 ) -> Result<Vec<usize>, MetricError> {
     let mut all: Vec<usize> = (0..first.len()).filter(|i| first.coverage()[*i] >= COVERED).collect();
     for other in others {
-        if (other.width(), other.height()) != (first.width(), first.height()) {
-            return Err(MetricError::Sizes(first.width(), first.height(), other.width(), other.height()));
+        let [wanted, got] = [first, other].map(|picture| (picture.width(), picture.height()));
+        if wanted != got {
+            return Err(MetricError::Sizes { first: wanted, other: got });
         }
         all.retain(|i| other.coverage()[*i] >= COVERED);
     }
@@ -79,6 +89,9 @@ mod tests {
         assert_eq!(covered(&a, [&b]), Ok(vec![1]));
         b.coverage_mut()[1] = 0.5;
         assert_eq!(covered(&a, [&b]), Err(MetricError::NothingCovered));
-        assert_eq!(covered(&a, [&picture(1, 3, |_, _| [0.0; 3])]), Err(MetricError::Sizes(3, 1, 1, 3)));
+        assert_eq!(
+            covered(&a, [&picture(1, 3, |_, _| [0.0; 3])]),
+            Err(MetricError::Sizes { first: (3, 1), other: (1, 3) })
+        );
     }
 }

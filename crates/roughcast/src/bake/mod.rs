@@ -21,8 +21,8 @@ use crate::roughness::{Base, RoughnessStored};
 use crate::source::{BaseRoughness, BaseSource, MapSource, RoughnessMap, UseOfBase};
 use crate::survey::survey_of_some_rows;
 use crate::texture::rules::Storage;
-use crate::texture::{self, BaseRole, Bounds, Peaks, TextureArray};
-use crate::{ImageView, SourceCounts};
+use crate::texture::{self, BaseRole, Bounds, Layout, MomentLevel, Peaks, TextureArray};
+use crate::{ImageView, SampleType, SourceCounts};
 use allocate::{allocate, level_outs};
 use limit::{Ranges, find_ranges};
 use scales::{advice, peaks_of_most, set_scales};
@@ -198,6 +198,26 @@ impl<'a> Bake<'a> {
     /// [`BakeError`] if the map has too few channels or the options cannot be combined.
     pub fn run(self) -> Result<Baked, BakeError> {
         bake(self)
+    }
+
+    /// Bakes moments in single floats and decodes them: every level, for measurements. The layout and the sample type of
+    /// the options are ignored.
+    ///
+    /// # Errors
+    /// As [`Bake::run`].
+    ///
+    /// ```
+    /// use roughcast::{Bake, Image, Samples};
+    ///
+    /// let flat = Image::new(4, 4, 3, Samples::U8([128, 128, 255].repeat(16)))?;
+    /// let levels = Bake::of(&flat).moments()?;
+    /// assert_eq!((levels.len(), levels[2].moments().len()), (3, 1));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn moments(self) -> Result<Vec<MomentLevel>, BakeError> {
+        let options = self.options.with_layout(Layout::Moments).with_sample_type(SampleType::F32);
+        let baked = self.options(options).run()?;
+        Ok(texture::decode(&baked.arrays).expect("a bake of this layout is complete"))
     }
 }
 
