@@ -1,21 +1,24 @@
 //! The renderers of `render`: textures sampled on the CPU, the ground truth, or the GPU.
 
+#[cfg(feature = "gpu")]
+mod gpu;
+
 use std::ops::ControlFlow;
 
 use anyhow::Result;
 use indicatif::ProgressBar;
-use pollster::block_on;
 use roughcast::shading::{Shading, ShadingOptions};
-use roughcast::texture::TextureArray;
-use roughcast_gpu::render::{DrawOptions, Drawing, Geometry, GpuDetail, RenderTarget, Renderer};
-use roughcast_gpu::{Gpu, GpuOptions, render};
 use roughcast_scene::render::{Method, Truth};
-use roughcast_scene::{BakedTextures, MAX_DETAIL, Picture, Sampler, Scene, SlopeDetail};
+use roughcast_scene::{BakedTextures, Picture, Sampler, Scene, SlopeDetail};
+
+#[cfg(feature = "gpu")]
+pub use gpu::GpuBackend;
 
 /// One way to render a scene. All pictures of one renderer have the same size.
 pub enum Backend {
     Method(MethodBackend),
     GroundTruth(GroundTruthBackend),
+    #[cfg(feature = "gpu")]
     Gpu(Box<GpuBackend>),
 }
 
@@ -44,6 +47,7 @@ impl Backend {
                 };
                 Ok(truth.render(scene, backend.size, &watch)?)
             }
+            #[cfg(feature = "gpu")]
             Self::Gpu(backend) => backend.render(scene),
         }
     }
@@ -65,35 +69,4 @@ pub struct GroundTruthBackend {
     pub options: ShadingOptions,
     pub samples: u32,
     pub size: (u32, u32),
-}
-
-/// The GPU.
-pub struct GpuBackend {
-    renderer: Renderer,
-    drawing: Drawing,
-    size: (u32, u32),
-}
-
-impl GpuBackend {
-    /// Uploads the textures and the scene's shape to the fastest GPU.
-    pub fn new(
-        shading: Shading,
-        arrays: &[TextureArray],
-        options: &DrawOptions,
-        scene: &Scene,
-        size: (u32, u32),
-    ) -> Result<Self> {
-        block_on(async {
-            let gpu = Gpu::new(&GpuOptions::default()).await?;
-            let textures = GpuDetail::of_model(&gpu, shading, arrays).await?;
-            let geometry = Geometry::new(&gpu, &scene.shape, MAX_DETAIL).await?;
-            let mut renderer = Renderer::new(&gpu, RenderTarget::Parts).await?;
-            let drawing = renderer.prepare(&geometry, &textures, options).await?;
-            Ok(Self { renderer, drawing, size })
-        })
-    }
-
-    fn render(&mut self, scene: &Scene) -> Result<Picture> {
-        Ok(block_on(render::render(&self.renderer, &mut self.drawing, scene, self.size))?)
-    }
 }

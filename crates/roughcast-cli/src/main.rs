@@ -7,6 +7,7 @@ mod args;
 mod backend;
 mod bake;
 mod batch;
+#[cfg(feature = "gpu")]
 mod bench;
 mod compare;
 mod display;
@@ -52,6 +53,7 @@ enum Command {
     Render(render::Args),
     Compare(compare::Args),
     Figures(figures::Args),
+    #[cfg(feature = "gpu")]
     Bench(bench::Args),
     Shader(shader::Args),
 }
@@ -70,6 +72,7 @@ fn main() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Figures(args) => figures::run(&args),
+        #[cfg(feature = "gpu")]
         Command::Bench(args) => bench::run(&args),
         Command::Shader(args) => shader::run(&args),
     };

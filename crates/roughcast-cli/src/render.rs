@@ -10,7 +10,6 @@ use anyhow::{Context, Result};
 use clap::ValueHint;
 use roughcast::shading::Shading;
 use roughcast::texture::TextureArray;
-use roughcast_gpu::render::DrawOptions;
 use roughcast_io::picture::{Plane, write_exr, write_png};
 use roughcast_io::texture_files::is_same_file;
 use roughcast_io::{AtomicFile, AtomicSet};
@@ -19,7 +18,9 @@ use roughcast_scene::render::MAX_SAMPLES;
 use roughcast_scene::{BakedTextures, Filter, Picture, Sampler, Scene, SlopeDetail, SlopeMap};
 
 use crate::args::{SourceArgs, one_of, positive};
-use crate::backend::{Backend, GpuBackend, GroundTruthBackend, MethodBackend};
+#[cfg(feature = "gpu")]
+use crate::backend::GpuBackend;
+use crate::backend::{Backend, GroundTruthBackend, MethodBackend};
 use crate::display::{exposure_of, shown};
 use crate::input::read_map;
 use crate::scene_args::{CameraArgs, SHADING, SceneArgs, ShadingArgs, Size, size};
@@ -214,6 +215,10 @@ impl Args {
             let output = || self.output.display().to_string();
             AtomicFile::create(&self.output).map(drop).with_context(output)?;
         }
+        if self.gpu && cfg!(not(feature = "gpu")) {
+            let line = "this build has no code for graphics cards: build it with `--features gpu`, or leave --gpu out";
+            return Err(UsageError(line.to_owned()).into());
+        }
         if self.gpu
             && !matches!(
                 self.filter,
@@ -280,8 +285,13 @@ impl Args {
             .with_level(self.level)
             .with_mip_bias(self.mip_bias)
             .with_wrap(wrap);
+        #[cfg(not(feature = "gpu"))]
+        let _ = scene; // only the GPU's renderer needs the shape in advance
+        #[cfg(feature = "gpu")]
         if self.gpu {
-            let draw_options = DrawOptions::default().with_sampler(sampler).with_shading_options(options);
+            let draw_options = roughcast_gpu::render::DrawOptions::default()
+                .with_sampler(sampler)
+                .with_shading_options(options);
             let backend = GpuBackend::new(shading, &arrays, &draw_options, scene, size)?;
             return Ok(Backend::Gpu(Box::new(backend)));
         }

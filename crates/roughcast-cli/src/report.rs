@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use anyhow::Result;
-use roughcast::{BakeReport, Kind, SampleType};
+use roughcast::{BakeReport, SampleType};
 use roughcast_pipeline::{JobReport, Stage};
 use serde_json::{Value, json};
 
@@ -159,80 +159,14 @@ impl FileReport {
         scale.into_iter().chain(spread_scale).collect()
     }
 
-    /// The report as JSON; docs/reports.md explains its keys.
+    /// The report as JSON, with the messages of the program; docs/reports.md explains its keys.
     pub fn json(&self) -> Value {
-        let report = &self.job.report;
-        let levels: Vec<Value> = report
-            .levels
-            .iter()
-            .map(|((width, height), stats)| {
-                json!({
-                    "width": width,
-                    "height": height,
-                    "variance_x": stats.mean_variance_x,
-                    "variance_y": stats.mean_variance_y,
-                    "variance_max": stats.max_variance,
-                })
-            })
-            .collect();
-        let times: serde_json::Map<String, Value> = self
-            .times()
-            .iter()
-            .map(|(stage, time)| (stage.name().to_owned(), json!(time.as_secs_f64())))
-            .collect();
-        json!({
-            "input": self.job.input.display().to_string(),
-            "outputs": self.job.files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>(),
-            "kind": self.job.source.kind.name(),
-            "green": (self.job.source.kind == Kind::Normal).then(|| self.job.source.green.name()),
-            "red": (self.job.source.kind == Kind::Normal).then(|| self.job.source.red.name()),
-            "normal_scale": (self.job.source.kind == Kind::Normal).then_some(self.job.source.normal_scale),
-            "green_correlation": self.job.green_correlation,
-            "range": self.job.source.range.name(),
-            "normal_channels": self.job.source.normal_channels.name(),
-            "width": self.job.info.width,
-            "height": self.job.info.height,
-            "layout": self.job.options.layout.name(),
-            "bits": self.job.options.sample_type.name(),
-            "base": self.job.options.base.name(),
-            "filter": self.job.options.filter.name(),
-            "wrap": self.job.source.wrap.name(),
-            "max_slope": report.max_slope,
-            "scale": self.job.scale(),
-            "variance_scale": self.job.spread_scale(),
-            "texels": report.texels,
-            "clamped": report.counts.clamped,
-            "behind": report.counts.behind,
-            "invalid": report.counts.invalid,
-            "non_finite": report.counts.non_finite,
-            "steepest_slope": report.maximum_slope,
-            "rms_slope": report.rms_slope,
-            "rms_slope_with_base": report.rms_slope_with_base,
-            "slope_error": self.job.bounds().slope,
-            "variance_error": self.job.bounds().variance,
-            "usable_specular_power": self.job.bounds().usable_specular_power(),
-            "usable_specular_power_any_direction": self.job.bounds().usable_specular_power_any_direction(),
-            "limit": report.limit.map(|limit| json!({
-                "max_slope": limit.max_slope,
-                "texels": limit.texels,
-                "specular_power_factor": limit.factor,
-            })),
-            "usable_specular_power_of_most": self.job.bounds_of_most().usable_specular_power(),
-            "advice": report.advice.map(|advice| json!({
-                "max_slope": advice.max_slope,
-                "specular_power_factor": advice.factor,
-            })),
-            "compression": self.job.compression.map(|error| json!({
-                "sigma_error_rms": error.sigma_rms,
-                "sigma_error_max": error.sigma_max,
-                "variance_error": error.variance,
-            })),
-            "roughness_resampled_from": report.roughness_resampled_from.map(|(width, height)| [width, height]),
-            "levels": levels,
-            "reader_note": self.reader_note,
-            "warnings": self.warnings,
-            "seconds": times,
-        })
+        let times = self.times().iter().map(|(stage, time)| (stage.name(), time.as_secs_f64()));
+        let mut report = self.job.to_json();
+        report["reader_note"] = json!(self.reader_note);
+        report["warnings"] = json!(self.warnings);
+        report["seconds"] = times.map(|(stage, seconds)| (stage.to_owned(), json!(seconds))).collect();
+        report
     }
 }
 

@@ -21,6 +21,7 @@ use serde_json::{Value, json};
 
 use crate::args::{REPORT, WordParser, one_of_or_advice};
 use crate::{UsageError, say, say_json};
+#[cfg(feature = "gpu")]
 pub use export::parse;
 use export::{Export, Language, export};
 use prefix::Prefix;

@@ -5,10 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use clap::ValueHint;
-use roughcast::texture::{
-    Base, BaseRole, Layout, Part, Texture, TextureArray, TextureInfo, decode, layers_of,
-};
-use roughcast::{Image, Samples};
+use roughcast::texture::{Layout, Part, TextureInfo, unpack};
 use roughcast_io::texture_files::{TextureFiles, WriteFilesError, check_destination};
 use roughcast_io::{Container, Limits, Stored, Supercompression};
 
@@ -42,7 +39,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let info = TextureInfo::new(Layout::Moments, Part::Whole);
     check_destination(&args.output, Container::Exr, &info).map_err(refusals::of_write_files)?;
     let arrays = textures::read_with_parts(&args.file, &Limits::of_pixels(args.max_pixels))?;
-    let array = moments_of(&arrays).with_context(|| args.file.display().to_string())?;
+    let array = unpack(&arrays).with_context(|| args.file.display().to_string())?;
     write(args, &Stored::Texels(array)).map_err(refusals::of_write_files)?;
     Ok(ExitCode::SUCCESS)
 }
@@ -52,25 +49,4 @@ fn write(args: &Args, moments: &Stored) -> Result<(), WriteFilesError> {
     let mut files = files.protecting([args.file.clone()]);
     files.add(moments)?;
     files.commit().map(drop)
-}
-
-/// The same moments in the named layout, with the known information about the base.
-fn moments_of(arrays: &[TextureArray]) -> Result<TextureArray> {
-    let levels = decode(arrays)?;
-    let first = &arrays[0].info;
-    let info = TextureInfo {
-        // Toksvig's factor includes the base, but the variance decoded from its normals does not.
-        base: if first.layout.base_role() == BaseRole::Apart { Base::None } else { first.base },
-        base_variance: first.base_variance,
-        brdf: first.brdf,
-        wrap: first.wrap,
-        ..TextureInfo::new(Layout::Moments, Part::Whole)
-    };
-    let spec = &layers_of(&info)[0];
-    let images = levels.into_iter().map(|level| {
-        let texels = level.moments().iter().flat_map(|m| [m.mean.x, m.mean.y, m.xx, m.yy, m.xy]).collect();
-        Image::new(level.width(), level.height(), spec.channels.len(), Samples::F32(texels))
-    });
-    let levels = images.collect::<Result<Vec<_>, _>>()?;
-    Ok(TextureArray::new(info, vec![Texture::new(spec.name, spec.channels.to_vec(), levels)?])?)
 }

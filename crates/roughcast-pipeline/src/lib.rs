@@ -57,6 +57,7 @@ mod job;
 mod map;
 mod model_textures;
 mod report;
+mod report_json;
 mod roughness;
 mod sidecar;
 mod target;

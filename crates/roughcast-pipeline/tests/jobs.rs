@@ -17,6 +17,7 @@ use roughcast_pipeline::{
     BakeJob, BakeSettings, ChoiceError, Finding, JobError, MapError, Progress, ReadMapError, RoughnessError,
     RoughnessForm, RoughnessInput, SidecarFile, Stage, Unwatched,
 };
+use serde_json::json;
 
 const SIDE: usize = 64;
 
@@ -62,6 +63,15 @@ fn a_job_reports_its_stages_and_writes_its_files() {
     assert_eq!(report.findings, [Finding::RoughnessAssumedZero]);
     assert!(report.compression.is_some_and(|error| error.sigma_rms > 0.0));
     assert!(report.bounds().variance > report.report.bounds.variance, "the blocks' error is added");
+    let json = report.to_json();
+    assert_eq!(
+        (&json["kind"], &json["layout"], &json["texels"]),
+        (&json!("height"), &json!("pbr"), &json!(SIDE * SIDE))
+    );
+    assert_eq!(
+        (&json["outputs"][2], &json["levels"][6]["width"]),
+        (&json!(job.output.with_extension("json")), &json!(1))
+    );
 }
 
 #[test]

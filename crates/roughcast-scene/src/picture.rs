@@ -123,6 +123,7 @@ impl Picture {
     }
 
     /// The values of each row from the top, to be changed: radiance, specular radiance and coverage.
+    #[cfg(feature = "render")]
     pub(crate) fn rows_mut(
         &mut self,
     ) -> impl Iterator<Item = (&mut [[f32; 3]], &mut [[f32; 3]], &mut [f32])> {

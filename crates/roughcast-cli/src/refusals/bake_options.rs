@@ -4,10 +4,12 @@ use std::error::Error;
 
 use roughcast::texture::BlockCompression;
 use roughcast::{BakeError, PyramidFilter, SourceError};
+#[cfg(feature = "gpu")]
 use roughcast_gpu::GpuError;
 
 /// An error in one line, with the option to change, if there is one.
 pub fn with_options(error: &(dyn Error + 'static)) -> String {
+    #[cfg(feature = "gpu")]
     match error.downcast_ref() {
         Some(GpuError::Bake(error)) => return of_bake(error),
         Some(GpuError::Format { .. }) => return format!("{error} (--bits half)"),
@@ -124,8 +126,11 @@ mod tests {
         ] {
             let line = with_options(&error);
             assert!(line.contains(option) && !line.contains('\n'), "'{line}' does not name '{option}'");
-            let wrapped = anyhow::Error::from(GpuError::from(error));
-            assert_eq!(with_options(wrapped.as_ref()), line, "the GPU's bake reports the same");
+            #[cfg(feature = "gpu")]
+            {
+                let wrapped = anyhow::Error::from(GpuError::from(error));
+                assert_eq!(with_options(wrapped.as_ref()), line, "the GPU's bake reports the same");
+            }
         }
     }
 

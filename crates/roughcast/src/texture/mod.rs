@@ -26,6 +26,7 @@ mod shape;
 mod split;
 mod texels;
 mod toksvig;
+mod unpack;
 mod variance;
 
 pub use crate::roughness::{Base, Brdf, RoughnessStored};
@@ -49,6 +50,8 @@ pub use texels::{
 };
 
 use crate::SampleType;
+pub use unpack::unpack;
+
 use crate::moments::Moments;
 use rules::Storage;
 
