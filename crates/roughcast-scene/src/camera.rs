@@ -47,6 +47,9 @@ const MIN_SINE: f64 = 1e-9;
 
 impl Camera {
     /// Creates a valid camera.
+    ///
+    /// # Errors
+    /// [`CameraError`] if a number is not finite, or the camera has no view or no picture plane.
     pub fn new(eye: DVec3, target: DVec3, up: DVec3, vertical_fov: f64) -> Result<Self, CameraError> {
         let camera = Self { eye, target, up, vertical_fov };
         camera.validate()?;
@@ -54,6 +57,9 @@ impl Camera {
     }
 
     /// Checks that the camera is valid. The other methods require a valid camera.
+    ///
+    /// # Errors
+    /// As [`Camera::new`].
     pub fn validate(&self) -> Result<(), CameraError> {
         let view = self.target - self.eye;
         if !(self.eye.is_finite() && view.is_finite() && self.up.is_finite() && self.vertical_fov.is_finite())

@@ -1,6 +1,39 @@
 //! Cameras, shapes, meshes and lights; the CPU reference renderer, which provides the supersampled ground truth; and
 //! image metrics.
 //!
+//! A [`Scene`] is a [`Shape`] with a camera, lights and a material; a [`View`] makes a standard one. Whatever has bumps
+//! is a [`Detail`]: [`BakedTextures`] read through a [`Sampler`], the slopes of a map ([`SlopeDetail`]), or a type of
+//! yours. [`render::Method`] shades the distributions of a detail, [`render::Truth`] averages many samples of its exact
+//! slopes, and [`metrics`] compares the two pictures.
+//!
+//! ```
+//! use std::sync::Arc;
+//!
+//! use roughcast::Bake;
+//! use roughcast::shading::{Shading, ShadingOptions};
+//! use roughcast_scene::metrics::rmse;
+//! use roughcast_scene::render::{Method, Truth, unwatched};
+//! use roughcast_scene::{BakedTextures, Plane, Sampler, Shape, SlopeDetail, SlopeMap, View, pattern};
+//!
+//! // Random bumps on a plane, seen from so far away that a pixel covers many of them.
+//! let bumps = pattern::random_bumps(64, 0.3, 1);
+//! let source = bumps.source_options();
+//! let (size, options) = ((32, 24), ShadingOptions::default());
+//! let plane = Arc::new(Shape::Plane(Plane::default()));
+//! let scene = View::Far.scene(plane, (64, 64), size, Default::default());
+//!
+//! let baked = Bake::of(&bumps.heights).source(source).run()?;
+//! let textures = BakedTextures::of_model(Shading::Lean, &baked.arrays)?;
+//! let detail = textures.sampled(Sampler::default());
+//! let lean = Method { shading: Shading::Lean, detail: &detail, options }.render(&scene, size, &unwatched)?;
+//!
+//! let exact = SlopeDetail::new(SlopeMap::of(&bumps.heights, &source)?, source.wrap);
+//! let truth = Truth { shading: Shading::Lean, detail: &exact, options, samples: 64 };
+//! let truth = truth.render(&scene, size, &unwatched)?;
+//! assert!(rmse(&lean, &truth)? < 0.1);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # Features
 //!
 //! - `render`, on by default: the CPU renderer with its texture filters, the bounding volume hierarchy for meshes, and

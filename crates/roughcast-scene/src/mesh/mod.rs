@@ -55,6 +55,9 @@ impl Mesh {
     /// triangle that is clockwise as seen from the side its normals point to is reversed. Duplicates and triangles
     /// without an area are dropped. The mesh has only the sets of texture coordinates that all parts have: none if one
     /// part has none.
+    ///
+    /// # Errors
+    /// [`MeshFault`] if there are no triangles or too many, or if the numbers are not those of a mesh.
     pub fn new(parts: Vec<TriangleMesh>) -> Result<Self, MeshFault> {
         let uv_set_count = parts.iter().map(merge::uv_set_count).min().unwrap_or(0);
         let mut triangles = merge::merge(parts)?;

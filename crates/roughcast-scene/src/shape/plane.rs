@@ -22,6 +22,9 @@ impl Default for Plane {
 
 impl Plane {
     /// A square from `-half_size` to `half_size`.
+    ///
+    /// # Errors
+    /// [`ShapeError::HalfSize`] if the half size is not positive and finite.
     pub fn new(half_size: f64) -> Result<Self, ShapeError> {
         let usable = half_size.is_finite() && half_size > 0.0;
         if usable { Ok(Self { half_size }) } else { Err(ShapeError::HalfSize(half_size)) }

@@ -30,6 +30,9 @@ impl Default for Torus {
 
 impl Torus {
     /// A torus whose tube has the radius `minor`, between 0 and 1.
+    ///
+    /// # Errors
+    /// [`ShapeError::MinorRadius`] if the radius is not between 0 and 1.
     pub fn new(minor: f64) -> Result<Self, ShapeError> {
         if minor > 0.0 && minor < 1.0 { Ok(Self { minor }) } else { Err(ShapeError::MinorRadius(minor)) }
     }
