@@ -112,7 +112,7 @@ impl MaxSlope {
     pub const LARGEST: f32 = 1e9;
 
     /// The limit before the map has been analysed.
-    pub fn before_a_look(self) -> f32 {
+    pub fn before_survey(self) -> f32 {
         match self {
             MaxSlope::Auto => Self::OF_ANY_MAP,
             MaxSlope::Limit(limit) => limit,

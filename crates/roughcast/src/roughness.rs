@@ -18,7 +18,7 @@ named_enum! {
 }
 
 named_enum! {
-    /// The lobe that a stored roughness is meant for.
+    /// The microfacet distribution that a stored roughness is meant for.
     #[non_exhaustive]
     pub enum Brdf: "BRDF" {
         /// GGX, by the convention `alpha^2 = alpha0^2 + 2 sigma^2`: it has no finite slope variance of its own.

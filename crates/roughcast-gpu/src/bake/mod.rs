@@ -262,7 +262,7 @@ impl Job {
             base_variance,
             target,
             textures,
-            stores: stores_buffer(gpu, scale, plan.source.max_slope.before_a_look()),
+            stores: stores_buffer(gpu, scale, plan.source.max_slope.before_survey()),
             counts: counts_buffer(gpu).await?,
         })
     }
@@ -316,7 +316,7 @@ impl Job {
             height,
             0,
             source::code_of_wrap(source.wrap),
-            source.max_slope.before_a_look().to_bits(),
+            source.max_slope.before_survey().to_bits(),
             source::texels_from_height(source, self.size.width).to_bits(),
             self.base_variance.to_bits(),
             factor_x.to_bits(),

@@ -139,7 +139,7 @@ impl DrawOptions {
         Self { sampler, ..self }
     }
 
-    /// The same options with these options of the lobe.
+    /// The same options with these options of shading.
     #[must_use]
     pub fn with_shading_options(self, shading_options: ShadingOptions) -> Self {
         Self { shading_options, ..self }
@@ -283,7 +283,7 @@ fn key(detail: &GpuDetail, sampling: &Sampling, bumps: Bumps) -> ShaderKey {
 }
 
 impl Drawing {
-    /// Changes the lobe and the texture filter for the next frames. Nothing is uploaded again; a shader is compiled
+    /// Changes how the lobe is evaluated and the texture filter, for the next frames. Nothing is uploaded again; a shader is compiled
     /// only if the renderer has none yet for this kind of filter.
     ///
     /// # Errors

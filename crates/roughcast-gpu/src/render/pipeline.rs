@@ -160,7 +160,7 @@ impl MapUniforms {
         let packing = detail.packing.to_words();
         let sampling = sampling.words(detail);
         Ok(Self {
-            options: upload(gpu, "the options of a lobe", bytemuck::cast_slice(&options), usage).await?,
+            options: upload(gpu, "the options of shading", bytemuck::cast_slice(&options), usage).await?,
             packing: upload(gpu, "the packing of textures", bytemuck::cast_slice(&packing), usage).await?,
             sampling: upload(gpu, "the sampling", bytemuck::cast_slice(&sampling), usage).await?,
         })

@@ -5,7 +5,7 @@
 
 use glam::DVec2;
 use roughcast::Wrap;
-use roughcast::shading::{FilterVariances, PIXEL_DEVIATION};
+use roughcast::shading::{FilterVariances, PIXEL_STANDARD_DEVIATION};
 
 use super::footprint::Ellipse;
 use crate::Footprint;
@@ -33,7 +33,8 @@ const LAST_LEVEL_SIDES: f64 = 2.0;
 /// Standard deviations along the axes of the ellipse, in texels of level 0: the longer one first. The shorter one is at
 /// least what the maximum ratio of axes allows.
 fn deviations(ellipse: &Ellipse) -> [f64; 2] {
-    let [major, minor] = [ellipse.major, ellipse.minor].map(|axis| f64::from(PIXEL_DEVIATION) * axis);
+    let [major, minor] =
+        [ellipse.major, ellipse.minor].map(|axis| f64::from(PIXEL_STANDARD_DEVIATION) * axis);
     [major, minor.max(major / MAX_ECCENTRICITY)]
 }
 

@@ -13,8 +13,8 @@ pub struct Method<'a> {
     pub shading: Shading,
     /// The source of the bumps.
     pub detail: &'a dyn Detail,
-    /// The lobe. Properties that the detail itself specifies, such as an exponent baked into its textures, take
-    /// precedence over these options.
+    /// How the lobe is evaluated. Properties that the detail itself specifies, such as an exponent baked into its
+    /// textures, take precedence over these options.
     pub options: ShadingOptions,
 }
 

@@ -24,7 +24,7 @@ pub use method::Method;
 #[cfg(feature = "render")]
 pub(crate) use truth::pixel_filter_quantile;
 #[cfg(feature = "render")]
-pub use truth::{PIXEL_FILTER_DEVIATION, PIXEL_FILTER_RADIUS, Truth};
+pub use truth::{PIXEL_FILTER_RADIUS, PIXEL_FILTER_STANDARD_DEVIATION, Truth};
 
 #[cfg(feature = "render")]
 use rows::{render_rows, render_rows_of_each};

@@ -3,7 +3,7 @@
 //! Source: LEAN mapping, Figure 14: supersampling with a Gaussian pixel filter.
 
 use glam::DVec2;
-use roughcast::shading::{PIXEL_DEVIATION, Shading, ShadingOptions};
+use roughcast::shading::{PIXEL_STANDARD_DEVIATION, Shading, ShadingOptions};
 
 use super::normal_quantile::normal_quantile;
 use super::shade::Shaded;
@@ -12,7 +12,7 @@ use crate::split_mix::{GOLDEN_RATIO, scrambled};
 use crate::{Detail, DetailPoint, Picture, Ray, Scene};
 
 /// Standard deviation of the pixel filter, in pixels.
-pub const PIXEL_FILTER_DEVIATION: f64 = PIXEL_DEVIATION as f64;
+pub const PIXEL_FILTER_STANDARD_DEVIATION: f64 = PIXEL_STANDARD_DEVIATION as f64;
 /// Radius at which the pixel filter is truncated, in pixels.
 pub const PIXEL_FILTER_RADIUS: f64 = 2.0;
 /// The fraction of a normal distribution below minus four standard deviations, where the pixel filter is truncated.
@@ -29,7 +29,7 @@ pub struct Truth<'a> {
     pub shading: Shading,
     /// The source of the bumps; only its exact slopes are used.
     pub detail: &'a dyn Detail,
-    /// The lobe. Roughness in the maps is ignored.
+    /// How the lobe is evaluated. Roughness in the maps is ignored.
     pub options: ShadingOptions,
     /// Samples per pixel: a square number, 1 ..= [`MAX_SAMPLES`].
     pub samples: u32,
@@ -131,7 +131,7 @@ fn sample_places((x, y): (u32, u32), side: u32) -> impl Iterator<Item = DVec2> {
 /// The quantile function of the pixel filter: the position, in pixels from the centre, below which it has this
 /// probability.
 pub(crate) fn pixel_filter_quantile(probability: f64) -> f64 {
-    PIXEL_FILTER_DEVIATION * normal_quantile(BEYOND + probability * (1.0 - 2.0 * BEYOND))
+    PIXEL_FILTER_STANDARD_DEVIATION * normal_quantile(BEYOND + probability * (1.0 - 2.0 * BEYOND))
 }
 
 /// Two numbers in 0 .. 1 from a pixel and a sample (SplitMix64, by S. Vigna).
@@ -158,7 +158,7 @@ mod tests {
             (0..count).map(|i| pixel_filter_quantile((f64::from(i) + 0.5) / f64::from(count)).powi(2));
         let variance = variance.sum::<f64>() / f64::from(count);
         // The part beyond four standard deviations is missing, which is a thousandth of the variance.
-        assert!((variance / PIXEL_FILTER_DEVIATION.powi(2) - 1.0).abs() < 2e-3, "{variance}");
+        assert!((variance / PIXEL_FILTER_STANDARD_DEVIATION.powi(2) - 1.0).abs() < 2e-3, "{variance}");
     }
 
     #[test]

@@ -56,7 +56,7 @@ pub(super) fn limit_slopes(
     options: &BakeOptions,
 ) -> Result<(), BakeError> {
     let stores_squares = options.layout.rules().stores() == Stores::RawMoments;
-    let asked = source.max_slope.before_a_look();
+    let asked = source.max_slope.before_survey();
     if options.sample_type == SampleType::F16 && stores_squares && asked > LARGEST_SLOPE_IN_HALF {
         return Err(BakeError::SlopeBeyondHalf { max_slope: asked, largest: LARGEST_SLOPE_IN_HALF });
     }

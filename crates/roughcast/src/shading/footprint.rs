@@ -29,7 +29,7 @@ use super::{FootprintModel, ShadingOptions};
 use crate::moments::Covariance;
 
 /// Standard deviation of the pixel filter, a Gaussian, in pixels.
-pub const PIXEL_DEVIATION: f32 = 0.5;
+pub const PIXEL_STANDARD_DEVIATION: f32 = 0.5;
 /// The ratio of the maximum to the mean variance of linear interpolation between two texels: `1/4` over `1/6`.
 const LARGEST_OVER_MEAN: f32 = 1.5;
 /// The level at which the correction ends; it fades out from the previous level. On coarser levels a texel's mean
@@ -208,7 +208,8 @@ pub fn footprint_ratio(
     let change = |[dx, dy]: [f32; 2]| [0, 1].map(|i| dx * mean_dx[i] + dy * mean_dy[i]);
     let [along, across] = [change(axes.along), change(axes.across)];
     let changes = [along, across].map(|[x, y]| x * x + y * y);
-    let pixel = axes.squared_lengths.map(|squared| PIXEL_DEVIATION * PIXEL_DEVIATION * squared);
+    let pixel =
+        axes.squared_lengths.map(|squared| PIXEL_STANDARD_DEVIATION * PIXEL_STANDARD_DEVIATION * squared);
     let seen = [0, 1].map(|i| pixel[i].min(filter.moments[i]));
     let linear_covariance = Covariance {
         xx: seen[0] * along[0] * along[0] + seen[1] * across[0] * across[0],

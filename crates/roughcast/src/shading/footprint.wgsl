@@ -6,7 +6,7 @@
 //   let ratio = footprint_ratio(axes, filtered, dpdx(mean), dpdy(mean), options);
 
 // Standard deviation of the pixel filter, in pixels.
-const PIXEL_DEVIATION: f32 = 0.5;
+const PIXEL_STANDARD_DEVIATION: f32 = 0.5;
 
 // The ratio of the maximum to the mean variance of linear interpolation between two texels: 1/4 over 1/6.
 const LARGEST_OVER_MEAN: f32 = 1.5;
@@ -135,7 +135,7 @@ fn footprint_ratio(
     let along = axes.along.x * mean_dx + axes.along.y * mean_dy;
     let across = axes.across.x * mean_dx + axes.across.y * mean_dy;
     let changes = vec2f(dot(along, along), dot(across, across));
-    let pixel = PIXEL_DEVIATION * PIXEL_DEVIATION * axes.squared_lengths;
+    let pixel = PIXEL_STANDARD_DEVIATION * PIXEL_STANDARD_DEVIATION * axes.squared_lengths;
     let seen = min(pixel, filtered.moments);
     let squares = seen.x * along * along + seen.y * across * across;
     let linear_covariance = vec3f(squares, seen.x * along.x * along.y + seen.y * across.x * across.y);

@@ -61,7 +61,7 @@ pub use facet::{
     unit_normal,
 };
 pub use footprint::{
-    FilterVariances, FootprintAxes, FootprintRatio, PIXEL_DEVIATION, PixelPart, footprint_axes,
+    FilterVariances, FootprintAxes, FootprintRatio, PIXEL_STANDARD_DEVIATION, PixelPart, footprint_axes,
     footprint_ratio, hardware_variances, level_variances, pixel_part,
 };
 pub use gaussian::{

@@ -96,7 +96,7 @@ impl<'a> MapSource<'a> {
         } else {
             0.0
         };
-        let reading = Reading { image, options, max_slope: options.max_slope.before_a_look() };
+        let reading = Reading { image, options, max_slope: options.max_slope.before_survey() };
         Ok(Self { reading, base, extras, height_of_holes })
     }
 }

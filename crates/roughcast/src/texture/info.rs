@@ -55,7 +55,7 @@ pub struct TextureInfo {
     /// Slope variance of the base roughness per axis, `alpha^2 / 2`; 0 without one, NaN where it varies over the map.
     #[cfg_attr(feature = "serde", serde(with = "nan_as_none"))]
     pub base_variance: f32,
-    /// The lobe for which the roughness is intended.
+    /// The microfacet distribution for which the roughness is intended.
     pub brdf: Brdf,
     /// How a roughness is stored.
     pub roughness_stored: RoughnessStored,

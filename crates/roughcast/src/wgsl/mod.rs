@@ -6,7 +6,8 @@
 //! functions.
 //!
 //! - [`Role::Model`], [`Role::Companion`] and [`Role::Part`] are for shading: [`library`] assembles what a model
-//!   needs.
+//!   needs to shade a distribution. Textures are read by the module of their layout's
+//!   [`TexelReader`](crate::texture::TexelReader).
 //! - [`Role::Detail`] modules are sources of bumps, which call some functions of their host; each file lists them.
 //! - [`Role::Bake`] modules implement the arithmetic of baking, for a host with bindings and entry points.
 
@@ -167,7 +168,7 @@ mod tests {
 
     #[test]
     fn choices_have_the_same_numbers_in_rust_and_wgsl() {
-        let source = library(&["options", "packing"]).expect("they exist");
+        let source = library(&["options", "packing", "distribution"]).expect("they exist");
         let number = |name: &str| {
             let (_, rest) = source.split_once(&format!("const {name}: u32 = ")).expect(name);
             rest.split_once('u').expect("a number ends with u").0.parse::<u32>().expect(name)

@@ -231,7 +231,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "lean",
         source: include_str!("../texture/texels/lean.wgsl"),
-        needs: &["packing", "distribution", "normal"],
+        needs: &["packing", "normal", "pixel", "gaussian-surface"],
         summary: "LEAN mapping, from filtered moments",
         citation: "Olano & Baker, LEAN Mapping, 2010, Eq. 1, 5 and 6, Figure 16",
         role: Role::Model,
@@ -239,7 +239,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "clean",
         source: include_str!("../texture/texels/clean.wgsl"),
-        needs: &["packing", "distribution"],
+        needs: &["packing", "pixel", "gaussian-surface"],
         summary: "CLEAN mapping, from the filtered trace of the moments",
         citation: "Olano, Shiny and CLEAN, 2011",
         role: Role::Model,
@@ -263,7 +263,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "variance",
         source: include_str!("../texture/texels/variance.wgsl"),
-        needs: &["packing", "distribution"],
+        needs: &["packing", "pixel", "gaussian-surface"],
         summary: "off-centre Beckmann with a stored variance",
         citation: "Olano, Shiny and CLEAN, 2011",
         role: Role::Model,
@@ -303,7 +303,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "lean-detail",
         source: include_str!("../texture/texels/lean_detail.wgsl"),
-        needs: &["detail", "lean", "pixel"],
+        needs: &["detail", "lean"],
         summary: "LEAN's textures as a source of bumps",
         citation: "",
         role: Role::Detail,
@@ -319,7 +319,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "clean-detail",
         source: include_str!("../texture/texels/clean_detail.wgsl"),
-        needs: &["detail", "clean", "pixel"],
+        needs: &["detail", "clean"],
         summary: "CLEAN's texture as a source of bumps",
         citation: "",
         role: Role::Detail,
@@ -327,7 +327,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "variance-detail",
         source: include_str!("../texture/texels/variance_detail.wgsl"),
-        needs: &["detail", "variance", "pixel"],
+        needs: &["detail", "variance"],
         summary: "the variance texture as a source of bumps",
         citation: "",
         role: Role::Detail,

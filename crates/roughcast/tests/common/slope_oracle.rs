@@ -107,7 +107,7 @@ fn slope_of_normal(
 
 /// The slope of a normal, clamped to the length that the options allow; `None` if no surface can have the normal.
 fn repaired(x: f64, y: f64, z: f64, options: &SourceOptions, counts: &mut SourceCounts) -> Option<[f64; 2]> {
-    let longest = f64::from(options.max_slope.before_a_look());
+    let longest = f64::from(options.max_slope.before_survey());
     let across = x.hypot(y);
     if !(x.is_finite() && y.is_finite() && z.is_finite()) {
         counts.non_finite += 1;
