@@ -7,7 +7,7 @@ from workspace import REPOSITORY
 
 
 def hunks(text):
-    """(file, first line, lines before, lines after) of every hunk in the text's diffs."""
+    """(file, first line, lines before, lines after) of every hunk of the diffs in a text."""
     for diff in re.findall(r"^```diff\n(.*?)^```$", text, re.MULTILINE | re.DOTALL):
         for file, changes in re.findall(r"^\+\+\+ (\S+)\n(.*?)(?=^\+\+\+ |\Z)", diff, re.MULTILINE | re.DOTALL):
             for first, body in re.findall(r"^@@ -(\d+).*?@@.*?\n(.*?)(?=^@@ |\Z)", changes, re.MULTILINE | re.DOTALL):

@@ -111,8 +111,8 @@ pub enum GpuError {
     Detail(#[from] DetailError),
     /// A baker was made for maps of another size or type.
     #[error(
-        "this bake was made for {}x{} texels in {format:?}, not for {}x{} of {channels} channels in {sample_type} bits: \
-         make another", .wanted.0, .wanted.1, .got.0, .got.1
+        "this bake was made for {}x{} texels in {format:?}, not for {}x{} of {channels} channels of the sample type \
+         '{sample_type}': make another", .wanted.0, .wanted.1, .got.0, .got.1
     )]
     OtherMap {
         /// Width and height of the baker's maps, in texels.

@@ -148,7 +148,7 @@ impl<'a> Files<'a> {
             return fault(ShapeFault::LayerCount { got: array.layers().len(), wanted: wanted.len() });
         }
         for (layer, spec) in array.layers().iter().zip(wanted) {
-            let (got, wanted) = (layer.levels()[0].channels(), spec.channels.len());
+            let (got, wanted) = (layer.finest().channels(), spec.channels.len());
             // A block-compressed normal has lost its third channel and the filler; no other channels may be missing.
             let short_normal = array.info.part == Part::Normal && got == 2;
             if got < wanted && !short_normal {
@@ -239,5 +239,5 @@ impl RowLoader<'_> {
 
 /// Total number of channels of all layers of a file.
 fn channels_of(array: &TextureArray) -> usize {
-    array.layers().iter().map(|layer| layer.levels()[0].channels()).sum()
+    array.layers().iter().map(|layer| layer.finest().channels()).sum()
 }

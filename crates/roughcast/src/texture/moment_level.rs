@@ -19,7 +19,7 @@ use crate::moments::Moments;
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "Parts", into = "Parts")
+    serde(try_from = "UncheckedLevel")
 )]
 pub struct MomentLevel {
     width: usize,
@@ -61,29 +61,21 @@ impl MomentLevel {
     }
 }
 
-/// The serialized form of a level.
+/// A level as read, before its number of moments is checked.
 #[cfg(feature = "serde")]
-#[derive(serde::Serialize, serde::Deserialize)]
-struct Parts {
+#[derive(serde::Deserialize)]
+struct UncheckedLevel {
     width: usize,
     height: usize,
     moments: Vec<Moments>,
 }
 
 #[cfg(feature = "serde")]
-impl From<MomentLevel> for Parts {
-    fn from(level: MomentLevel) -> Self {
-        let MomentLevel { width, height, moments } = level;
-        Self { width, height, moments }
-    }
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<Parts> for MomentLevel {
+impl TryFrom<UncheckedLevel> for MomentLevel {
     type Error = ShapeFault;
 
-    fn try_from(parts: Parts) -> Result<Self, ShapeFault> {
-        Self::new(parts.width, parts.height, parts.moments)
+    fn try_from(level: UncheckedLevel) -> Result<Self, ShapeFault> {
+        Self::new(level.width, level.height, level.moments)
     }
 }
 
