@@ -87,8 +87,7 @@ impl Distribution {
     /// the bumps. A z below [`LEAST_NORMAL_Z`] is raised to it.
     #[inline]
     pub fn of_normal(normal: Normal) -> Self {
-        let z = normal.z.max(LEAST_NORMAL_Z);
-        Self::new(normal, Slope { x: normal.x / z, y: normal.y / z }, Covariance::default())
+        Self::new(normal, slope_of_filtered(normal), Covariance::default())
     }
 
     /// One Gaussian; the filtered normal is the unit normal of the mean slope.
@@ -188,6 +187,44 @@ impl Distribution {
         self.normal = Normal { x: x * scale, y: y * scale, z: turned.z * scale };
         self
     }
+
+    /// The distribution with this covariance added to every Gaussian: that of other, independent bumps of mean zero.
+    #[must_use]
+    pub fn widened(mut self, covariance: Covariance) -> Self {
+        for gaussian in &mut self.gaussians[..self.count] {
+            gaussian.covariance = gaussian.covariance + covariance;
+        }
+        self
+    }
+
+    /// The distribution of the sum of two independent slopes: of bumps on top of others. Means and covariances add. Of two
+    /// distributions with several Gaussians, the one with fewer, or else `other`, is taken as a whole. The covariances contain the base
+    /// roughness if one of the two did.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        if self.count < other.count {
+            return other.plus(self);
+        }
+        let mut sum = self.widened(other.whole().covariance);
+        let shift = other.whole().mean;
+        for gaussian in &mut sum.gaussians[..sum.count] {
+            gaussian.mean = gaussian.mean + shift;
+        }
+        let slope = slope_of_filtered(self.normal) + slope_of_filtered(other.normal);
+        let Normal { x, y, z } = normal_from_slope(slope);
+        let length = self.normal.length() * other.normal.length();
+        sum.normal = Normal { x: x * length, y: y * length, z: z * length };
+        if other.base == Base::Baked {
+            sum.base = Base::Baked;
+        }
+        sum
+    }
+}
+
+/// The slope of a filtered normal of any length.
+fn slope_of_filtered(Normal { x, y, z }: Normal) -> Slope {
+    let z = z.max(LEAST_NORMAL_Z);
+    Slope { x: x / z, y: y / z }
 }
 
 #[cfg(test)]
@@ -224,6 +261,30 @@ mod tests {
                 (1..=MAX_GAUSSIANS).contains(&count).then_some(count)
             );
         }
+    }
+
+    #[test]
+    fn moments_of_independent_slopes_add() {
+        let part = |weight, x, variance| WeightedGaussian {
+            weight,
+            mean: Slope { x, y: 0.1 },
+            covariance: Covariance::isotropic(variance),
+        };
+        let two = Distribution::mixture(&[part(0.25, -0.6, 0.02), part(0.75, 0.2, 0.04)]).expect("two parts");
+        let one =
+            Distribution::gaussian(Slope { x: 0.3, y: -0.2 }, Covariance { xx: 0.03, yy: 0.01, xy: 0.005 });
+        for sum in [two.plus(one), one.plus(two)] {
+            assert_eq!(sum.gaussians().len(), 2);
+            let (whole, a, b) = (sum.whole(), two.whole(), one.whole());
+            let mean = whole.mean - (a.mean + b.mean);
+            let covariance = whole.covariance - (a.covariance + b.covariance);
+            assert!(mean.x.abs().max(mean.y.abs()) < ROUNDING, "{sum:?}");
+            assert!(covariance.trace().abs().max(covariance.xy.abs()) < ROUNDING, "{sum:?}");
+            let Slope { x, y } = slope_of_filtered(sum.normal());
+            assert!((x - whole.mean.x).abs() < ROUNDING && (y - whole.mean.y).abs() < ROUNDING, "{sum:?}");
+        }
+        assert_eq!(one.plus(one.with_base(Base::Baked)).base(), Base::Baked);
+        assert_eq!(one.with_base(Base::Baked).plus(one).base(), Base::Baked);
     }
 
     #[test]

@@ -41,8 +41,12 @@ fn distribution_of_slope(slope: vec2f) -> Distribution {
 
 // The slope of a filtered normal of any length, without any spread: the conventional method, which loses the bumps.
 fn distribution_of_normal(normal: vec3f) -> Distribution {
-    let slope = normal.xy / max(normal.z, LEAST_NORMAL_Z);
-    return one_gaussian(normal, slope, vec3f(0.0), MAPS_WITHOUT_BASE);
+    return one_gaussian(normal, filtered_slope(normal), vec3f(0.0), MAPS_WITHOUT_BASE);
+}
+
+// The slope of a filtered normal of any length.
+fn filtered_slope(normal: vec3f) -> vec2f {
+    return normal.xy / max(normal.z, LEAST_NORMAL_Z);
 }
 
 // A Gaussian's part of the mean slope of the whole.
@@ -66,4 +70,63 @@ fn whole_gaussian(distribution: Distribution) -> WeightedGaussian {
     let sigma = weighted_covariance(distribution.first, mean) + weighted_covariance(distribution.second, mean)
         + weighted_covariance(distribution.third, mean) + weighted_covariance(distribution.fourth, mean);
     return WeightedGaussian(mean, sigma.xy, sigma.z, 1.0);
+}
+
+// A Gaussian in another frame: new slope = matrix * old slope.
+fn transformed_gaussian(gaussian: WeightedGaussian, matrix: mat2x2f) -> WeightedGaussian {
+    let sigma = mat2x2f(gaussian.variance.x, gaussian.covariance, gaussian.covariance, gaussian.variance.y);
+    let turned = matrix * sigma * transpose(matrix);
+    return WeightedGaussian(
+        matrix * gaussian.mean, vec2f(turned[0].x, turned[1].y), turned[0].y, gaussian.weight,
+    );
+}
+
+// The distribution in another frame of the same tangent plane. The filtered normal keeps its length.
+fn transformed_distribution(distribution: Distribution, matrix: mat2x2f) -> Distribution {
+    let turned = vec3f(matrix * distribution.normal.xy, distribution.normal.z);
+    let squared = dot(turned, turned);
+    let scale = select(0.0, length(distribution.normal) * inverseSqrt(squared), squared > 1e-37);
+    return Distribution(
+        turned * scale,
+        distribution.base,
+        transformed_gaussian(distribution.first, matrix),
+        transformed_gaussian(distribution.second, matrix),
+        transformed_gaussian(distribution.third, matrix),
+        transformed_gaussian(distribution.fourth, matrix),
+    );
+}
+
+// A Gaussian moved by a slope and widened by a covariance (xx, yy, xy); a place that holds none stays empty.
+fn moved_gaussian(gaussian: WeightedGaussian, mean: vec2f, sigma: vec3f) -> WeightedGaussian {
+    let held = select(0.0, 1.0, gaussian.weight > 0.0);
+    return WeightedGaussian(
+        gaussian.mean + held * mean, gaussian.variance + held * sigma.xy, gaussian.covariance + held * sigma.z, gaussian.weight,
+    );
+}
+
+// The distribution with this covariance (xx, yy, xy) added to every Gaussian: that of independent bumps of mean zero.
+fn widened_distribution(distribution: Distribution, sigma: vec3f) -> Distribution {
+    return Distribution(
+        distribution.normal,
+        distribution.base,
+        moved_gaussian(distribution.first, vec2f(0.0), sigma),
+        moved_gaussian(distribution.second, vec2f(0.0), sigma),
+        moved_gaussian(distribution.third, vec2f(0.0), sigma),
+        moved_gaussian(distribution.fourth, vec2f(0.0), sigma),
+    );
+}
+
+// The distribution of the sum of two independent slopes: of bumps on top of others. The second is taken as a whole.
+fn distribution_sum(one: Distribution, other: Distribution) -> Distribution {
+    let whole = whole_gaussian(other);
+    let sigma = vec3f(whole.variance, whole.covariance);
+    let slope = filtered_slope(one.normal) + filtered_slope(other.normal);
+    return Distribution(
+        slope_normal(slope) * (length(one.normal) * length(other.normal)),
+        max(one.base, other.base),
+        moved_gaussian(one.first, whole.mean, sigma),
+        moved_gaussian(one.second, whole.mean, sigma),
+        moved_gaussian(one.third, whole.mean, sigma),
+        moved_gaussian(one.fourth, whole.mean, sigma),
+    );
 }

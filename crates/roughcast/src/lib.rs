@@ -111,6 +111,7 @@ mod setters;
 pub mod shading;
 mod slope;
 mod source;
+pub mod surface_gradient;
 mod survey;
 pub mod texture;
 mod vectorised;

@@ -41,6 +41,7 @@ mod calls;
 mod facet;
 mod footprint;
 mod gaussian;
+mod geometric;
 mod ggx;
 mod masking;
 mod mixture;
@@ -68,6 +69,7 @@ pub use gaussian::{
     LARGEST_EXPONENT, LEAST_VARIANCE, SlopeGaussian, gaussian_lobe, gaussian_visible_part, slope_gaussian,
     squared_deviations,
 };
+pub use geometric::{GeometricFilter, geometric_covariance};
 pub use ggx::{
     GgxSurface, PrincipalAxes, ggx_lambda, ggx_lobe, ggx_surface, ggx_visible_part, principal_axes,
 };

@@ -117,6 +117,22 @@ pub const MODULES: &[Module] = &[
         role: Role::Part,
     },
     Module {
+        name: "surface-gradient",
+        source: include_str!("../surface_gradient.wgsl"),
+        needs: &[],
+        summary: "bump mapping without a parametrization of the surface",
+        citation: "Mikkelsen, Bump Mapping Unparametrized Surfaces on the GPU, 2010",
+        role: Role::Companion,
+    },
+    Module {
+        name: "geometric",
+        source: include_str!("../shading/geometric.wgsl"),
+        needs: &[],
+        summary: "geometric specular antialiasing: the curvature under a pixel as roughness",
+        citation: "Tokuyoshi & Kaplanyan, Improved Geometric Specular Antialiasing, 2019",
+        role: Role::Companion,
+    },
+    Module {
         name: "masking",
         source: include_str!("../shading/masking.wgsl"),
         needs: &[],
