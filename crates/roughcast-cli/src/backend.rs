@@ -1,5 +1,6 @@
 //! The renderers of `render`: textures sampled on the CPU, the ground truth, or the GPU.
 
+mod bumps;
 #[cfg(feature = "gpu")]
 mod gpu;
 
@@ -9,10 +10,11 @@ use anyhow::Result;
 use indicatif::ProgressBar;
 use roughcast::shading::{Shading, ShadingOptions};
 use roughcast_scene::render::{Method, Truth};
-use roughcast_scene::{BakedTextures, Picture, Sampler, Scene, SlopeDetail};
+use roughcast_scene::{Picture, Scene};
 
+pub use bumps::{MapBumps, Projected, SceneBumps};
 #[cfg(feature = "gpu")]
-pub use gpu::GpuBackend;
+pub use gpu::{GpuBackend, GpuBumps, GpuMap};
 
 /// One way to render a scene. All pictures of one renderer have the same size.
 pub enum Backend {
@@ -33,15 +35,14 @@ impl Backend {
         };
         match self {
             Self::Method(backend) => {
-                let MethodBackend { shading, textures, sampler, options, size } = backend;
-                let method =
-                    Method { shading: *shading, detail: &textures.sampled(*sampler), options: *options };
+                let MethodBackend { shading, bumps, options, size } = backend;
+                let method = Method { shading: *shading, detail: bumps, options: *options };
                 Ok(method.render(scene, *size, &watch)?)
             }
             Self::GroundTruth(backend) => {
                 let truth = Truth {
                     shading: backend.shading,
-                    detail: &backend.detail,
+                    detail: &backend.bumps,
                     options: backend.options,
                     samples: backend.samples,
                 };
@@ -53,18 +54,17 @@ impl Backend {
     }
 }
 
-/// One sample per pixel of filtered textures, on the CPU.
+/// One sample per pixel of filtered bumps, on the CPU.
 pub struct MethodBackend {
     pub shading: Shading,
-    pub textures: BakedTextures,
-    pub sampler: Sampler,
+    pub bumps: SceneBumps,
     pub options: ShadingOptions,
     pub size: (u32, u32),
 }
 
-/// Many samples per pixel of the finest level.
+/// Many samples per pixel of exact slopes.
 pub struct GroundTruthBackend {
-    pub detail: SlopeDetail,
+    pub bumps: SceneBumps,
     pub shading: Shading,
     pub options: ShadingOptions,
     pub samples: u32,

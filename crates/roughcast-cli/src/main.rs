@@ -9,6 +9,7 @@ mod bake;
 mod batch;
 #[cfg(feature = "gpu")]
 mod bench;
+mod bumps;
 mod compare;
 mod display;
 mod fault;

@@ -8,22 +8,29 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use clap::ValueHint;
-use roughcast::shading::Shading;
+use roughcast::Kind;
+use roughcast::shading::{Material, Shading};
 use roughcast::texture::TextureArray;
 use roughcast_io::picture::{Plane, write_exr, write_png};
 use roughcast_io::texture_files::is_same_file;
 use roughcast_io::{AtomicFile, AtomicSet};
 use roughcast_pipeline::{Map, bake_for};
 use roughcast_scene::render::MAX_SAMPLES;
-use roughcast_scene::{BakedTextures, Filter, Picture, Sampler, Scene, SlopeDetail, SlopeMap};
+use roughcast_scene::{
+    BakedTextures, Filter, HeightDetail, HeightMap, Picture, Sampler, Scene, SlopeDetail, SlopeMap, View,
+    height_texture, repeats_per_length,
+};
 
 use crate::args::{SourceArgs, one_of, positive};
+use crate::backend::{Backend, GroundTruthBackend, MapBumps, MethodBackend, Projected, SceneBumps};
 #[cfg(feature = "gpu")]
-use crate::backend::GpuBackend;
-use crate::backend::{Backend, GroundTruthBackend, MethodBackend};
+use crate::backend::{GpuBackend, GpuBumps, GpuMap};
+use crate::bumps::{Bump, BumpArgs, FrameChoice};
 use crate::display::{exposure_of, shown};
 use crate::input::read_map;
-use crate::scene_args::{CameraArgs, SHADING, SceneArgs, ShadingArgs, Size, size};
+use crate::scene_args::{
+    CameraArgs, CameraChoice, SHADING, SceneArgs, ShadingArgs, Size, TextureCoordinates, size,
+};
 use crate::{UsageError, findings, progress, say, scene_args, textures, usage};
 
 /// Render a map on a shape with LEAN, with conventional methods, or as ground truth.
@@ -39,11 +46,14 @@ Examples:
     roughcast render bricks_normal.png -o before.png --shading blinn-phong
     roughcast render bricks_normal.png -o truth.png --filter truth:256
   On a model, by the graphics card:
-    roughcast render bricks_normal.png -o pot.png --scene teapot.obj --gpu")]
+    roughcast render bricks_normal.png -o pot.png --scene teapot.obj --gpu
+  A model without texture coordinates: a map projected along the three axes, or procedural noise:
+    roughcast render bricks_normal.png -o bunny.png --scene bunny.obj --frame triplanar
+    roughcast render -o lava.png --scene bunny.obj --bump noise:turbulence:6")]
 pub struct Args {
-    /// A normal or height map, or a file that `bake` wrote
+    /// A normal or height map, or a file that `bake` wrote; none for noise alone
     #[arg(value_hint = ValueHint::FilePath)]
-    map: PathBuf,
+    map: Option<PathBuf>,
 
     /// The picture to write, .png or .exr; with --frames the folder
     #[arg(short, long, value_name = "PATH", value_hint = ValueHint::AnyPath)]
@@ -65,6 +75,9 @@ pub struct Args {
     /// Sample this many levels coarser than the distance requires
     #[arg(long, value_name = "B", default_value_t = 0.0, value_parser = bias, allow_negative_numbers = true, help_heading = SHADING)]
     mip_bias: f64,
+
+    #[command(flatten)]
+    bumps: BumpArgs,
 
     #[command(flatten)]
     shading_options: ShadingArgs,
@@ -179,7 +192,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     args.check()?;
     let subject = args.subject()?;
     let material = args.shading_options.material();
-    let scene = args.camera.scene(&args.scene, subject.texels(), args.size, material)?;
+    let scene = args.scene_of(&subject, material)?;
     let mut backend = args.backend(&subject, &scene)?;
     match args.frames {
         None => {
@@ -206,7 +219,7 @@ impl Args {
     fn check(&self) -> Result<()> {
         if self.frames.is_none() {
             PictureFormat::of(&self.output)?;
-            if is_same_file(&self.output, &self.map) {
+            if self.map.as_ref().is_some_and(|map| is_same_file(&self.output, map)) {
                 return Err(usage(
                     &self.output,
                     "it is the map, which would be lost: give the output another name",
@@ -228,7 +241,30 @@ impl Args {
             let line = "--gpu filters as the hardware does: nearest, trilinear or anisotropic; leave --gpu out for the others";
             return Err(UsageError(line.to_owned()).into());
         }
+        self.bumps.of_map(self.map.is_some())?;
         Ok(())
+    }
+
+    /// The scene. Projected maps repeat per unit of length, others over the scene's texture coordinates.
+    fn scene_of(&self, subject: &Subject, material: Material) -> Result<Scene> {
+        let projected = self.bumps.frame == FrameChoice::Triplanar;
+        let coordinates = match subject {
+            Subject::Nothing => TextureCoordinates::Unneeded,
+            _ if projected => TextureCoordinates::Unneeded,
+            _ => TextureCoordinates::Needed,
+        };
+        let texels = subject.texels();
+        let mut scene = self.camera.scene(&self.scene, texels, self.size, material, coordinates)?;
+        if projected && self.camera.repeat.is_none() {
+            let view = match self.camera.camera {
+                CameraChoice::View(view) => view,
+                CameraChoice::Eye(_) => View::Mid,
+            };
+            let size = (self.size.width, self.size.height);
+            let per_pixel = view.texels_per_pixel();
+            scene.repeats = repeats_per_length(&scene.shape, &scene.camera, texels.0, size, per_pixel);
+        }
+        Ok(scene)
     }
 
     /// The exposure of a picture. All frames use the first one's, since they would flicker otherwise.
@@ -238,65 +274,162 @@ impl Args {
 
     /// What lies on the shape.
     fn subject(&self) -> Result<Subject> {
+        let Some(path) = &self.map else { return Ok(Subject::Nothing) };
         let limits = self.source.limits();
-        if textures::is_baked(&self.map, &limits) {
-            return Ok(Subject::Baked(textures::read_with_parts(&self.map, &limits)?));
+        if textures::is_baked(path, &limits) {
+            return Ok(Subject::Baked(textures::read_with_parts(path, &limits)?));
         }
-        let map = read_map(&self.map, &self.source)?;
-        findings::warn_of(&self.map, &map);
+        let map = read_map(path, &self.source)?;
+        findings::warn_of(path, &map);
         Ok(Subject::Map(Box::new(map)))
     }
 
-    /// The renderer, with the textures that it needs.
+    /// The path of the map, for errors about it.
+    fn map_path(&self) -> &Path {
+        self.map.as_deref().unwrap_or(Path::new(""))
+    }
+
+    /// The renderer, with the bumps that it needs.
     fn backend(&self, subject: &Subject, scene: &Scene) -> Result<Backend> {
-        let named = || self.map.display().to_string();
         let size = (self.size.width, self.size.height);
         let options = self.shading_options.shading_options();
         let shading = self.model(subject)?;
-        let filter = match (self.filter, subject) {
-            (FilterChoice::Truth(samples), Subject::Map(map)) => {
-                let slopes = SlopeMap::of(&map.image, &map.options).with_context(named)?;
-                let detail = SlopeDetail::new(slopes, map.options.wrap);
-                return Ok(Backend::GroundTruth(GroundTruthBackend {
-                    detail,
-                    shading,
-                    options,
-                    samples,
-                    size,
-                }));
-            }
-            (FilterChoice::Truth(_), Subject::Baked(_)) => {
-                let line = "--filter truth needs the original map, because a baked file contains averages: give the map that it was \
-                            made from";
-                return Err(usage(&self.map, line));
-            }
-            (FilterChoice::Textures(filter), _) => filter,
-        };
-        let (arrays, wrap) = match subject {
-            Subject::Map(map) => {
-                let textures = self.shading_options.texture_options();
-                let arrays = bake_for(shading, &map.image, &map.options, textures).with_context(named)?;
-                (Cow::Owned(arrays), map.options.wrap)
-            }
-            Subject::Baked(arrays) => (Cow::Borrowed(arrays), arrays[0].info.wrap),
-        };
-        let sampler = Sampler::default()
-            .with_filter(filter)
-            .with_level(self.level)
-            .with_mip_bias(self.mip_bias)
-            .with_wrap(wrap);
-        #[cfg(not(feature = "gpu"))]
-        let _ = scene; // only the GPU's renderer needs the shape in advance
+        let bump = self.bumps.of_map(self.map.is_some())?;
+        let sampler = self.sampler(subject);
         #[cfg(feature = "gpu")]
         if self.gpu {
-            let draw_options = roughcast_gpu::render::DrawOptions::default()
-                .with_sampler(sampler)
-                .with_shading_options(options);
-            let backend = GpuBackend::new(shading, &arrays, &draw_options, scene, size)?;
-            return Ok(Backend::Gpu(Box::new(backend)));
+            return self.gpu_backend(subject, scene, shading, bump, sampler);
         }
-        let textures = BakedTextures::of_model(shading, &arrays).with_context(named)?;
-        Ok(Backend::Method(MethodBackend { shading, textures, sampler, options, size }))
+        let bumps = |map| -> Result<SceneBumps> {
+            let projected = match self.bumps.frame {
+                FrameChoice::Triplanar => Projected::Triplanar,
+                _ => Projected::No,
+            };
+            let noise = self.bumps.noise(scene.shape.bounds().radius)?;
+            Ok(SceneBumps { map, projected, noise, curvature: self.bumps.curvature() })
+        };
+        let placement = self.bumps.placement(texel_size(subject, scene));
+        let named = || self.map_path().display().to_string();
+        let map = match (bump, subject) {
+            (None | Some(Bump::Noise(_)), _) | (_, Subject::Nothing) => MapBumps::None,
+            (Some(Bump::Height(derivative)), _) => {
+                let map = self.height_map(subject)?;
+                let heights = HeightMap::of(&map.image, &map.options).with_context(named)?;
+                MapBumps::Heights(HeightDetail {
+                    derivative,
+                    sampler,
+                    placement,
+                    ..HeightDetail::new(heights)
+                })
+            }
+            (Some(Bump::Normal), Subject::Map(map)) if self.samples().is_some() => {
+                let slopes = SlopeMap::of(&map.image, &map.options).with_context(named)?;
+                MapBumps::Slopes(SlopeDetail::new(slopes, map.options.wrap).placed(placement))
+            }
+            (Some(Bump::Normal), Subject::Baked(_)) if self.samples().is_some() => {
+                let line = "--filter truth needs the original map, because a baked file contains averages: give the map that it was \
+                            made from";
+                return Err(usage(self.map_path(), line));
+            }
+            (Some(Bump::Normal), _) => {
+                let arrays = self.arrays(subject, shading)?;
+                let textures = BakedTextures::of_model(shading, &arrays).with_context(named)?;
+                MapBumps::Textures { textures, sampler, placement }
+            }
+        };
+        let bumps = bumps(map)?;
+        Ok(match self.samples() {
+            Some(samples) => {
+                Backend::GroundTruth(GroundTruthBackend { bumps, shading, options, samples, size })
+            }
+            None => Backend::Method(MethodBackend { shading, bumps, options, size }),
+        })
+    }
+
+    /// The renderer on the GPU.
+    #[cfg(feature = "gpu")]
+    fn gpu_backend(
+        &self,
+        subject: &Subject,
+        scene: &Scene,
+        shading: Shading,
+        bump: Option<Bump>,
+        sampler: Sampler,
+    ) -> Result<Backend> {
+        use roughcast_gpu::render::{DrawOptions, GpuPlacement};
+
+        let named = || self.map_path().display().to_string();
+        let draw_options = DrawOptions::default()
+            .with_sampler(sampler)
+            .with_shading_options(self.shading_options.shading_options())
+            .with_curvature(self.bumps.curvature());
+        let (arrays, heights);
+        let map = match (bump, subject) {
+            (None | Some(Bump::Noise(_)), _) | (_, Subject::Nothing) => GpuMap::None,
+            (Some(Bump::Height(derivative)), _) => {
+                let map = self.height_map(subject)?;
+                heights = height_texture(&map.image, &map.options).with_context(named)?;
+                GpuMap::Heights(&heights, derivative)
+            }
+            (Some(Bump::Normal), _) => {
+                arrays = self.arrays(subject, shading)?;
+                GpuMap::Textures(&arrays)
+            }
+        };
+        let mut placement = GpuPlacement::from(self.bumps.placement(texel_size(subject, scene)));
+        if self.bumps.frame == FrameChoice::Triplanar {
+            placement = placement.triplanar();
+        }
+        let noise = self.bumps.gpu_noise(scene.shape.bounds().radius)?;
+        let bumps = GpuBumps { map, placement, uv_set: self.bumps.uv_set, noise };
+        let size = (self.size.width, self.size.height);
+        Ok(Backend::Gpu(Box::new(GpuBackend::new(shading, &bumps, &draw_options, scene, size)?)))
+    }
+
+    /// Samples per pixel of the ground truth, if it is rendered.
+    fn samples(&self) -> Option<u32> {
+        match self.filter {
+            FilterChoice::Truth(samples) => Some(samples),
+            FilterChoice::Textures(_) => None,
+        }
+    }
+
+    /// How textures are sampled.
+    fn sampler(&self, subject: &Subject) -> Sampler {
+        let wrap = match subject {
+            Subject::Map(map) => map.options.wrap,
+            Subject::Baked(arrays) => arrays[0].info.wrap,
+            Subject::Nothing => Sampler::default().wrap,
+        };
+        let sampler = match self.filter {
+            FilterChoice::Textures(filter) => Sampler::default().with_filter(filter),
+            FilterChoice::Truth(_) => Sampler::default(),
+        };
+        sampler.with_level(self.level).with_mip_bias(self.mip_bias).with_wrap(wrap)
+    }
+
+    /// The height map among the subjects.
+    fn height_map<'s>(&self, subject: &'s Subject) -> Result<&'s Map> {
+        match subject {
+            Subject::Map(map) if map.options.kind == Kind::Height => Ok(map),
+            _ => Err(usage(
+                self.map_path(),
+                "--bump height needs a height map: give one, or use --bump normal; if it is one, say --kind height",
+            )),
+        }
+    }
+
+    /// The textures of the model.
+    fn arrays<'s>(&self, subject: &'s Subject, shading: Shading) -> Result<Cow<'s, [TextureArray]>> {
+        match subject {
+            Subject::Map(map) => {
+                let textures = self.shading_options.texture_options();
+                let arrays = bake_for(shading, &map.image, &map.options, textures);
+                Ok(Cow::Owned(arrays.with_context(|| self.map_path().display().to_string())?))
+            }
+            Subject::Baked(arrays) => Ok(Cow::Borrowed(arrays)),
+            Subject::Nothing => Ok(Cow::Borrowed(&[])),
+        }
     }
 
     /// The model: the named one, or else LEAN's for a map, and for a baked file the one that samples its layout.
@@ -306,7 +439,7 @@ impl Args {
         match self.shading {
             Some(shading) if shading.layout() == layout => Ok(shading),
             Some(shading) => Err(usage(
-                &self.map,
+                self.map_path(),
                 &format!(
                     "it contains the layout '{layout}', and the model '{shading}' samples '{}': leave --shading out, or bake \
                      with --as {0}",
@@ -317,7 +450,7 @@ impl Args {
             None => Shading::ALL.iter().rev().copied().find(|shading| shading.layout() == layout).ok_or_else(
                 || {
                     usage(
-                        &self.map,
+                        self.map_path(),
                         &format!("no shading model samples the layout '{layout}': give the map instead"),
                     )
                 },
@@ -328,6 +461,8 @@ impl Args {
 
 /// What lies on the shape.
 enum Subject {
+    /// No map: noise alone.
+    Nothing,
     Map(Box<Map>),
     /// All textures of one bake.
     Baked(Vec<TextureArray>),
@@ -337,10 +472,16 @@ impl Subject {
     /// Width and height of level 0.
     fn texels(&self) -> (usize, usize) {
         match self {
+            Subject::Nothing => (1, 1),
             Subject::Map(map) => (map.image.width(), map.image.height()),
             Subject::Baked(arrays) => arrays[0].size(),
         }
     }
+}
+
+/// The size of a texel in the scene, where a map repeats per unit of length.
+fn texel_size(subject: &Subject, scene: &Scene) -> f64 {
+    (subject.texels().0 as f64 * scene.repeats).recip()
 }
 
 /// Writes all frames, or none.

@@ -51,25 +51,32 @@ impl SceneChoice {
         }
     }
 
-    /// The shape; a mesh is loaded from its file.
-    pub fn shape(&self) -> Result<Shape> {
+    /// The shape; a mesh is loaded from its file, and must have texture coordinates if they are needed.
+    pub fn shape(&self, coordinates: TextureCoordinates) -> Result<Shape> {
         Ok(match self {
             Self::Plane => Shape::Plane(Plane::default()),
             Self::Sphere => Shape::Sphere(Sphere),
             Self::Torus => Shape::Torus(Torus::default()),
             Self::Mesh(path) => {
                 let mesh = load_mesh(path).with_context(|| path.display().to_string())?;
-                if !mesh.has_texture_coordinates() {
+                if coordinates == TextureCoordinates::Needed && !mesh.has_texture_coordinates() {
                     return Err(usage(
                         path,
-                        "the mesh has no texture coordinates, which a map needs: unwrap it in a modelling program \
-                         and export it with texture coordinates",
+                        "the mesh has no texture coordinates, which a map needs: use `render` with --frame triplanar, or unwrap the \
+                         mesh in a modelling program and export it with texture coordinates",
                     ));
                 }
                 Shape::Mesh(Arc::new(mesh))
             }
         })
     }
+}
+
+/// Whether the surface is textured by its own coordinates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TextureCoordinates {
+    Needed,
+    Unneeded,
 }
 
 /// The camera position.
@@ -159,7 +166,7 @@ pub fn samples(text: &str) -> Result<u32, String> {
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = SCENE)]
 pub struct SceneArgs {
-    /// The surface: plane, sphere, torus, or a mesh file (.obj, .gltf, .glb) with texture coordinates
+    /// The surface: plane, sphere, torus, or a mesh file (.obj, .gltf, .glb), with texture coordinates if a map needs them
     #[arg(long, value_name = "SCENE", default_value = "plane", value_parser = SceneChoice::parse)]
     pub scene: SceneChoice,
 
@@ -220,8 +227,9 @@ impl CameraArgs {
         texels: (usize, usize),
         size: Size,
         material: Material,
+        coordinates: TextureCoordinates,
     ) -> Result<Scene> {
-        let shape = Arc::new(scene.scene.shape()?);
+        let shape = Arc::new(scene.scene.shape(coordinates)?);
         let mut seen = match self.camera {
             CameraChoice::View(view) => {
                 if self.look_at.is_some() || self.up.is_some() {

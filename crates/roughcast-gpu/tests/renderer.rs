@@ -11,8 +11,8 @@ use roughcast::texture::{Layout, Part, TextureInfo};
 use roughcast::{Anisotropy, BakeOptions, SampleType};
 use roughcast_gpu::bake::GpuBake;
 use roughcast_gpu::render::{
-    Bumps, DEPTH_FORMAT, DetailSource, DrawOptions, Geometry, GpuDetail, LevelOfDetail, RenderTarget,
-    Renderer, ShaderKey, Views, render, shader_source,
+    DEPTH_FORMAT, DetailSource, DrawOptions, Geometry, GpuDetail, RenderTarget, Renderer, ShaderKey, Views,
+    render, shader_source,
 };
 use roughcast_gpu::{Gpu, GpuError, Timestamps, read_back};
 use roughcast_scene::{Filter, Picture, Plane, Sampler, Scene, Shape, View, pattern};
@@ -55,12 +55,7 @@ fn shaders_sample_as_many_textures_as_the_model_has_inputs() {
     for shading in Shading::ALL {
         for anisotropy in [Anisotropy::Isotropic, Anisotropy::Anisotropic] {
             let reader = shading.layout().texel_reader(shading.wanted(), anisotropy).expect("its layout");
-            let key = ShaderKey {
-                shading: *shading,
-                detail: DetailSource::Textures(reader),
-                level: LevelOfDetail::Derivatives,
-                bumps: Bumps::Filtered,
-            };
+            let key = ShaderKey::new(*shading, DetailSource::Textures(reader));
             let source = shader_source(key).expect("the library has it");
             assert_eq!(source.matches(": texture_2d<f32>;").count(), reader.inputs.len(), "{shading}");
             assert_eq!(source.matches("textureSampleBias(").count(), 1, "{shading}");

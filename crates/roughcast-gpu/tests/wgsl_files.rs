@@ -7,7 +7,10 @@ use roughcast::Anisotropy;
 use roughcast::shading::Shading;
 use roughcast::texture::Layout;
 use roughcast::wgsl::{MODULES, Role, library, library_of, renamed};
-use roughcast_gpu::render::{Bumps, DetailSource, LevelOfDetail, ShaderKey, shader_source};
+use roughcast_gpu::render::{
+    Bumps, Curvature, DetailSource, LevelOfDetail, Octaves, Projection, ShaderKey, SurfaceKey, shader_source,
+};
+use roughcast_scene::HeightDerivative;
 
 /// Parses and validates a module with every check that naga has.
 fn validate(source: &str) -> Result<(), String> {
@@ -52,6 +55,28 @@ fn every_module_of_the_library_is_valid_with_what_it_needs() {
     validate(&library_of(Role::Bake)).unwrap_or_else(|fault| panic!("the rules of baking: {fault}"));
 }
 
+/// Textures and heights in every projection, with and without noise and curvature; and noise alone.
+fn surfaces() -> Vec<ShaderKey> {
+    let reader =
+        Layout::Lean.texel_reader(Shading::Lean.wanted(), Anisotropy::Isotropic).expect("it has one");
+    let heights = HeightDerivative::ALL.iter().map(|derivative| DetailSource::Heights(*derivative));
+    let sources = [DetailSource::Textures(reader), DetailSource::Flat].into_iter().chain(heights);
+    let mut keys = Vec::new();
+    for source in sources {
+        for projection in [Projection::Mesh, Projection::Derivatives, Projection::Triplanar] {
+            for octaves in [Octaves::None, Octaves::Added] {
+                for curvature in [Curvature::Ignored, Curvature::Filtered] {
+                    let mut surface = SurfaceKey::default();
+                    (surface.projection, surface.octaves, surface.curvature) =
+                        (projection, octaves, curvature);
+                    keys.push(ShaderKey::new(Shading::Lean, source).with_surface(surface));
+                }
+            }
+        }
+    }
+    keys
+}
+
 #[test]
 fn every_shader_of_the_renderer_is_valid_and_has_all_of_its_files() {
     let mut sources = Vec::new();
@@ -62,13 +87,26 @@ fn every_shader_of_the_renderer_is_valid_and_has_all_of_its_files() {
             let Some(reader) = layout.texel_reader(shading.wanted(), anisotropy) else { continue };
             for level in [LevelOfDetail::Derivatives, LevelOfDetail::Fixed] {
                 for bumps in [Bumps::Filtered, Bumps::Resolved] {
-                    let key = ShaderKey { shading, detail: DetailSource::Textures(reader), level, bumps };
+                    let key = ShaderKey::new(shading, DetailSource::Textures(reader))
+                        .with_level(level)
+                        .with_bumps(bumps);
                     let source = shader_source(key).expect("the library has it");
                     validate(&source).unwrap_or_else(|fault| panic!("{layout}, {shading}: {fault}"));
                     sources.push(source);
                 }
             }
         }
+    }
+    let levels = [LevelOfDetail::Derivatives, LevelOfDetail::Fixed];
+    let every = |key: ShaderKey| {
+        levels.iter().flat_map(move |level| {
+            [Bumps::Filtered, Bumps::Resolved].map(|bumps| key.with_level(*level).with_bumps(bumps))
+        })
+    };
+    for key in surfaces().into_iter().flat_map(every) {
+        let source = shader_source(key).expect("the library has it");
+        validate(&source).unwrap_or_else(|fault| panic!("{key:?}: {fault}"));
+        sources.push(source);
     }
     assert!(sources.len() > 100, "{}", sources.len());
     // Any model in any layout: all detail modules, and all files of the renderer.

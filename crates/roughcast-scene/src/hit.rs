@@ -103,6 +103,18 @@ impl Frame {
         components / self.tangent.dot(across)
     }
 
+    /// The vectors whose dot products with a world-space vector are its x and y components in this frame: the axes
+    /// themselves in an orthonormal frame.
+    #[inline]
+    pub fn tangent_covectors(&self) -> [DVec3; 2] {
+        if self.orthonormal {
+            return [self.tangent, self.bitangent];
+        }
+        let across = self.bitangent.cross(self.normal);
+        let volume = self.tangent.dot(across);
+        [across / volume, self.normal.cross(self.tangent) / volume]
+    }
+
     /// The world-space vector with these components in this frame.
     #[inline]
     pub fn world_from_tangent(&self, v: DVec3) -> DVec3 {
@@ -141,6 +153,10 @@ pub struct Hit<'a> {
     pub dpds: DVec3,
     /// Derivative of the position with respect to t.
     pub dpdt: DVec3,
+    /// Derivative with respect to s of the shading normal on the front: the curvature of the surface.
+    pub dnds: DVec3,
+    /// Derivative with respect to t of the shading normal on the front.
+    pub dndt: DVec3,
     /// The texture coordinates.
     pub uv_sets: UvSets<'a>,
 }
@@ -213,6 +229,10 @@ mod tests {
             let back_and_there = frame.tangent_from_world(frame.world_from_tangent(v));
             assert!((there_and_back - v).length() < ROUNDING, "{frame:?}: {there_and_back}");
             assert!((back_and_there - v).length() < ROUNDING, "{frame:?}: {back_and_there}");
+            let by_covectors = frame.tangent_covectors().map(|covector| covector.dot(v));
+            let components = frame.tangent_from_world(v);
+            assert!((components.x - by_covectors[0]).abs() < ROUNDING, "{frame:?}");
+            assert!((components.y - by_covectors[1]).abs() < ROUNDING, "{frame:?}");
             for (axis, unit) in
                 [(frame.tangent(), DVec3::X), (frame.bitangent(), DVec3::Y), (frame.normal(), DVec3::Z)]
             {

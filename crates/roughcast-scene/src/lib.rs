@@ -54,6 +54,7 @@ mod detail;
 mod filter;
 mod footprint;
 mod hit;
+mod isosurface;
 mod light;
 mod mesh;
 #[cfg(feature = "render")]
@@ -76,18 +77,23 @@ mod views;
 pub use camera::{Camera, CameraError, PixelRays};
 #[cfg(feature = "render")]
 pub use detail::{
-    BakedTextures, Detail, DetailPoint, Reconstruction, Resolved, SlopeDetail, SlopeMap, TextureDetail,
+    BakedTextures, Combined, Curved, Decal, Detail, DetailPoint, HeightDetail, HeightMap, NoiseDetail,
+    Perturbation, Reconstruction, Resolved, SlopeDetail, SlopeMap, Strengthened, TextureDetail, Triplanar,
+    VolumeDerivative,
 };
-pub use detail::{DetailError, TextureInputs, model_inputs, texture_inputs};
+pub use detail::{
+    DetailError, HeightDerivative, TextureInputs, height_texture, model_inputs, texture_inputs,
+};
 #[cfg(feature = "render")]
 pub use filter::SummedAreaTable;
 pub use hit::{Footprint, Frame, Hit, Ray, Side};
+pub use isosurface::isosurface;
 pub use light::Light;
 pub use mesh::{MAX_TRIANGLES, MAX_VERTICES, Mesh, MeshFault};
 #[cfg(feature = "render")]
 pub use mipmap::{Level, Mipmap};
 pub use picture::{Picture, PictureError, luminance};
-pub use placement::Placement;
+pub use placement::{Placement, TangentSource};
 pub use render::MipmapError;
 pub use sampler::{Filter, Sampler};
 pub use scene::Scene;
@@ -95,4 +101,4 @@ pub use sequence::slow_move;
 pub use shape::{Bounds, MAX_DETAIL, Plane, Shape, ShapeError, Sphere, Torus, TriangleMesh};
 pub use slope_frame::SlopeFrame;
 pub use uv_sets::{UvPoint, UvSets};
-pub use views::{View, default_light, repeats};
+pub use views::{View, default_light, repeats, repeats_per_length};

@@ -1,4 +1,17 @@
-//! How a texture of slopes is placed on a surface: which texture coordinates it uses, and how high its bumps are.
+//! How a texture of slopes is placed on a surface: which texture coordinates it uses, where its tangents come from, and
+//! how high its bumps are.
+
+roughcast::named_enum! {
+    /// Where the tangents of bumps without a size come from.
+    #[non_exhaustive]
+    pub enum TangentSource: "source of tangents" {
+        /// The frame of the surface: the tangents of a mesh, from its file or by MikkTSpace. glTF's convention.
+        Mesh = "mesh",
+        /// The derivatives of position and texture coordinates at each point; the mesh needs no tangents. Schüler,
+        /// "Normal Mapping Without Precomputed Tangents", 2006.
+        Derivatives = "derivatives",
+    }
+}
 
 /// The texture coordinates that place a texture on a surface, and the height of its bumps.
 ///
@@ -6,10 +19,17 @@
 /// convention for normal maps: stretching a texture does not change the steepness of its bumps. With a world height the
 /// bumps have a size, and stretching, shearing and mirroring change them as they would change real bumps: see
 /// [`SlopeFrame`](crate::SlopeFrame).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
     uv_set: usize,
+    tangent_source: TangentSource,
     world_height_per_texel: Option<f64>,
+}
+
+impl Default for Placement {
+    fn default() -> Self {
+        Self { uv_set: 0, tangent_source: TangentSource::Mesh, world_height_per_texel: None }
+    }
 }
 
 impl Placement {
@@ -17,6 +37,12 @@ impl Placement {
     #[must_use]
     pub fn with_uv_set(self, uv_set: usize) -> Self {
         Self { uv_set, ..self }
+    }
+
+    /// The same placement with tangents from here. They matter only for bumps without a world height.
+    #[must_use]
+    pub fn with_tangent_source(self, tangent_source: TangentSource) -> Self {
+        Self { tangent_source, ..self }
     }
 
     /// The same placement with bumps of a size: the world-space height that corresponds to one texel of height.
@@ -30,8 +56,19 @@ impl Placement {
         self.uv_set
     }
 
+    /// Where the tangents of bumps without a size come from.
+    pub fn tangent_source(&self) -> TangentSource {
+        self.tangent_source
+    }
+
     /// The world-space height that corresponds to one texel of height, where bumps have a size.
     pub fn world_height_per_texel(&self) -> Option<f64> {
         self.world_height_per_texel
+    }
+
+    /// Whether slopes in the texture's frame are those in the surface's frame.
+    #[cfg(feature = "render")]
+    pub(crate) fn keeps_slopes(&self) -> bool {
+        self.world_height_per_texel.is_none() && self.tangent_source == TangentSource::Mesh
     }
 }

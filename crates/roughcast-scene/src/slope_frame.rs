@@ -24,12 +24,9 @@
 
 use glam::{DVec2, DVec3};
 use roughcast::SlopeMatrix;
+use roughcast::surface_gradient::{scale_free_gradients, slope_matrix, surface_basis, texture_gradients};
 
-use crate::{Hit, Placement, Side, UvPoint};
-
-/// Sine of the angle between dpds and dpdt, projected along the shading normal, below which the surface's area is too
-/// small to determine a direction.
-const MIN_SINE: f64 = 1e-10;
+use crate::{Hit, Placement, Side, TangentSource, UvPoint};
 
 /// How a texture of slopes is placed on a surface.
 ///
@@ -62,38 +59,34 @@ impl SlopeFrame {
 
     /// The matrix that transforms slopes in the texture's frame, in texels per texel, to the frame of the hit.
     ///
-    /// Without a world height it is the identity, as in glTF's normal maps: the texture's x and y are the tangent and
-    /// the bitangent, and stretching of the texture has no effect. Seen from behind, a bump is a dent, whose slopes in
+    /// With a world height, slopes are those of the displaced surface. Without one, bumps have no size, and the
+    /// [`TangentSource`] decides: the frame of the hit itself, where the matrix is the identity and stretching of the
+    /// texture has no effect, or the gradients of the texture coordinates. Seen from behind, a bump is a dent, whose slopes in
     /// the reversed frame are the same numbers.
     ///
     /// Always finite. All slopes become zero if the surface's own parametrization has no area (a pole), if the
     /// shading normal lies in the surface, if the texture coordinates are missing or constant, and
     /// if single floats cannot represent the result.
     pub fn matrix(&self, hit: &Hit<'_>) -> SlopeMatrix {
-        let Some(height) = self.placement.world_height_per_texel() else { return [[1.0, 0.0], [0.0, 1.0]] };
-        let normal = hit.frame.normal();
-        let (r1, r2) = (hit.dpdt.cross(normal), normal.cross(hit.dpds));
-        let det = hit.dpds.dot(r1);
-        if det.abs() <= MIN_SINE * hit.dpds.length() * hit.dpdt.length() {
-            return [[0.0; 2]; 2];
-        }
-        let UvPoint { ds, dt, .. } = hit.uv_sets.get(self.placement.uv_set());
-        // Change of the world-space height with u for a slope of one along x, and with v for a slope of one along y.
-        let (along_u, along_v) = (-height * self.texels_per_unit.x, height * self.texels_per_unit.y);
-        let slope = |change: DVec2| self.slope_of_gradient(hit, (r1 * change.x + r2 * change.y) / det);
-        let x = slope(DVec2::new(ds.x, dt.x) * along_u);
-        let y = slope(DVec2::new(ds.y, dt.y) * along_v);
-        let matrix = [[x.x as f32, y.x as f32], [x.y as f32, y.y as f32]];
-        if matrix.iter().flatten().all(|entry| entry.is_finite()) { matrix } else { [[0.0; 2]; 2] }
+        let (gradients, height_per_uv) =
+            match (self.placement.world_height_per_texel(), self.placement.tangent_source()) {
+                (Some(height), _) => (self.texture_gradients(hit), self.texels_per_unit * height),
+                (None, TangentSource::Derivatives) => {
+                    (scale_free_gradients(self.texture_gradients(hit)), DVec2::ONE)
+                }
+                (None, TangentSource::Mesh) => return [[1.0, 0.0], [0.0, 1.0]],
+            };
+        let height_per_uv = match hit.side {
+            Side::Front => height_per_uv,
+            Side::Back => -height_per_uv,
+        };
+        let [tangent, bitangent] = hit.frame.tangent_covectors();
+        slope_matrix(gradients, height_per_uv, tangent, bitangent)
     }
 
-    /// The slope, in the frame of the hit, of a surface displaced along the front's normal by heights with this surface
-    /// gradient.
-    fn slope_of_gradient(&self, hit: &Hit<'_>, gradient: DVec3) -> DVec2 {
-        let towards_slope = match hit.side {
-            Side::Front => -gradient,
-            Side::Back => gradient,
-        };
-        hit.frame.tangent_from_world(towards_slope).truncate()
+    /// The gradients of u and v on the surface.
+    fn texture_gradients(&self, hit: &Hit<'_>) -> [DVec3; 2] {
+        let UvPoint { ds, dt, .. } = hit.uv_sets.get(self.placement.uv_set());
+        texture_gradients(surface_basis(hit.dpds, hit.dpdt, hit.frame.normal()), ds, dt)
     }
 }

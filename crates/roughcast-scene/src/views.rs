@@ -4,7 +4,7 @@
 use std::f64::consts::FRAC_PI_4;
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use roughcast::shading::Material;
 
 use crate::{Camera, Footprint, Hit, Light, Plane, Ray, Scene, Shape};
@@ -99,19 +99,51 @@ pub fn repeats(
     size: (u32, u32),
     texels_per_pixel: f64,
 ) -> f64 {
-    let spans = grid(size).filter_map(|(x, y)| {
-        let hit = shape.hit(&camera.ray(x, y, size.0, size.1))?;
-        let right = camera.ray(x + 1.0, y, size.0, size.1);
-        let below = camera.ray(x, y + 1.0, size.0, size.1);
-        let span = narrow_side(hit.footprint(0, &right, &below), texels);
-        (span.is_finite() && span > 0.0).then_some(span)
+    let spans = pixels(shape, camera, size)
+        .map(|(hit, [right, below])| narrow_side(hit.footprint(0, &right, &below), texels));
+    middle(spans).map_or(1.0, |span| texels_per_pixel / span)
+}
+
+/// How often a map that is `texels` wide must repeat over a unit of length, such as a triplanar projection, for a pixel
+/// to span `texels_per_pixel` texels in its narrower direction, in the middle of what `camera` shows.
+pub fn repeats_per_length(
+    shape: &Shape,
+    camera: &Camera,
+    texels: usize,
+    size: (u32, u32),
+    texels_per_pixel: f64,
+) -> f64 {
+    let spans = pixels(shape, camera, size).map(|(hit, [right, below])| {
+        let Footprint { dx, dy } = hit.surface_footprint(&right, &below);
+        let [dx, dy] = [dx, dy].map(|st| hit.dpds * st.x + hit.dpdt * st.y);
+        let along = dx.normalize_or_zero();
+        let across = along.cross(hit.geometric_normal);
+        let in_plane = |v: DVec3| DVec2::new(v.dot(along), v.dot(across));
+        narrow_side(Footprint { dx: in_plane(dx), dy: in_plane(dy) }, (1, 1))
     });
-    median(spans.collect()).map_or(1.0, |span| texels_per_pixel / span)
+    middle(spans).map_or(1.0, |length| texels_per_pixel / (texels as f64 * length))
+}
+
+/// The hits of a grid of pixels, with the rays of their neighbours to the right and below.
+fn pixels<'s>(
+    shape: &'s Shape,
+    camera: &Camera,
+    size: (u32, u32),
+) -> impl Iterator<Item = (Hit<'s>, [Ray; 2])> + use<'s> {
+    let rays = camera.pixel_rays(size.0, size.1);
+    grid(size).filter_map(move |(x, y)| {
+        Some((shape.hit(&rays.ray(x, y))?, [rays.ray(x + 1.0, y), rays.ray(x, y + 1.0)]))
+    })
+}
+
+/// The median of those values that are finite and above zero.
+fn middle(values: impl Iterator<Item = f64>) -> Option<f64> {
+    median(values.filter(|value| value.is_finite() && *value > 0.0).collect())
 }
 
 /// Twice the shorter half axis of a footprint, in texels.
 fn narrow_side(footprint: Footprint, (width, height): (usize, usize)) -> f64 {
-    let scale = glam::DVec2::new(width as f64, height as f64);
+    let scale = DVec2::new(width as f64, height as f64);
     let (dx, dy) = (footprint.dx * scale, footprint.dy * scale);
     // The singular values of [dx dy], from the sum of their squares and their product.
     let (sum, product) = (dx.length_squared() + dy.length_squared(), dx.perp_dot(dy).abs());

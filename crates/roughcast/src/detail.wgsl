@@ -9,4 +9,5 @@ struct DetailPoint {
     uv: vec2f,          // texture coordinates, repeats included
     position: vec3f,    // in world space
     frame: mat3x3f,     // the tangent frame, in which slopes are: tangent, bitangent and normal, in world space
+    side: f32,          // 1 if the front is seen; -1 if the back is, where all three axes are reversed
 }

@@ -100,6 +100,7 @@ mod image;
 mod levels;
 mod moments;
 mod named;
+pub mod noise;
 mod options;
 mod parallel;
 pub mod precision;

@@ -2,11 +2,50 @@
 
 use anyhow::Result;
 use pollster::block_on;
+use roughcast::noise::{Noise, OctaveFilter};
 use roughcast::shading::Shading;
-use roughcast::texture::TextureArray;
-use roughcast_gpu::render::{DrawOptions, Drawing, Geometry, GpuDetail, RenderTarget, Renderer};
-use roughcast_gpu::{Gpu, GpuOptions, render};
-use roughcast_scene::{MAX_DETAIL, Picture, Scene};
+use roughcast::texture::{Texture, TextureArray};
+use roughcast_gpu::render::{
+    DrawOptions, Drawing, Geometry, GpuDetail, GpuPlacement, RenderTarget, Renderer,
+};
+use roughcast_gpu::{Gpu, GpuError, GpuOptions, render};
+use roughcast_scene::{HeightDerivative, MAX_DETAIL, Picture, Scene};
+
+/// A map as a source of bumps.
+pub enum GpuMap<'a> {
+    None,
+    Textures(&'a [TextureArray]),
+    Heights(&'a Texture, HeightDerivative),
+}
+
+/// All bumps of a scene.
+pub struct GpuBumps<'a> {
+    pub map: GpuMap<'a>,
+    pub placement: GpuPlacement,
+    pub uv_set: usize,
+    pub noise: Option<(Noise, OctaveFilter)>,
+}
+
+impl GpuBumps<'_> {
+    async fn detail(&self, gpu: &Gpu, shading: Shading) -> Result<GpuDetail, GpuError> {
+        let map = match (&self.map, self.noise) {
+            (GpuMap::Textures(arrays), _) => Some(GpuDetail::of_model(gpu, shading, arrays).await?),
+            (GpuMap::Heights(heights, derivative), _) => {
+                Some(GpuDetail::of_heights(gpu, shading, heights, *derivative).await?)
+            }
+            (GpuMap::None, _) => None,
+        };
+        Ok(match (map, self.noise) {
+            (Some(map), Some((noise, filter))) => map.placed(self.placement).with_noise(noise, filter),
+            (Some(map), None) => map.placed(self.placement),
+            (None, noise) => {
+                let (noise, filter) =
+                    noise.unwrap_or((Noise::default().with_amplitude(0.0), OctaveFilter::Fade));
+                GpuDetail::of_noise(shading, noise, filter)
+            }
+        })
+    }
+}
 
 /// The GPU.
 pub struct GpuBackend {
@@ -16,20 +55,20 @@ pub struct GpuBackend {
 }
 
 impl GpuBackend {
-    /// Uploads the textures and the scene's shape to the fastest GPU.
+    /// Uploads the map and the scene's shape to the fastest GPU.
     pub fn new(
         shading: Shading,
-        arrays: &[TextureArray],
+        bumps: &GpuBumps<'_>,
         options: &DrawOptions,
         scene: &Scene,
         size: (u32, u32),
     ) -> Result<Self> {
         block_on(async {
             let gpu = Gpu::new(&GpuOptions::default()).await?;
-            let textures = GpuDetail::of_model(&gpu, shading, arrays).await?;
-            let geometry = Geometry::new(&gpu, &scene.shape, MAX_DETAIL).await?;
+            let detail = bumps.detail(&gpu, shading).await?;
+            let geometry = Geometry::of_uv_set(&gpu, &scene.shape, MAX_DETAIL, bumps.uv_set).await?;
             let mut renderer = Renderer::new(&gpu, RenderTarget::Parts).await?;
-            let drawing = renderer.prepare(&geometry, &textures, options).await?;
+            let drawing = renderer.prepare(&geometry, &detail, options).await?;
             Ok(Self { renderer, drawing, size })
         })
     }

@@ -8,8 +8,8 @@ use roughcast::shading::{Material, Shading};
 use roughcast::{BakeOptions, Image, SampleType, Samples, SourceOptions, Wrap, normal_from_slope};
 use roughcast_gpu::bake::{BakePath, GpuBake, GpuBaker, bake_bandwidth};
 use roughcast_gpu::render::{
-    Bumps, DEPTH_FORMAT, DrawOptions, Drawing, Geometry, GpuDetail, LevelOfDetail, RenderTarget, Renderer,
-    ShaderKey, Views, shader_source,
+    DEPTH_FORMAT, DrawOptions, Drawing, Geometry, GpuDetail, RenderTarget, Renderer, ShaderKey, Views,
+    shader_source,
 };
 use roughcast_gpu::wgpu;
 use roughcast_gpu::{Gpu, Span, Timestamps};
@@ -160,12 +160,7 @@ impl PreparedMethod {
         let geometry = Geometry::new(&gpu, &scene.shape, 1).await?;
         let mut drawing = renderer.prepare(&geometry, &textures, &DrawOptions::default()).await?;
         drawing.set_view(renderer, &scene, size).await?;
-        let key = ShaderKey {
-            shading: timed_method.shading,
-            detail: textures.source(),
-            level: LevelOfDetail::Derivatives,
-            bumps: Bumps::Filtered,
-        };
+        let key = ShaderKey::new(timed_method.shading, textures.source());
         let instructions = count(&shader_source(key)?, "radiance")?;
         // Measured separately: between render passes, lavapipe's clock reports no time for a compute pass.
         let bake_nanoseconds = match timed_method.maps {

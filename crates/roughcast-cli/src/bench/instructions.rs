@@ -134,7 +134,7 @@ mod tests {
     use roughcast::Anisotropy;
     use roughcast::shading::Shading;
     use roughcast::texture::TexelReader;
-    use roughcast_gpu::render::{Bumps, DetailSource, LevelOfDetail, ShaderKey, shader_source};
+    use roughcast_gpu::render::{DetailSource, ShaderKey, shader_source};
 
     use super::*;
 
@@ -180,12 +180,7 @@ mod tests {
     #[test]
     fn models_read_their_textures_and_lean_costs_more_than_blinn_phong() {
         let counted = |shading: Shading| {
-            let key = ShaderKey {
-                shading,
-                detail: DetailSource::Textures(reader(shading)),
-                level: LevelOfDetail::Derivatives,
-                bumps: Bumps::Filtered,
-            };
+            let key = ShaderKey::new(shading, DetailSource::Textures(reader(shading)));
             count(&shader_source(key).expect("the library has it"), "radiance").expect("it is valid")
         };
         for shading in Shading::ALL {

@@ -23,7 +23,7 @@ use serde_json::Value;
 
 use crate::args::{REPORT, SourceArgs, one_of};
 use crate::input::read_map;
-use crate::scene_args::{SHADING, SceneArgs, ShadingArgs, Size, samples, size};
+use crate::scene_args::{SHADING, SceneArgs, ShadingArgs, Size, TextureCoordinates, samples, size};
 use crate::{UsageError, findings, progress, say, say_json, usage};
 use distribution::Distribution;
 use measure::{Comparison, Settings};
@@ -111,7 +111,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let subjects = [Subject::given(name, map, without_repeats(&args.views)), grooves, wool];
     let settings = Settings {
         scene: &args.scene,
-        shape: Arc::new(args.scene.scene.shape()?),
+        shape: Arc::new(args.scene.scene.shape(TextureCoordinates::Needed)?),
         shading: &args.shading,
         filters: without_repeats(&args.filters),
         size: args.size,

@@ -1,11 +1,16 @@
-//! `roughcast figures`: reproduces the figures of the LEAN paper, each with the claim that it must show and the numbers that
+//! `roughcast figures`: reproduces figures of the papers, each with the claim that it must show and the numbers that
 //! prove it.
 
+mod bumps;
 mod lean_13;
 mod lean_14;
 mod lean_2;
 mod lean_4;
 mod lean_5;
+mod mikkelsen_1;
+mod mikkelsen_2;
+mod mikkelsen_3;
+mod mikkelsen_4;
 mod scene;
 
 use std::fs;
@@ -24,7 +29,7 @@ use crate::args::one_of;
 use crate::html::{Chart, Page, Verdict};
 use crate::progress;
 
-/// Reproduce the figures of the LEAN paper, each with its claim and the numbers that prove it.
+/// Reproduce the figures of the LEAN paper and of Mikkelsen's, each with its claim and the numbers that prove it.
 ///
 /// Writes index.html, which needs no other file; results.json, with claim, numbers and "holds" of each figure; and the
 /// pictures as NAME.png. Exits with 1 if a claim does not hold.
@@ -35,7 +40,11 @@ Figures:
   lean-4   Blinn-Phong and Beckmann approach each other as the exponent grows
   lean-5   four models that look the same where nothing is filtered
   lean-13  bumps with a direction, as the object moves away
-  lean-14  a raised checkerboard: conventional bump maps alias, LEAN does not")]
+  lean-14  a raised checkerboard: conventional bump maps alias, LEAN does not
+  mikkelsen-1  the normal of displaced facets shows their edges, the surface gradient does not
+  mikkelsen-2  Perlin's older perturbation turns normals inward
+  mikkelsen-3  derivatives on the screen and in space agree where pixels are dense
+  mikkelsen-4  heights on the screen against normal mapping, and under magnification")]
 pub struct Args {
     /// Which figures [default: all]
     #[arg(value_name = "NAME", value_parser = one_of::<Name>())]
@@ -44,6 +53,14 @@ pub struct Args {
     /// The folder to write to; it is created if missing
     #[arg(short, long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     output: PathBuf,
+
+    /// The mesh of mikkelsen-4 (.obj, .gltf, .glb), with texture coordinates [default: a torus]
+    #[arg(long, value_name = "MESH", value_hint = ValueHint::FilePath)]
+    mesh: Option<PathBuf>,
+
+    /// The height map of mikkelsen-4 [default: random bumps]
+    #[arg(long, value_name = "MAP", value_hint = ValueHint::FilePath)]
+    height_map: Option<PathBuf>,
 }
 
 /// The figures that can be reproduced, by paper and number.
@@ -54,11 +71,25 @@ enum Name {
     Lean5,
     Lean13,
     Lean14,
+    Mikkelsen1,
+    Mikkelsen2,
+    Mikkelsen3,
+    Mikkelsen4,
 }
 
 impl Named for Name {
     fn all() -> &'static [Self] {
-        &[Self::Lean2, Self::Lean4, Self::Lean5, Self::Lean13, Self::Lean14]
+        &[
+            Self::Lean2,
+            Self::Lean4,
+            Self::Lean5,
+            Self::Lean13,
+            Self::Lean14,
+            Self::Mikkelsen1,
+            Self::Mikkelsen2,
+            Self::Mikkelsen3,
+            Self::Mikkelsen4,
+        ]
     }
 
     fn name(self) -> &'static str {
@@ -68,18 +99,26 @@ impl Named for Name {
             Self::Lean5 => "lean-5",
             Self::Lean13 => "lean-13",
             Self::Lean14 => "lean-14",
+            Self::Mikkelsen1 => "mikkelsen-1",
+            Self::Mikkelsen2 => "mikkelsen-2",
+            Self::Mikkelsen3 => "mikkelsen-3",
+            Self::Mikkelsen4 => "mikkelsen-4",
         }
     }
 }
 
 impl Name {
-    fn make(self) -> Result<Figure> {
+    fn make(self, args: &Args) -> Result<Figure> {
         match self {
             Self::Lean2 => lean_2::make(),
             Self::Lean4 => Ok(lean_4::make()),
             Self::Lean5 => lean_5::make(),
             Self::Lean13 => lean_13::make(),
             Self::Lean14 => lean_14::make(),
+            Self::Mikkelsen1 => mikkelsen_1::make(),
+            Self::Mikkelsen2 => mikkelsen_2::make(),
+            Self::Mikkelsen3 => mikkelsen_3::make(),
+            Self::Mikkelsen4 => mikkelsen_4::make(args),
         }
     }
 }
@@ -121,7 +160,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let mut figures = Vec::new();
     for name in names {
         bar.set_message(name.name());
-        figures.push((name.name(), name.make().with_context(|| name.name())?));
+        figures.push((name.name(), name.make(args).with_context(|| name.name())?));
         bar.inc(1);
     }
     bar.finish_and_clear();
@@ -165,7 +204,7 @@ fn results(figures: &[(&str, Figure)]) -> Value {
 }
 
 fn page(figures: &[(&str, Figure)]) -> String {
-    let mut page = Page::new("roughcast: the figures of the LEAN paper, reproduced");
+    let mut page = Page::new("roughcast: figures of the papers, reproduced");
     for (name, figure) in figures {
         page.heading(2, &format!("{name}: {}", figure.title));
         page.verdict(Verdict::from(figure.holds), &figure.claim);

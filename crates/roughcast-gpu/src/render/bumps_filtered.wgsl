@@ -1,4 +1,4 @@
 // Shading uses the distribution of slopes under the pixel.
 fn bumps_at(at: DetailPoint) -> Distribution {
-    return detail_distribution(at);
+    return combined_distribution(at);
 }

@@ -2,11 +2,13 @@
 
 use std::hash::{Hash, Hasher};
 
+use roughcast::noise::{Noise, OctaveFilter};
 use roughcast::shading::{Gaussians, Shading, ShadingOptions};
-use roughcast::texture::{Layout, Packing, Part, TexelReader, TextureArray, TextureInfo};
+use roughcast::texture::{Layout, Packing, Part, TexelReader, Texture, TextureArray, TextureInfo};
 use roughcast::{Anisotropy, SampleType};
-use roughcast_scene::{DetailError, TextureInputs, model_inputs, texture_inputs};
+use roughcast_scene::{DetailError, HeightDerivative, TextureInputs, model_inputs, texture_inputs};
 
+use super::surface::{Curvature, GpuNoise, GpuPlacement, Octaves, Projection, SurfaceKey};
 use super::textures::{sample_type, upload};
 use crate::{Gpu, GpuError};
 
@@ -16,8 +18,12 @@ use crate::{Gpu, GpuError};
 pub enum DetailSource {
     /// The textures of a layout.
     Textures(&'static TexelReader),
+    /// A texture of heights, differentiated on the screen.
+    Heights(HeightDerivative),
     /// Code of the host, without textures.
     Code(DetailCode),
+    /// No bumps of its own, such as below noise.
+    Flat,
 }
 
 /// A source of bumps in WGSL that reads no textures, such as noise: the functions
@@ -65,6 +71,7 @@ impl DetailSource {
         match self {
             Self::Textures(reader) => reader.gaussians,
             Self::Code(code) => code.gaussians,
+            Self::Heights(_) | Self::Flat => Gaussians::One,
         }
     }
 
@@ -72,15 +79,18 @@ impl DetailSource {
     pub(super) fn texture_count(self) -> usize {
         match self {
             Self::Textures(reader) => reader.inputs.len(),
-            Self::Code(_) => 0,
+            Self::Heights(_) => 1,
+            Self::Code(_) | Self::Flat => 0,
         }
     }
 
     /// The values that are compared; a reader is identified by its module.
-    fn parts(&self) -> (Option<&'static str>, Option<&DetailCode>) {
+    fn parts(&self) -> (Option<&'static str>, Option<HeightDerivative>, Option<&DetailCode>) {
         match self {
-            Self::Textures(reader) => (Some(reader.module), None),
-            Self::Code(code) => (None, Some(code)),
+            Self::Textures(reader) => (Some(reader.module), None, None),
+            Self::Heights(derivative) => (None, Some(*derivative), None),
+            Self::Code(code) => (None, None, Some(code)),
+            Self::Flat => (None, None, None),
         }
     }
 }
@@ -108,6 +118,10 @@ pub struct GpuDetail {
     pub(super) roughness_channel: u32,
     pub(super) packing: Packing,
     info: Option<TextureInfo>,
+    /// Width and height of level 0.
+    pub(super) texels: (u32, u32),
+    pub(super) placement: GpuPlacement,
+    pub(super) noise: Option<GpuNoise>,
 }
 
 impl GpuDetail {
@@ -131,17 +145,54 @@ impl GpuDetail {
 
     async fn of_inputs(gpu: &Gpu, shading: Shading, inputs: TextureInputs<'_>) -> Result<Self, GpuError> {
         let mut views = Vec::with_capacity(inputs.textures.len());
+        let (width, height) = (inputs.textures[0].finest().width(), inputs.textures[0].finest().height());
         for texture in inputs.textures {
             views.push(upload(gpu, texture).await?.create_view(&Default::default()));
         }
         Ok(Self {
-            shading,
-            source: DetailSource::Textures(inputs.reader),
             views,
             roughness_channel: inputs.roughness_channel as u32,
             packing: inputs.packing,
             info: Some(inputs.info),
+            texels: (width as u32, height as u32),
+            ..Self::without_textures(shading, DetailSource::Textures(inputs.reader))
         })
+    }
+
+    /// Bumps from a texture of heights in texels, such as `roughcast_scene::height_texture` makes it, differentiated on
+    /// the screen: bump mapping as Mikkelsen published it. What the texture's filter removes is lost.
+    ///
+    /// # Errors
+    /// [`GpuError::Format`] if the device cannot filter single floats; other errors if the texture is too large.
+    pub async fn of_heights(
+        gpu: &Gpu,
+        shading: Shading,
+        heights: &Texture,
+        derivative: HeightDerivative,
+    ) -> Result<Self, GpuError> {
+        let view = upload(gpu, heights).await?.create_view(&Default::default());
+        Ok(Self {
+            views: vec![view],
+            texels: (heights.finest().width() as u32, heights.finest().height() as u32),
+            ..Self::without_textures(shading, DetailSource::Heights(derivative))
+        })
+    }
+
+    /// Procedural noise in world space, without textures. See [`GpuDetail::with_noise`] for noise on top of textures.
+    pub fn of_noise(shading: Shading, noise: Noise, filter: OctaveFilter) -> Self {
+        Self::without_textures(shading, DetailSource::Flat).with_noise(noise, filter)
+    }
+
+    /// The same bumps, placed like this on the surface.
+    #[must_use]
+    pub fn placed(self, placement: impl Into<GpuPlacement>) -> Self {
+        Self { placement: placement.into(), ..self }
+    }
+
+    /// The same bumps with procedural noise in world space on top: heights add, and the normal is perturbed once.
+    #[must_use]
+    pub fn with_noise(self, noise: Noise, filter: OctaveFilter) -> Self {
+        Self { noise: Some(GpuNoise { noise, filter }), ..self }
     }
 
     /// Uses textures that are already on the GPU, such as those that a bake fills every frame: one for each layer of
@@ -174,12 +225,11 @@ impl GpuDetail {
             gpu.require_filterable(texture.format())?;
         }
         Ok(Self {
-            shading,
-            source: DetailSource::Textures(reader),
             views: textures.iter().map(|texture| texture.create_view(&Default::default())).collect(),
-            roughness_channel: 0,
             packing: Packing::new(info, sample_type(textures[0].format())),
             info: Some(*info),
+            texels: (textures[0].width(), textures[0].height()),
+            ..Self::without_textures(shading, DetailSource::Textures(reader))
         })
     }
 
@@ -204,14 +254,35 @@ impl GpuDetail {
     /// assert_eq!(detail.shading(), Shading::Lean);
     /// ```
     pub fn of_code(shading: Shading, code: DetailCode) -> Self {
+        Self::without_textures(shading, DetailSource::Code(code))
+    }
+
+    fn without_textures(shading: Shading, source: DetailSource) -> Self {
         Self {
             shading,
-            source: DetailSource::Code(code),
+            source,
             views: Vec::new(),
             roughness_channel: 0,
             packing: Packing::new(&TextureInfo::new(Layout::Moments, Part::Whole), SampleType::F32),
             info: None,
+            texels: (1, 1),
+            placement: GpuPlacement::default(),
+            noise: None,
         }
+    }
+
+    /// The parts of the shader between this source and the model. Heights are placed by their own code.
+    pub(super) fn surface_key(&self, curvature: Curvature) -> SurfaceKey {
+        let sized = self.placement.world_height_per_texel.is_some();
+        let projection = match (self.source, self.placement.projection) {
+            (DetailSource::Flat | DetailSource::Code(_), _) => Projection::Mesh,
+            (DetailSource::Heights(_), Projection::Triplanar) => Projection::Triplanar,
+            (DetailSource::Heights(_), _) => Projection::Mesh,
+            (_, Projection::Mesh) if sized => Projection::Derivatives,
+            (_, projection) => projection,
+        };
+        let octaves = if self.noise.is_some() { Octaves::Added } else { Octaves::None };
+        SurfaceKey { projection, octaves, curvature }
     }
 
     /// The model.

@@ -29,8 +29,17 @@ impl Geometry {
     /// # Errors
     /// [`GpuError::BufferTooLarge`], [`GpuError::OutOfMemory`].
     pub async fn new(gpu: &Gpu, shape: &Shape, detail: u32) -> Result<Self, GpuError> {
+        Self::of_uv_set(gpu, shape, detail, 0).await
+    }
+
+    /// Uploads a shape with one of its sets of texture coordinates; a missing set is zero everywhere. Tangents are those of
+    /// the first set: place bumps on another one by derivatives.
+    ///
+    /// # Errors
+    /// As [`Geometry::new`].
+    pub async fn of_uv_set(gpu: &Gpu, shape: &Shape, detail: u32, uv_set: usize) -> Result<Self, GpuError> {
         let mesh = shape.triangles(detail);
-        let vertices = vertices_of(&mesh);
+        let vertices = vertices_of(&mesh, uv_set);
         let (vertices, indices): (&[u8], &[u8]) =
             (bytemuck::cast_slice(&vertices), bytemuck::cast_slice(&mesh.indices));
         Ok(Self {
@@ -41,13 +50,13 @@ impl Geometry {
     }
 }
 
-fn vertices_of(mesh: &TriangleMesh) -> Vec<f32> {
+fn vertices_of(mesh: &TriangleMesh, uv_set: usize) -> Vec<f32> {
     let mut vertices = Vec::with_capacity(mesh.positions.len() * FLOATS_A_VERTEX);
     for i in 0..mesh.positions.len() {
         vertices.extend(mesh.positions[i]);
         vertices.extend(mesh.normals[i]);
         vertices.extend(mesh.tangents[i]);
-        vertices.extend(mesh.uv_sets.first().map_or([0.0; 2], |set| set[i]));
+        vertices.extend(mesh.uv_sets.get(uv_set).map_or([0.0; 2], |set| set[i]));
     }
     vertices
 }

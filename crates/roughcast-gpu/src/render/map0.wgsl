@@ -1,4 +1,4 @@
-@group(1) @binding(4) var map0: texture_2d<f32>;
+@group(1) @binding(6) var map0: texture_2d<f32>;
 
 fn texel0(at: DetailPoint) -> vec4f {
     return filtered(map0, at.uv);

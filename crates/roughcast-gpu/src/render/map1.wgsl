@@ -1,4 +1,4 @@
-@group(1) @binding(5) var map1: texture_2d<f32>;
+@group(1) @binding(7) var map1: texture_2d<f32>;
 
 fn texel1(at: DetailPoint) -> vec4f {
     return filtered(map1, at.uv);

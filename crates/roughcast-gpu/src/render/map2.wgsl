@@ -1,4 +1,4 @@
-@group(1) @binding(6) var map2: texture_2d<f32>;
+@group(1) @binding(8) var map2: texture_2d<f32>;
 
 fn texel2(at: DetailPoint) -> vec4f {
     return filtered(map2, at.uv);

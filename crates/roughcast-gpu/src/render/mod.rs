@@ -57,19 +57,21 @@ mod headless;
 mod pipeline;
 mod sampling;
 mod shader;
+mod surface;
 mod textures;
 mod uniforms;
 mod views;
 
 use std::collections::HashMap;
 
-use roughcast::shading::ShadingOptions;
+use roughcast::shading::{GeometricFilter, ShadingOptions};
 use roughcast_scene::{Filter, Sampler, Scene};
 
 pub use detail::{DetailCode, DetailSource, GpuDetail};
 pub use geometry::Geometry;
 pub use headless::render;
 pub use shader::{Bumps, LevelOfDetail, ShaderKey, shader_source};
+pub use surface::{Curvature, GpuNoise, GpuPlacement, Octaves, Projection, SurfaceKey};
 pub use views::{Order, Part, Views};
 
 use crate::{Gpu, GpuError};
@@ -130,6 +132,9 @@ pub struct DrawOptions {
     pub shading_options: ShadingOptions,
     /// Whether filtered bumps are shaded, or resolved ones as in the ground truth.
     pub bumps: Bumps,
+    /// Geometric specular antialiasing: filtered bumps are widened by the curvature of the surface under the pixel. None
+    /// leaves it out.
+    pub curvature: Option<GeometricFilter>,
 }
 
 impl DrawOptions {
@@ -149,6 +154,12 @@ impl DrawOptions {
     #[must_use]
     pub fn with_bumps(self, bumps: Bumps) -> Self {
         Self { bumps, ..self }
+    }
+
+    /// The same options with geometric specular antialiasing, or without.
+    #[must_use]
+    pub fn with_curvature(self, curvature: Option<GeometricFilter>) -> Self {
+        Self { curvature, ..self }
     }
 
     /// The sampler to use. Resolved bumps use the finest level without anisotropy, because hardware may apply
@@ -179,7 +190,7 @@ pub struct Drawing {
     geometry: Geometry,
     detail: GpuDetail,
     sampling: Sampling,
-    bumps: Bumps,
+    key: ShaderKey,
     uniforms: MapUniforms,
     maps: wgpu::BindGroup,
     view: wgpu::Buffer,
@@ -228,7 +239,7 @@ impl Renderer {
         options: &DrawOptions,
     ) -> Result<Drawing, GpuError> {
         let sampling = Sampling::new(&options.sampler())?;
-        let pipeline = self.pipeline(key(detail, &sampling, options.bumps)).await?;
+        let pipeline = self.pipeline(key(detail, &sampling, options)).await?;
         let groups = BindGroups { gpu: &self.gpu, view_layout: &self.view_layout };
         let uniforms = MapUniforms::new(&self.gpu, detail, options, &sampling).await?;
         let maps = groups.maps(self.map_layout(detail.views.len()), detail, &uniforms, &sampling).await?;
@@ -243,7 +254,7 @@ impl Renderer {
             geometry: geometry.clone(),
             detail: detail.clone(),
             sampling,
-            bumps: options.bumps,
+            key: key(detail, &sampling, options),
             uniforms,
             maps,
             view,
@@ -278,8 +289,15 @@ impl Renderer {
 }
 
 /// The key of the shader of this detail with this sampler.
-fn key(detail: &GpuDetail, sampling: &Sampling, bumps: Bumps) -> ShaderKey {
-    ShaderKey { shading: detail.shading, detail: detail.source, level: sampling.level, bumps }
+fn key(detail: &GpuDetail, sampling: &Sampling, options: &DrawOptions) -> ShaderKey {
+    let curvature = match options.curvature {
+        Some(_) => Curvature::Filtered,
+        None => Curvature::Ignored,
+    };
+    ShaderKey::new(detail.shading, detail.source)
+        .with_level(sampling.level)
+        .with_bumps(options.bumps)
+        .with_surface(detail.surface_key(curvature))
 }
 
 impl Drawing {
@@ -294,12 +312,13 @@ impl Drawing {
         options: &DrawOptions,
     ) -> Result<(), GpuError> {
         let sampling = Sampling::new(&options.sampler())?;
-        if (sampling, options.bumps) != (self.sampling, self.bumps) {
-            let pipeline = renderer.pipeline(key(&self.detail, &sampling, options.bumps)).await?;
+        let key = key(&self.detail, &sampling, options);
+        if (sampling, key) != (self.sampling, self.key) {
+            let pipeline = renderer.pipeline(key).await?;
             let groups = BindGroups { gpu: &renderer.gpu, view_layout: &renderer.view_layout };
             let layout = renderer.map_layout(self.detail.views.len());
             self.maps = groups.maps(layout, &self.detail, &self.uniforms, &sampling).await?;
-            (self.pipeline, self.sampling, self.bumps) = (pipeline, sampling, options.bumps);
+            (self.pipeline, self.sampling, self.key) = (pipeline, sampling, key);
         }
         self.uniforms.write(&renderer.gpu, &self.detail, options, &sampling);
         Ok(())

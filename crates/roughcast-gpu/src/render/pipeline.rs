@@ -6,6 +6,7 @@ use super::detail::GpuDetail;
 use super::geometry::{VERTEX_LAYOUT, upload};
 use super::sampling::Sampling;
 use super::shader::{FIRST_TEXTURE, ShaderKey, shader_source};
+use super::surface::{noise_words, surface_words};
 use super::{DEPTH_FORMAT, DrawOptions, RenderTarget};
 use crate::{Gpu, GpuError};
 
@@ -26,7 +27,8 @@ pub(super) fn create_layouts(device: &wgpu::Device) -> (wgpu::BindGroupLayout, V
         view_dimension: wgpu::TextureViewDimension::D2,
         multisampled: false,
     };
-    let mut entries = [uniform, uniform, uniform, sampler].map(|ty| entry(0, fragment, ty)).to_vec();
+    let fixed = [uniform, uniform, uniform, sampler, uniform, uniform];
+    let mut entries = fixed.map(|ty| entry(0, fragment, ty)).to_vec();
     for (binding, entry) in entries.iter_mut().enumerate() {
         entry.binding = binding as u32;
     }
@@ -115,11 +117,13 @@ impl BindGroups<'_> {
     ) -> Result<wgpu::BindGroup, GpuError> {
         let descriptor = sampling.descriptor();
         let sampler = self.gpu.checked("a sampler", |device| device.create_sampler(&descriptor)).await?;
-        let MapUniforms { options, packing, sampling } = uniforms;
-        let fixed = [options, packing, sampling].map(wgpu::Buffer::as_entire_binding);
-        let resources = fixed
+        let MapUniforms { options, packing, sampling, surface, noise } = uniforms;
+        let before = [options, packing, sampling].map(wgpu::Buffer::as_entire_binding);
+        let after = [surface, noise].map(wgpu::Buffer::as_entire_binding);
+        let resources = before
             .into_iter()
             .chain([wgpu::BindingResource::Sampler(&sampler)])
+            .chain(after)
             .chain(detail.views.iter().map(wgpu::BindingResource::TextureView));
         self.group("the maps of a model", layout, resources).await
     }
@@ -146,6 +150,8 @@ pub(super) struct MapUniforms {
     options: wgpu::Buffer,
     packing: wgpu::Buffer,
     sampling: wgpu::Buffer,
+    surface: wgpu::Buffer,
+    noise: wgpu::Buffer,
 }
 
 impl MapUniforms {
@@ -156,6 +162,8 @@ impl MapUniforms {
         sampling: &Sampling,
     ) -> Result<Self, GpuError> {
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        let surface = surface_words(&detail.placement, detail.texels, options.curvature);
+        let noise = noise_words(detail.noise);
         let options = detail.options(options.shading_options).to_words();
         let packing = detail.packing.to_words();
         let sampling = sampling.words(detail);
@@ -163,6 +171,8 @@ impl MapUniforms {
             options: upload(gpu, "the options of shading", bytemuck::cast_slice(&options), usage).await?,
             packing: upload(gpu, "the packing of textures", bytemuck::cast_slice(&packing), usage).await?,
             sampling: upload(gpu, "the sampling", bytemuck::cast_slice(&sampling), usage).await?,
+            surface: upload(gpu, "the placement of bumps", bytemuck::cast_slice(&surface), usage).await?,
+            noise: upload(gpu, "the noise", bytemuck::cast_slice(&noise), usage).await?,
         })
     }
 
@@ -171,5 +181,7 @@ impl MapUniforms {
         let words = detail.options(options.shading_options).to_words();
         gpu.queue().write_buffer(&self.options, 0, bytemuck::cast_slice(&words));
         gpu.queue().write_buffer(&self.sampling, 0, bytemuck::cast_slice(&sampling.words(detail)));
+        let surface = surface_words(&detail.placement, detail.texels, options.curvature);
+        gpu.queue().write_buffer(&self.surface, 0, bytemuck::cast_slice(&surface));
     }
 }

@@ -90,7 +90,7 @@ struct Parts {
 fn shaded(fragment: Varyings, front: bool) -> Parts {
     let towards_eye = normalize(scene_view.eye - fragment.position);
     let frame = world_from_tangent(fragment, towards_eye, front);
-    let distribution = bumps_at(DetailPoint(fragment.uv, fragment.position, frame));
+    let distribution = bumps_at(DetailPoint(fragment.uv, fragment.position, frame, select(-1.0, 1.0, front)));
     let surface = model_surface(distribution, options);
     let view = towards_eye * frame;
     var diffuse = ambient_radiance(scene_view.albedo, scene_view.ambient);

@@ -5,12 +5,16 @@ use roughcast::shading::Shading;
 use roughcast::texture::{Part, TexelReader};
 use roughcast::wgsl;
 
+use roughcast_scene::HeightDerivative;
+
 use super::detail::DetailSource;
+use super::surface::{Curvature, Octaves, Projection, SurfaceKey};
 
 /// The first texture binding in the maps' group.
-pub(super) const FIRST_TEXTURE: u32 = 4;
+pub(super) const FIRST_TEXTURE: u32 = 6;
 
 const SCENE: &str = include_str!("scene.wgsl");
+const SURFACE_OPTIONS: &str = include_str!("surface_options.wgsl");
 const MAPS: &str = include_str!("maps.wgsl");
 const FOOTPRINT: &str = include_str!("footprint.wgsl");
 const MAP0: &str = include_str!("map0.wgsl");
@@ -54,16 +58,18 @@ pub enum Bumps {
 
 impl Bumps {
     /// WGSL of `bumps_at`.
-    fn source(self) -> &'static str {
-        match self {
-            Self::Filtered => include_str!("bumps_filtered.wgsl"),
-            Self::Resolved => include_str!("bumps_resolved.wgsl"),
+    fn source(self, curvature: Curvature) -> &'static str {
+        match (self, curvature) {
+            (Self::Filtered, Curvature::Ignored) => include_str!("bumps_filtered.wgsl"),
+            (Self::Filtered, Curvature::Filtered) => include_str!("bumps_filtered_curved.wgsl"),
+            (Self::Resolved, _) => include_str!("bumps_resolved.wgsl"),
         }
     }
 }
 
 /// Identifies a shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub struct ShaderKey {
     /// The model.
     pub shading: Shading,
@@ -73,37 +79,113 @@ pub struct ShaderKey {
     pub level: LevelOfDetail,
     /// Which slopes are shaded.
     pub bumps: Bumps,
+    /// How the bumps are placed on the surface, and what is added to them.
+    pub surface: SurfaceKey,
+}
+
+impl ShaderKey {
+    /// A model with a source of bumps in the tangent frame of the mesh, filtered at the hardware's level of detail.
+    pub fn new(shading: Shading, detail: DetailSource) -> Self {
+        let (level, bumps) = (LevelOfDetail::Derivatives, Bumps::Filtered);
+        Self { shading, detail, level, bumps, surface: SurfaceKey::default() }
+    }
+
+    /// The same shader with this source of the level of detail.
+    #[must_use]
+    pub fn with_level(self, level: LevelOfDetail) -> Self {
+        Self { level, ..self }
+    }
+
+    /// The same shader with filtered or resolved bumps.
+    #[must_use]
+    pub fn with_bumps(self, bumps: Bumps) -> Self {
+        Self { bumps, ..self }
+    }
+
+    /// The same shader with bumps placed like this.
+    #[must_use]
+    pub fn with_surface(self, surface: SurfaceKey) -> Self {
+        Self { surface, ..self }
+    }
 }
 
 /// The WGSL of a model with a source of bumps: the vertex shader `project`, and the fragment shaders `radiance` (one
 /// colour target, alpha is coverage) and `parts` (the same, with the specular part in a second target).
 ///
 /// Group 0 changes with the view: binding 0 is the view and the material's colours, 1 the lights. Group 1 contains the
-/// maps: 0 [`roughcast::shading::ShadingOptions`], 1 [`roughcast::texture::Packing`], 2 the sampling, 3 a sampler, and
-/// from 4 on the textures in the order of [`TexelReader::inputs`].
+/// maps: 0 [`roughcast::shading::ShadingOptions`], 1 [`roughcast::texture::Packing`], 2 the sampling, 3 a sampler, 4 how the
+/// bumps are placed, 5 the noise, and from 6 on the textures in the order of [`TexelReader::inputs`].
 ///
 /// # Errors
 /// [`UnknownName`] if the library lacks a module that the source of bumps needs.
 pub fn shader_source(key: ShaderKey) -> Result<String, UnknownName> {
-    let ShaderKey { shading, detail, level, bumps } = key;
+    let ShaderKey { shading, detail, level, bumps, surface } = key;
     let calls = shading.calls(detail.gaussians());
     let mut modules = vec![calls.module, "reflectance", "detail"];
-    let mut parts = Vec::new();
+    let mut parts = vec![SURFACE_OPTIONS];
     match detail {
         DetailSource::Textures(reader) => {
             modules.push(reader.module);
             parts.extend(sampling_of(reader, level));
         }
+        DetailSource::Heights(derivative) => {
+            modules.extend(["surface-gradient", "footprint", "packing"]);
+            parts.extend(heights_of(derivative, level));
+        }
         DetailSource::Code(code) => {
             modules.extend(code.needs);
             parts.push(code.source);
         }
+        DetailSource::Flat => parts.push(include_str!("flat.wgsl")),
+    }
+    let (placed, needed) = placement_of(surface.projection);
+    modules.extend(needed);
+    parts.extend(placed);
+    match surface.octaves {
+        Octaves::None => parts.push(include_str!("combined_alone.wgsl")),
+        Octaves::Added => {
+            modules.extend(["noise", "surface-gradient"]);
+            parts.push(include_str!("combined_noise.wgsl"));
+        }
+    }
+    if surface.curvature == Curvature::Filtered {
+        modules.push("geometric");
     }
     let library = wgsl::library(&modules)?;
     let scene = wgsl::renamed(SCENE, &calls.names());
     parts.insert(0, &library);
-    parts.extend([bumps.source(), &scene]);
+    parts.extend([bumps.source(surface.curvature), &scene]);
     Ok(parts.join("\n"))
+}
+
+/// WGSL of `placed_slope` and `placed_distribution`, and the modules that it needs.
+fn placement_of(projection: Projection) -> (Vec<&'static str>, Vec<&'static str>) {
+    const MATRIX: &str = include_str!("placement_matrix.wgsl");
+    match projection {
+        Projection::Mesh => (vec![include_str!("placed_mesh.wgsl")], vec![]),
+        Projection::Derivatives => {
+            (vec![MATRIX, include_str!("placed_derivatives.wgsl")], vec!["surface-gradient"])
+        }
+        Projection::Triplanar => {
+            (vec![MATRIX, include_str!("placed_triplanar.wgsl")], vec!["surface-gradient"])
+        }
+    }
+}
+
+/// WGSL of the functions that sample and differentiate heights.
+fn heights_of(derivative: HeightDerivative, level: LevelOfDetail) -> Vec<&'static str> {
+    let [filtered, _] = level.sources();
+    let differences = match derivative {
+        HeightDerivative::Forward => include_str!("heights_forward.wgsl"),
+        HeightDerivative::Central => include_str!("heights_central.wgsl"),
+        HeightDerivative::Bicubic => include_str!("heights_bicubic.wgsl"),
+        _ => include_str!("heights_fine.wgsl"),
+    };
+    let level = match level {
+        LevelOfDetail::Derivatives => include_str!("height_level_from_derivatives.wgsl"),
+        LevelOfDetail::Fixed => include_str!("height_level_fixed.wgsl"),
+    };
+    vec![MAPS, filtered, MAP0, include_str!("heights.wgsl"), differences, level]
 }
 
 /// WGSL of the functions that sample the textures of a layout.

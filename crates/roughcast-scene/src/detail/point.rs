@@ -1,11 +1,12 @@
 //! The interface of a source of bumps, and the point at which a renderer queries it.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use roughcast::shading::ShadingOptions;
+use roughcast::surface_gradient::slope_of_gradient;
 use roughcast::{Distribution, Slope, SlopeMatrix};
 
 use crate::filter::Quad;
-use crate::{Footprint, Hit, Placement, Ray, SlopeFrame};
+use crate::{Footprint, Hit, Placement, Ray, Side, SlopeFrame};
 
 /// A source of bumps on a surface. Slopes are in the tangent frame of the hit.
 pub trait Detail: Sync {
@@ -97,8 +98,39 @@ impl<'a> DetailPoint<'a> {
     /// slopes are the same in both.
     #[inline]
     pub(super) fn slope_matrix(&self, placement: &Placement, texels: (usize, usize)) -> Option<SlopeMatrix> {
-        placement.world_height_per_texel()?;
-        Some(SlopeFrame::new(texels, self.repeats, *placement).matrix(self.hit))
+        let frame = || SlopeFrame::new(texels, self.repeats, *placement).matrix(self.hit);
+        (!placement.keeps_slopes()).then(frame)
+    }
+
+    /// The change of the position to the pixel on the right and to the one below, in the plane of the geometry. Zero for a
+    /// point without a pixel.
+    pub fn position_footprint(&self) -> [DVec3; 2] {
+        let Footprint { dx, dy } = self.surface_footprint;
+        [dx, dy].map(|st| self.hit.dpds * st.x + self.hit.dpdt * st.y)
+    }
+
+    /// The change of the shading normal to the pixel on the right and to the one below, to first order. Zero for a point
+    /// without a pixel.
+    pub fn normal_footprint(&self) -> [DVec3; 2] {
+        let Footprint { dx, dy } = self.surface_footprint;
+        [dx, dy].map(|st| self.hit.dnds * st.x + self.hit.dndt * st.y)
+    }
+
+    /// The slope, in the frame of the hit, of bumps whose height along the front's normal has this surface gradient.
+    pub fn slope_of_gradient(&self, surface_gradient: DVec3) -> Slope {
+        let [tangent, bitangent] = self.hit.frame.tangent_covectors();
+        let slope = slope_of_gradient(tangent, bitangent, surface_gradient);
+        let slope = match self.hit.side {
+            Side::Front => slope,
+            Side::Back => -slope,
+        };
+        Slope { x: slope.x as f32, y: slope.y as f32 }
+    }
+
+    /// The same point with another hit, such as one with other texture coordinates.
+    #[must_use]
+    pub fn with_hit<'b>(&self, hit: &'b Hit<'b>) -> DetailPoint<'b> {
+        DetailPoint { hit, repeats: self.repeats, surface_footprint: self.surface_footprint, quad: self.quad }
     }
 
     /// Which neighbours are used to compute derivatives.

@@ -16,12 +16,21 @@ pub(super) const MAX_TAPS: f64 = 16.0;
 /// How far rounding may raise the ratio of the axes above an integer without adding a tap.
 const RATIO_ROUNDING: f64 = 1e-9;
 
+/// The level of detail of the taps.
+pub(super) fn level_of(texels: &Footprint) -> f64 {
+    minor_of(&Ellipse::of(texels)).log2()
+}
+
+/// The shorter axis in texels. Below one texel, interpolation smooths anyway, so closer taps would add nothing.
+fn minor_of(ellipse: &Ellipse) -> f64 {
+    ellipse.minor.max(ellipse.major / MAX_TAPS).max(1.0)
+}
+
 /// The mean of equally weighted taps over a footprint in texels of level 0. The taps' level is that of the shorter
 /// axis, plus a bias.
 pub(super) fn sample(mipmap: &Mipmap, uv: DVec2, texels: &Footprint, bias: f64, wrap: Wrap) -> [f64; 4] {
     let ellipse = Ellipse::of(texels);
-    // Below one texel, interpolation smooths anyway, so closer taps would add nothing.
-    let minor = ellipse.minor.max(ellipse.major / MAX_TAPS).max(1.0);
+    let minor = minor_of(&ellipse);
     let taps = (ellipse.major / minor - RATIO_ROUNDING).ceil().clamp(1.0, MAX_TAPS);
     let level = minor.log2() + bias;
     let (width, height) = mipmap.size();

@@ -51,6 +51,18 @@ impl Sampler {
         mean.map(|value| value as f32)
     }
 
+    /// The level of detail of a footprint in a texture of this size: that of its longer axis with [`Filter::Trilinear`], of
+    /// its shorter axis, limited by the number of taps, with the filters that take several.
+    pub(crate) fn level_of(&self, size: (usize, usize), footprint: &Footprint) -> f64 {
+        let texels = footprint::in_texels(footprint, size);
+        match (self.filter, self.fixed_level()) {
+            (Filter::Nearest, level) => level.unwrap_or(0.0),
+            (_, Some(level)) => level,
+            (Filter::Trilinear, None) => trilinear::level_of(&texels) + self.finite_bias(),
+            (_, None) => anisotropic::level_of(&texels) + self.finite_bias(),
+        }
+    }
+
     /// The given level, 0 or more. NaN becomes the finest level.
     fn fixed_level(&self) -> Option<f64> {
         self.level.map(|level| if level > 0.0 { level.min(MAX_LEVEL) } else { 0.0 })

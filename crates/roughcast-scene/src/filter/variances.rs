@@ -24,6 +24,11 @@ impl Quad {
         let sign = |i: u32| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
         Self { x: sign(x), y: sign(y) }
     }
+
+    /// The signs of the steps to the neighbours in the row and in the column.
+    pub fn signs(self) -> [f64; 2] {
+        [self.x, self.y]
+    }
 }
 
 /// The coordinates and footprint with which a pixel samples a texture.

@@ -111,9 +111,13 @@ impl Mesh {
         let (e1, e2) = (p1 - p0, p2 - p0);
         let geometric_normal = e1.cross(e2).normalize();
         let blend = |[a, b, c]: [DVec3; 3]| a * weights.x + b * weights.y + c * weights.z;
-        let normal = blend(k.map(|i| Vec3::from(mesh.normals[i]).as_dvec3()))
-            .try_normalize()
-            .unwrap_or(geometric_normal);
+        let normals = k.map(|i| Vec3::from(mesh.normals[i]).as_dvec3());
+        let interpolated = blend(normals);
+        let normal = interpolated.try_normalize().unwrap_or(geometric_normal);
+        let change = |corner: usize| {
+            let change = (normals[corner] - normals[0]) / interpolated.length();
+            if change.is_finite() { change.reject_from_normalized(normal) } else { DVec3::ZERO }
+        };
         let tangents = k.map(|i| Vec4::from(mesh.tangents[i]).as_dvec4());
         let tangent = blend(tangents.map(DVec4::truncate));
         let tangent =
@@ -132,6 +136,8 @@ impl Mesh {
             side: Side::Front,
             dpds: e1,
             dpdt: e2,
+            dnds: change(1),
+            dndt: change(2),
             uv_sets,
         }
     }

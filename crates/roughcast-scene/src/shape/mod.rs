@@ -121,6 +121,8 @@ struct SurfacePoint {
     uv: DVec2,
     dpdu: DVec3,
     dpdv: DVec3,
+    dndu: DVec3,
+    dndv: DVec3,
 }
 
 impl SurfacePoint {
@@ -135,6 +137,8 @@ impl SurfacePoint {
             side: Side::Front,
             dpds: self.dpdu,
             dpdt: self.dpdv,
+            dnds: self.dndu,
+            dndt: self.dndv,
             uv_sets: UvSets::of_parameters(self.uv),
         };
         facing(hit, ray)

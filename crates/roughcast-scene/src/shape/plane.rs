@@ -67,6 +67,8 @@ impl Plane {
             uv,
             dpdu: DVec3::X * size,
             dpdv: DVec3::Z * size,
+            dndu: DVec3::ZERO,
+            dndv: DVec3::ZERO,
         }
     }
 }

@@ -45,14 +45,10 @@ impl Sphere {
         let position = DVec3::new(sin_polar * sin_longitude, cos_polar, sin_polar * cos_longitude);
         let tangent = DVec3::new(cos_longitude, 0.0, -sin_longitude);
         let down = DVec3::new(cos_polar * sin_longitude, -sin_polar, cos_polar * cos_longitude);
-        SurfacePoint {
-            position,
-            normal: position,
-            tangent,
-            uv,
-            dpdu: tangent * (TAU * sin_polar),
-            dpdv: down * PI,
-        }
+        let (dpdu, dpdv) = (tangent * (TAU * sin_polar), down * PI);
+        // The normal is the position.
+        let (dndu, dndv) = (dpdu, dpdv);
+        SurfacePoint { position, normal: position, tangent, uv, dpdu, dpdv, dndu, dndv }
     }
 
     /// The surface at a point on it. At a pole, where every longitude is valid, longitude 0 is used.

@@ -93,6 +93,8 @@ impl Torus {
             uv,
             dpdu: tangent * (TAU * (1.0 + self.minor * cos_tube)),
             dpdv: up * (-TAU * self.minor),
+            dndu: tangent * (TAU * cos_tube),
+            dndv: up * -TAU,
         }
     }
 

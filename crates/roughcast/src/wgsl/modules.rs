@@ -125,6 +125,14 @@ pub const MODULES: &[Module] = &[
         role: Role::Companion,
     },
     Module {
+        name: "noise",
+        source: include_str!("../noise/noise.wgsl"),
+        needs: &[],
+        summary: "octaves of gradient noise, and the distribution of their slopes under a pixel",
+        citation: "Perlin, Improving Noise, 2002",
+        role: Role::Companion,
+    },
+    Module {
         name: "geometric",
         source: include_str!("../shading/geometric.wgsl"),
         needs: &[],

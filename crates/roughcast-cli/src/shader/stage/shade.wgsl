@@ -10,7 +10,7 @@ fn shade_model(
     let view = normalize(towards_viewer);
     let light = normalize(towards_light);
     let tangent_frame = mat3x3f(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), vec3f(0.0, 0.0, 1.0));
-    let distribution = detail_distribution(DetailPoint(uv, vec3f(0.0), tangent_frame));
+    let distribution = detail_distribution(DetailPoint(uv, vec3f(0.0), tangent_frame, 1.0));
     let surface = model_surface(distribution, options);
     let lobe = model_lobe(surface, view, light, options);
     let albedo = parameters.albedo.xyz;

@@ -1,0 +1,65 @@
+//! Bumps on top of others: heights add, so slopes and their moments do.
+
+use roughcast::shading::ShadingOptions;
+use roughcast::{Distribution, Slope};
+
+use super::{Detail, DetailPoint};
+
+/// The sum of several independent sources of bumps, each with a strength that scales its heights.
+///
+/// The surface gradient is linear, so the normal is perturbed once, by the sum (Mikkelsen 2010, section 4). Mean slopes and
+/// covariances add; a strength multiplies slopes, and its square multiplies covariances. A base roughness baked into
+/// one of the sources should be in one alone, with a strength of one.
+#[derive(Clone)]
+pub struct Combined<'a> {
+    parts: Vec<Strengthened<'a>>,
+}
+
+/// A source of bumps whose heights are multiplied by a strength.
+#[derive(Clone, Copy)]
+pub struct Strengthened<'a> {
+    /// The source.
+    pub detail: &'a dyn Detail,
+    /// What its heights are multiplied by; below zero, bumps become dents.
+    pub strength: f32,
+}
+
+impl Detail for Strengthened<'_> {
+    fn slope(&self, at: &DetailPoint<'_>) -> Slope {
+        self.detail.slope(at) * self.strength
+    }
+
+    fn distribution(&self, at: &DetailPoint<'_>, options: &ShadingOptions) -> Distribution {
+        let distribution = self.detail.distribution(at, options);
+        if self.strength == 1.0 {
+            return distribution;
+        }
+        distribution.transformed([[self.strength, 0.0], [0.0, self.strength]])
+    }
+
+    fn options(&self, options: ShadingOptions) -> ShadingOptions {
+        self.detail.options(options)
+    }
+}
+
+impl<'a> Combined<'a> {
+    /// The sum of these sources. None at all is a flat surface.
+    pub fn new(parts: Vec<Strengthened<'a>>) -> Self {
+        Self { parts }
+    }
+}
+
+impl Detail for Combined<'_> {
+    fn slope(&self, at: &DetailPoint<'_>) -> Slope {
+        self.parts.iter().fold(Slope::default(), |sum, part| sum + part.slope(at))
+    }
+
+    fn distribution(&self, at: &DetailPoint<'_>, options: &ShadingOptions) -> Distribution {
+        let parts = self.parts.iter().map(|part| part.distribution(at, options));
+        parts.reduce(Distribution::plus).unwrap_or_else(|| Distribution::of_slope(Slope::default()))
+    }
+
+    fn options(&self, options: ShadingOptions) -> ShadingOptions {
+        self.parts.iter().fold(options, |options, part| part.options(options))
+    }
+}
