@@ -32,7 +32,7 @@ use crate::moments::SlopeMatrix;
 const LEAST_SINE: f64 = 1e-10;
 
 /// Cosine between two normals below which one is not a bump on the surface of the other: the slope would exceed 512.
-const LEAST_COSINE: f64 = 1.0 / 512.0;
+const LEAST_BUMP_COSINE: f64 = 1.0 / 512.0;
 
 /// The gradients of the parameters s and t on the surface: the vectors in the tangent plane with `∇s · σ_s = 1`,
 /// `∇s · σ_t = 0`, and so on. The surface gradient of a height is `β_s ∇s + β_t ∇t` (Eq. 3).
@@ -76,7 +76,7 @@ pub fn surface_gradient_of_volume(normal: DVec3, gradient: DVec3) -> DVec3 {
 /// The length of `bump_normal` does not matter. Zero if it points away from the side that `normal` points to.
 pub fn surface_gradient_of_normal(normal: DVec3, bump_normal: DVec3) -> DVec3 {
     let along = normal.dot(bump_normal);
-    if along > LEAST_COSINE * bump_normal.length() {
+    if along > LEAST_BUMP_COSINE * bump_normal.length() {
         finite_or_flat(normal - bump_normal / along)
     } else {
         DVec3::ZERO

@@ -6,7 +6,7 @@
 // Sine of the angle between the derivatives of the position below which they count as parallel.
 const LEAST_SINE: f32 = 1e-6;
 // Cosine between two normals below which one is not a bump on the surface of the other.
-const LEAST_COSINE: f32 = 0.001953125;
+const LEAST_BUMP_COSINE: f32 = 0.001953125;
 // Vectors of this length or longer, and those that are not numbers, count as undetermined.
 const LONGEST_SQUARED: f32 = 1e30;
 
@@ -49,7 +49,7 @@ fn surface_gradient_of_volume(normal: vec3f, gradient: vec3f) -> vec3f {
 // The surface gradient of the bump that has this normal, of any length, in place of `normal`.
 fn surface_gradient_of_normal(normal: vec3f, bump_normal: vec3f) -> vec3f {
     let along = dot(normal, bump_normal);
-    if along > LEAST_COSINE * length(bump_normal) {
+    if along > LEAST_BUMP_COSINE * length(bump_normal) {
         return finite_or_flat(normal - bump_normal / along);
     }
     return vec3f(0.0);

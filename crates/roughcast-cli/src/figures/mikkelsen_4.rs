@@ -20,15 +20,17 @@ use serde_json::{Map, json};
 use super::bumps::{Angles, angles, exact_normal, panels, picture, scene, shaded_normal, shape_of};
 use super::{Args, Figure, Table};
 
-const SIZE: (u32, u32) = (360, 300);
+const SIZE: (u32, u32) = (360, 270);
+/// The shape fills the picture.
+const ZOOM: f64 = 1.25;
 /// Texels per pixel of the whole view, and of the magnified one.
-const WHOLE: f64 = 0.7;
+const WHOLE: f64 = 0.4;
 const MAGNIFIED: f64 = 1.0 / 12.0;
 /// The largest mean angle between the two methods, in degrees: Listing 1 differentiates heights between pixels, the normal map
 /// between texels.
 const SAME: f64 = 3.0;
 /// How much more of the magnified map's error the bicubic derivative must remove than the fine one.
-const SMOOTHER: f64 = 4.0;
+const SMOOTHER: f64 = 3.0;
 /// Repeats over the detail noise: cells per texel.
 const CELLS_PER_TEXEL: f64 = 1.5;
 
@@ -51,10 +53,7 @@ impl Subject {
                     path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
                 )
             }
-            None => (
-                shape_of(without_tangents(Shape::Torus(Torus::default()).triangles(64)))?,
-                "a torus".to_owned(),
-            ),
+            None => (shape_of(unstretched_torus())?, "a torus".to_owned()),
         };
         let (heights, source, map) = match &args.height_map {
             Some(path) => {
@@ -76,15 +75,20 @@ impl Subject {
 
     /// The scene in which a pixel spans this many texels.
     fn scene(&self, texels_per_pixel: f64) -> Scene {
-        let mut scene = scene(self.shape.clone(), 1.0);
+        let mut scene = scene(self.shape.clone(), ZOOM);
         let texels = (self.heights.width(), self.heights.height());
         scene.repeats = repeats(&scene.shape, &scene.camera, texels, SIZE, texels_per_pixel).max(1e-3);
         scene
     }
 }
 
-fn without_tangents(mesh: TriangleMesh) -> TriangleMesh {
-    TriangleMesh { tangents: Vec::new(), ..mesh }
+/// A torus whose texture is stretched about equally in both directions, without tangents: MikkTSpace computes them.
+fn unstretched_torus() -> TriangleMesh {
+    let torus = Torus::default();
+    let mut mesh = TriangleMesh { tangents: Vec::new(), ..Shape::Torus(torus).triangles(64) };
+    let around = torus.minor().recip().round() as f32;
+    mesh.uv_sets[0].iter_mut().for_each(|uv| uv[0] *= around);
+    mesh
 }
 
 pub fn make(args: &Args) -> Result<Figure> {
@@ -211,7 +215,7 @@ impl Detail for Waves {
 fn magnified_errors(subject: &Subject) -> Result<Vec<(HeightDerivative, Angles)>> {
     let map = Waves::map();
     let heights = HeightMap::of(&map.heights, &map.source_options())?;
-    let mut close = scene(subject.shape.clone(), 1.0);
+    let mut close = scene(subject.shape.clone(), ZOOM);
     close.repeats = repeats(&close.shape, &close.camera, (SIDE, SIDE), SIZE, MAGNIFIED).max(1e-3);
     let error = |derivative: &HeightDerivative| {
         let detail = HeightDetail { derivative: *derivative, ..HeightDetail::new(heights.clone()) };

@@ -2,7 +2,9 @@
 
 use roughcast::shading::*;
 use roughcast::texture::Base;
-use roughcast::{Covariance, Distribution, MAX_GAUSSIANS, Slope, WeightedGaussian, normal_from_slope};
+use roughcast::{
+    Covariance, Distribution, MAX_GAUSSIANS, Slope, SlopeMatrix, WeightedGaussian, normal_from_slope,
+};
 
 use crate::footprint_table::ratio;
 use crate::harness::{Gives, Twin};
@@ -26,6 +28,15 @@ fn distribution(a: &[f32]) -> Distribution {
     parts.retain(|part| part.weight > 0.0);
     let mixture = Distribution::mixture(&parts).expect("one to four");
     mixture.with_normal(v3(a).into()).with_base(Base::ALL[whole(a[3])])
+}
+
+/// Columns of a matrix.
+fn matrix(inputs: &mut Inputs) -> Vec<f32> {
+    (0..4).map(|_| inputs.between(-2.0, 2.0)).collect()
+}
+
+fn matrix_of(a: &[f32]) -> SlopeMatrix {
+    [[a[0], a[2]], [a[1], a[3]]]
 }
 
 fn any(inputs: &mut Inputs) -> Vec<f32> {
@@ -114,6 +125,70 @@ pub fn distribution_twins() -> Vec<Twin> {
             call: "put_weighted(whole_gaussian(distribution(0u)));",
             arguments: any,
             rust: |a, _, _| weighted_words(&distribution(a).whole()).to_vec(),
+        },
+        Twin {
+            name: "filtered_slope",
+            gives: Gives::Numbers,
+            call: "put2(filtered_slope(f3(0u)));",
+            arguments: |inputs| inputs.normal().to_vec(),
+            rust: |a, _, _| {
+                let Slope { x, y } = Distribution::of_normal(v3(a).into()).whole().mean;
+                vec![x, y]
+            },
+        },
+        Twin {
+            name: "transformed_gaussian",
+            gives: Gives::Numbers,
+            call: "put_weighted(transformed_gaussian(weighted(0u), mat2x2f(f2(6u), f2(8u))));",
+            arguments: |inputs| {
+                [&weighted_words(&inputs.mixture(1).gaussians()[0])[..], &matrix(inputs)].concat()
+            },
+            rust: |a, _, _| {
+                let WeightedGaussian { weight, mean, covariance } = weighted(a);
+                let matrix = matrix_of(&a[6..]);
+                let (mean, covariance) = (mean.transformed(matrix), covariance.transformed(matrix));
+                weighted_words(&WeightedGaussian { weight, mean, covariance }).to_vec()
+            },
+        },
+        Twin {
+            name: "transformed_distribution",
+            gives: Gives::Numbers,
+            call: "put_distribution(transformed_distribution(distribution(0u), mat2x2f(f2(28u), f2(30u))));",
+            arguments: |inputs| [any(inputs), matrix(inputs)].concat(),
+            rust: |a, _, _| distribution_words(&distribution(a).transformed(matrix_of(&a[WORDS..]))),
+        },
+        Twin {
+            name: "moved_gaussian",
+            gives: Gives::Numbers,
+            call: "put_weighted(moved_gaussian(weighted(0u), f2(6u), f3(8u)));",
+            arguments: |inputs| {
+                let (one, slope, more) = (inputs.mixture(1), inputs.slope(), inputs.covariance());
+                [&weighted_words(&one.gaussians()[0])[..], &slope, &more].concat()
+            },
+            rust: |a, _, _| {
+                let WeightedGaussian { weight, mean, covariance: own } = weighted(a);
+                let (mean, covariance) = (mean + slope(&a[6..]), own + covariance(&a[8..]));
+                weighted_words(&WeightedGaussian { weight, mean, covariance }).to_vec()
+            },
+        },
+        Twin {
+            name: "widened_distribution",
+            gives: Gives::Numbers,
+            call: "put_distribution(widened_distribution(distribution(0u), f3(28u)));",
+            arguments: |inputs| [any(inputs), inputs.covariance().to_vec()].concat(),
+            rust: |a, _, _| distribution_words(&distribution(a).widened(covariance(&a[WORDS..]))),
+        },
+        Twin {
+            name: "distribution_sum",
+            gives: Gives::Numbers,
+            call: "put_distribution(distribution_sum(distribution(0u), distribution(28u)));",
+            arguments: |inputs| {
+                let fewer = 1 + inputs.below(4);
+                let more = fewer + inputs.below(5 - fewer);
+                [distribution_words(&inputs.mixture(more)), distribution_words(&inputs.mixture(fewer))]
+                    .concat()
+            },
+            rust: |a, _, _| distribution_words(&distribution(a).plus(distribution(&a[WORDS..]))),
         },
         Twin {
             name: "base_in_map",
