@@ -26,9 +26,9 @@ const ZOOM: f64 = 1.25;
 /// Texels per pixel of the whole view, and of the magnified one.
 const WHOLE: f64 = 0.4;
 const MAGNIFIED: f64 = 1.0 / 12.0;
-/// The largest mean angle between the two methods, in degrees: Listing 1 differentiates heights between pixels, the normal map
-/// between texels.
-const SAME: f64 = 3.0;
+/// The largest mean angle between the two methods, relative to the angle of the bumps themselves: Listing 1 differentiates
+/// heights between pixels, the normal map between texels, and a tangent frame ignores how the texture is stretched.
+const SAME: f64 = 0.25;
 /// How much more of the magnified map's error the bicubic derivative must remove than the fine one.
 const SMOOTHER: f64 = 3.0;
 /// Repeats over the detail noise: cells per texel.
@@ -152,11 +152,11 @@ pub fn make(args: &Args) -> Result<Figure> {
     Ok(Figure {
         title: "heights on the screen against normal mapping",
         claim: format!(
-            "Listing 1 and normal mapping with tangents differ by at most {SAME}° on average, less than the bumps themselves; where the map \
+            "Listing 1 and normal mapping with tangents differ by at most {SAME} of the angle of the bumps themselves on average; where the map \
              is magnified, bicubic derivatives remove the facets: their error is at least {SMOOTHER} times smaller"
         ),
         numbers,
-        holds: of_normal_map.mean <= SAME && of_normal_map.mean < unperturbed.mean && ratio >= SMOOTHER,
+        holds: of_normal_map.mean <= SAME * unperturbed.mean && ratio >= SMOOTHER,
         making: format!(
             "{}; {}x{} pixels, {WHOLE} texels a pixel, and {MAGNIFIED:.3} where it is magnified. Errors of derivatives are angles to the \
              known normals of waves {} and {} texels long.",

@@ -2,6 +2,7 @@
 //! prove it.
 
 mod bumps;
+mod curvature;
 mod lean_13;
 mod lean_14;
 mod lean_2;
@@ -11,6 +12,7 @@ mod mikkelsen_1;
 mod mikkelsen_2;
 mod mikkelsen_3;
 mod mikkelsen_4;
+mod octaves;
 mod scene;
 
 use std::fs;
@@ -44,7 +46,9 @@ Figures:
   mikkelsen-1  the normal of displaced facets shows their edges, the surface gradient does not
   mikkelsen-2  Perlin's older perturbation turns normals inward
   mikkelsen-3  derivatives on the screen and in space agree where pixels are dense
-  mikkelsen-4  heights on the screen against normal mapping, and under magnification")]
+  mikkelsen-4  heights on the screen against normal mapping, and under magnification
+  octaves  octaves of noise finer than a pixel, which become roughness
+  geometric-aa  geometric specular antialiasing")]
 pub struct Args {
     /// Which figures [default: all]
     #[arg(value_name = "NAME", value_parser = one_of::<Name>())]
@@ -54,7 +58,7 @@ pub struct Args {
     #[arg(short, long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     output: PathBuf,
 
-    /// The mesh of mikkelsen-4 (.obj, .gltf, .glb), with texture coordinates [default: a torus]
+    /// The mesh of mikkelsen-4 (.obj, .gltf, .glb), with texture coordinates, and of geometric-aa [default: shapes of its own]
     #[arg(long, value_name = "MESH", value_hint = ValueHint::FilePath)]
     mesh: Option<PathBuf>,
 
@@ -75,6 +79,8 @@ enum Name {
     Mikkelsen2,
     Mikkelsen3,
     Mikkelsen4,
+    Octaves,
+    GeometricAa,
 }
 
 impl Named for Name {
@@ -89,6 +95,8 @@ impl Named for Name {
             Self::Mikkelsen2,
             Self::Mikkelsen3,
             Self::Mikkelsen4,
+            Self::Octaves,
+            Self::GeometricAa,
         ]
     }
 
@@ -103,6 +111,8 @@ impl Named for Name {
             Self::Mikkelsen2 => "mikkelsen-2",
             Self::Mikkelsen3 => "mikkelsen-3",
             Self::Mikkelsen4 => "mikkelsen-4",
+            Self::Octaves => "octaves",
+            Self::GeometricAa => "geometric-aa",
         }
     }
 }
@@ -119,6 +129,8 @@ impl Name {
             Self::Mikkelsen2 => mikkelsen_2::make(),
             Self::Mikkelsen3 => mikkelsen_3::make(),
             Self::Mikkelsen4 => mikkelsen_4::make(args),
+            Self::Octaves => octaves::make(),
+            Self::GeometricAa => curvature::make(args),
         }
     }
 }
