@@ -293,6 +293,14 @@ pub const MODULES: &[Module] = &[
         role: Role::Companion,
     },
     Module {
+        name: "noise",
+        source: include_str!("../noise.wgsl"),
+        needs: &[],
+        summary: "octaves of gradient noise, and the distribution of their slopes under a footprint",
+        citation: "Perlin, Improving Noise, 2002",
+        role: Role::Companion,
+    },
+    Module {
         name: "detail",
         source: include_str!("../detail.wgsl"),
         needs: &["distribution"],
