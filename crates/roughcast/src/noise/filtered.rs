@@ -179,3 +179,176 @@ impl CellFootprint {
         DVec3::new(round - long * cos, round + long * cos, -long * sin)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::Random;
+    use super::*;
+
+    const FRAME: [DVec3; 2] = [DVec3::X, DVec3::Y];
+
+    /// Rounding of a few numbers near one.
+    const ROUNDING: f64 = 1e-12;
+
+    fn noise(kind: NoiseKind) -> Noise {
+        Noise::default().with_kind(kind).with_octaves(5).with_frequency(3.0).with_amplitude(0.2).with_seed(8)
+    }
+
+    fn exact(noise: &Noise, p: DVec3, axes: [DVec3; 2]) -> [f64; 2] {
+        let gradient = noise.sample(p).gradient;
+        axes.map(|axis| -gradient.dot(axis))
+    }
+
+    fn is_close(a: &[f64], b: &[f64]) -> bool {
+        a.iter().zip(b).all(|(a, b)| (a - b).abs() < ROUNDING)
+    }
+
+    #[test]
+    fn no_footprint_leaves_the_exact_slope_and_an_infinite_one_only_its_variance() {
+        let mut random = Random(1);
+        for kind in NoiseKind::ALL {
+            let noise = noise(*kind);
+            let variance = noise.slope_variance();
+            for _ in 0..100 {
+                let (p, axes) = (random.position(), random.axes());
+                let slopes = |change: DVec3, filter| noise.slopes(p, axes, [change, -change], filter);
+                for filter in OctaveFilter::ALL {
+                    let sharp = slopes(DVec3::ZERO, *filter);
+                    assert!(is_close(&sharp.mean, &exact(&noise, p, axes)), "{sharp:?}");
+                    assert_eq!(sharp.covariance, [0.0; 3]);
+                }
+                for long in [1e9, 1e300, f64::INFINITY, f64::NAN] {
+                    let blurred = slopes(DVec3::splat(long), OctaveFilter::Fade);
+                    assert_eq!(blurred.mean, [0.0; 2]);
+                    assert!(is_close(&blurred.covariance, &[variance, variance, 0.0]), "{blurred:?}");
+                    assert_eq!(slopes(DVec3::splat(long), OctaveFilter::Drop), NoiseSlopes::default());
+                    let kept = slopes(DVec3::splat(long), OctaveFilter::Keep);
+                    assert!(is_close(&kept.mean, &exact(&noise, p, axes)) && kept.covariance == [0.0; 3]);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn positions_without_noise_have_no_slopes() {
+        for odd in [f64::NAN, f64::INFINITY, 1e300] {
+            let slopes = |p, filter| noise(NoiseKind::Fbm).slopes(p, FRAME, FRAME, filter);
+            for filter in OctaveFilter::ALL {
+                assert_eq!(slopes(DVec3::new(0.2, odd, 0.1), *filter), NoiseSlopes::default());
+            }
+        }
+        let unknown_plane = noise(NoiseKind::Fbm).slopes(DVec3::ONE, [DVec3::NAN; 2], FRAME, OctaveFilter::Fade);
+        assert_eq!(unknown_plane.mean, [0.0; 2]);
+        assert!(unknown_plane.covariance.iter().all(|c| c.is_finite()));
+    }
+
+    #[test]
+    fn variance_is_conserved() {
+        // Of one octave: what is kept and what is hidden add up along both axes, and hidden variances are not negative.
+        let mut random = Random(2);
+        for _ in 0..1000 {
+            let mut change = || DVec3::new(random.normal(), random.normal(), 0.0) * (3.0 * random.unit()).exp2() / 8.0;
+            let footprint = CellFootprint::new(FRAME, [change(), change()]);
+            for kind in NoiseKind::ALL {
+                let kept = footprint.kept(*kind, 1.0);
+                let [columns_x, columns_y] = [DVec2::X, DVec2::Y].map(|unit| footprint.filtered(kept, unit));
+                let square =
+                    [columns_x.length_squared(), columns_y.length_squared(), columns_x.dot(columns_y)];
+                let hidden = footprint.hidden(kept);
+                let total: Vec<f64> = square.iter().zip(hidden.to_array()).map(|(a, b)| a + b).collect();
+                assert!(is_close(&total, &[1.0, 1.0, 0.0]), "{total:?}");
+                assert!(hidden.x > -ROUNDING && hidden.x * hidden.y - hidden.z * hidden.z > -ROUNDING);
+            }
+        }
+    }
+
+    #[test]
+    fn turned_axes_turn_the_result() {
+        let mut random = Random(3);
+        for kind in NoiseKind::ALL {
+            for _ in 0..300 {
+                let (p, [x, y]) = (random.position(), random.axes());
+                let footprint = [x * 0.11 + y * 0.03, y * 0.02 - x * 0.01];
+                let (sin, cos) = (6.0 * random.unit()).sin_cos();
+                let of = |axes| noise(*kind).slopes(p, axes, footprint, OctaveFilter::Fade);
+                let (plain, turned) = (of([x, y]), of([cos * x + sin * y, cos * y - sin * x]));
+                let [mx, my] = plain.mean;
+                assert!(is_close(&turned.mean, &[cos * mx + sin * my, cos * my - sin * mx]));
+                let [xx, yy, xy] = plain.covariance;
+                let wanted = [
+                    cos * cos * xx + sin * sin * yy + 2.0 * sin * cos * xy,
+                    cos * cos * yy + sin * sin * xx - 2.0 * sin * cos * xy,
+                    (cos * cos - sin * sin) * xy + sin * cos * (yy - xx),
+                ];
+                assert!(is_close(&turned.covariance, &wanted), "{turned:?} and not {wanted:?}");
+                // The normal part of a change is ignored, and the order of the changes does not matter.
+                let raised = [footprint[1] + x.cross(y), footprint[0] - x.cross(y)];
+                let other = noise(*kind).slopes(p, [x, y], raised, OctaveFilter::Fade);
+                assert!(is_close(&other.mean, &plain.mean) && is_close(&other.covariance, &plain.covariance));
+            }
+        }
+    }
+
+    /// Means over many places of supersampled and of filtered slopes along one axis, per variance of the slopes.
+    #[derive(Clone, Copy, Debug, Default)]
+    struct Along {
+        /// Mean slope times exact slope: supersampled and filtered.
+        kept: [f64; 2],
+        /// Variance under the footprint.
+        hidden: [f64; 2],
+        /// Squared mean plus variance.
+        total: [f64; 2],
+    }
+
+    /// The same along both axes of footprints with these standard deviations in cells.
+    fn measure(noise: &Noise, deviations: [f64; 2], random: &mut Random) -> [Along; 2] {
+        const PLACES: u32 = 4000;
+        const SAMPLES: u32 = 64;
+        let mut along = [Along::default(); 2];
+        let unit = 1.0 / (f64::from(PLACES) * noise.slope_variance());
+        for _ in 0..PLACES {
+            let (p, axes) = (random.position(), random.axes());
+            let [long, short] = [0, 1].map(|i| axes[i] * deviations[i] / noise.frequency);
+            let (mut sum, mut squares) = ([0.0; 2], [0.0; 2]);
+            for _ in 0..SAMPLES {
+                let at = p + long * random.normal() + short * random.normal();
+                for (i, slope) in exact(noise, at, axes).into_iter().enumerate() {
+                    sum[i] += slope;
+                    squares[i] += slope * slope;
+                }
+            }
+            // A pixel's standard deviation is half the change to the next.
+            let filtered = noise.slopes(p, axes, [2.0 * long, 2.0 * short], OctaveFilter::Fade);
+            let here = exact(noise, p, axes);
+            for (i, along) in along.iter_mut().enumerate() {
+                let samples = f64::from(SAMPLES);
+                let (mean, raw) = (sum[i] / samples, squares[i] / samples);
+                let hidden = (raw - mean * mean) * samples / (samples - 1.0);
+                let pairs = [
+                    (&mut along.kept, mean * here[i], filtered.mean[i] * here[i]),
+                    (&mut along.hidden, hidden, filtered.covariance[i]),
+                    (&mut along.total, raw, filtered.mean[i].powi(2) + filtered.covariance[i]),
+                ];
+                for (sums, supersampled, filtered) in pairs {
+                    sums[0] += unit * supersampled;
+                    sums[1] += unit * filtered;
+                }
+            }
+        }
+        along
+    }
+
+    #[test]
+    fn filtered_slopes_agree_with_supersampled_ones() {
+        let mut random = Random(4);
+        for kind in NoiseKind::ALL {
+            let noise = Noise::default().with_kind(*kind).with_octaves(2).with_frequency(0.7);
+            for ratio in [1.0, 4.0, 8.0] {
+                for long in [0.1, 0.25, 0.6, 1.2] {
+                    let along = measure(&noise, [long, long / ratio], &mut random);
+                    println!("{kind} {ratio} {long}: {along:.3?}");
+                }
+            }
+        }
+    }
+}

@@ -50,8 +50,8 @@ impl NoiseSample {
 /// [`NOISE_SLOPE_VARIANCE`]. Positions that are not finite or not within [`NOISE_REACH`] are flat.
 ///
 /// The twin in WGSL chooses the same lattice gradients. Its position in single floats, a product with the frequency, is
-/// off by up to `|p| 2^-24`, and so the gradient by that times the second derivatives, which are below 11 for a unit
-/// direction; its own arithmetic adds a few roundings of numbers near one.
+/// off by up to `|p| 2^-24`, and so the gradient by that times the second derivative, which is at most about 13 along
+/// any direction (12.2 in four million samples); its own arithmetic adds a few roundings of numbers near one.
 ///
 /// Source: Perlin, "Improving Noise", 2002. He repeats four of the gradients to have 16. Then the variance of slopes
 /// along y would be a fifth larger than that along x and z, so here the twelve are equally likely.
@@ -109,4 +109,177 @@ pub(super) fn lattice_gradient(hash: u32) -> DVec3 {
 fn corner_noise(hash: u32, offset: DVec3) -> NoiseSample {
     let gradient = lattice_gradient(hash);
     NoiseSample { value: gradient.dot(offset), gradient }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::Random;
+    use super::*;
+
+    /// Rounding of a few numbers near one, and of positions up to 500 times the slope.
+    const ROUNDING: f64 = 1e-12;
+
+    fn lattice(corner: [i32; 3], seed: u32) -> DVec3 {
+        let [x, y, z] = corner.map(|c| c as u32);
+        let plane = noise_hash(z.wrapping_add(noise_hash(seed)));
+        lattice_gradient(noise_hash(x.wrapping_add(noise_hash(y.wrapping_add(plane)))))
+    }
+
+    /// The definition: the sum over all corners of the weight times the linear function.
+    fn eight_corners(p: DVec3, seed: u32) -> f64 {
+        let fade = |t: f64| 6.0 * t.powi(5) - 15.0 * t.powi(4) + 10.0 * t.powi(3);
+        let mut sum = 0.0;
+        for corner in 0..8 {
+            let at: [i32; 3] =
+                std::array::from_fn(|axis| p[axis].floor() as i32 + i32::from(corner >> axis & 1 == 1));
+            let offset = p - DVec3::from_array(at.map(f64::from));
+            let weight: f64 = offset.to_array().iter().map(|d| fade(1.0 - d.abs())).product();
+            sum += weight * lattice(at, seed).dot(offset);
+        }
+        sum
+    }
+
+    #[test]
+    fn noise_is_the_sum_over_eight_corners() {
+        let mut random = Random(1);
+        for seed in 0..2000 {
+            let p = random.position();
+            let (got, wanted) = (gradient_noise(p, seed).value, eight_corners(p, seed));
+            assert!((got - wanted).abs() < ROUNDING, "{p}: {got} and not {wanted}");
+        }
+    }
+
+    #[test]
+    fn the_gradient_is_the_derivative() {
+        const STEP: f64 = 1e-4;
+        // A central difference is off by a sixth of the squared step times the third derivative. The third derivative
+        // of a weight is at most 60, that of a product with a linear function at most about 400.
+        const TOLERANCE: f64 = 400.0 * STEP * STEP / 6.0;
+        let mut random = Random(2);
+        for seed in 0..5000 {
+            let p = random.position();
+            let value = |p: DVec3| gradient_noise(p, seed).value;
+            let along = |axis: DVec3| (value(p + axis * STEP) - value(p - axis * STEP)) / (2.0 * STEP);
+            let differences = DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z));
+            let error = (gradient_noise(p, seed).gradient - differences).abs().max_element();
+            assert!(error < TOLERANCE, "{p}: {error}");
+        }
+    }
+
+    #[test]
+    fn lattice_points_have_their_gradient_and_no_height() {
+        for (seed, corner) in [[0, 0, 0], [-1, 5, 7], [12, -300, 4], [1 << 29, -(1 << 29), 3]].into_iter().enumerate()
+        {
+            let sample = gradient_noise(DVec3::from_array(corner.map(f64::from)), seed as u32);
+            assert_eq!(sample, NoiseSample { value: 0.0, gradient: lattice(corner, seed as u32) });
+        }
+    }
+
+    #[test]
+    fn faces_of_cells_are_smooth() {
+        const BESIDE: f64 = 1e-9;
+        // Twice the distance, times the largest slope, below 4, or second derivative, below 13.
+        const TOLERANCE: f64 = 2.0 * BESIDE * 13.0;
+        let mut random = Random(3);
+        for i in 0..3000 {
+            let (mut p, axis) = (random.position(), i % 3);
+            p[axis] = p[axis].floor();
+            let sides = [-BESIDE, BESIDE].map(|side| {
+                let mut beside = p;
+                beside[axis] += side;
+                gradient_noise(beside, 5)
+            });
+            assert!((sides[0].value - sides[1].value).abs() < TOLERANCE, "{p}");
+            assert!((sides[0].gradient - sides[1].gradient).abs().max_element() < TOLERANCE, "{p}");
+        }
+    }
+
+    #[test]
+    fn no_choice_of_gradients_exceeds_the_largest_value() {
+        const STEPS: u32 = 80;
+        let fade = |t: f64| t * t * t * (t * (6.0 * t - 15.0) + 10.0);
+        // The gradients of the corners are independent: each may be the one that rises the most to this point, where its
+        // function is the sum of the two longest offsets.
+        let bound = |t: [f64; 3]| -> f64 {
+            let corner = |corner: usize| {
+                let d: [f64; 3] = std::array::from_fn(|i| if corner >> i & 1 == 1 { 1.0 - t[i] } else { t[i] });
+                let shortest = d[0].min(d[1]).min(d[2]);
+                d.map(|d| fade(1.0 - d)).iter().product::<f64>() * (d[0] + d[1] + d[2] - shortest)
+            };
+            (0..8).map(corner).sum()
+        };
+        let at = |i: u32| 0.5 * f64::from(i) / f64::from(STEPS);
+        let mut largest = 0.0_f64;
+        for (i, j, k) in (0..=STEPS).flat_map(|i| (i..=STEPS).flat_map(move |j| (j..=STEPS).map(move |k| (i, j, k)))) {
+            largest = largest.max(bound([at(i), at(j), at(k)]));
+        }
+        assert!(largest < LARGEST_NOISE && largest > LARGEST_NOISE - 1e-3, "{largest}");
+    }
+
+    #[test]
+    fn all_gradients_are_equally_likely_and_independent() {
+        const SIDE: i32 = 40;
+        const COUNT: f64 = (SIDE * SIDE * SIDE) as f64;
+        /// Standard deviations that the largest of a few dozen random numbers stays within.
+        const DEVIATIONS: f64 = 4.0;
+        let points = (0..SIDE).flat_map(|x| (0..SIDE).flat_map(move |y| (0..SIDE).map(move |z| [x, y, z])));
+        let mut counts = std::collections::BTreeMap::new();
+        let steps = [[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, -1, 0], [0, 1, 1], [1, 0, -1], [2, 0, 0]];
+        let (mut neighbours, mut next_seed) = ([0.0; 8], 0.0);
+        for [x, y, z] in points {
+            let here = [x - SIDE / 2, y - SIDE / 2, z - SIDE / 2];
+            let gradient = lattice(here, 9);
+            *counts.entry(gradient.to_array().map(|c| c as i32)).or_insert(0_u32) += 1;
+            next_seed += gradient.dot(lattice(here, 10));
+            for (sum, step) in neighbours.iter_mut().zip(steps) {
+                *sum += gradient.dot(lattice(std::array::from_fn(|i| here[i] + step[i]), 9));
+            }
+        }
+        assert_eq!(counts.len(), 12);
+        let expected = COUNT / 12.0;
+        let deviation = (expected * 11.0 / 12.0).sqrt();
+        for (gradient, count) in counts {
+            assert!((f64::from(count) - expected).abs() < DEVIATIONS * deviation, "{gradient:?}: {count}");
+        }
+        // The product of two independent gradients has the variance 3 (2/3)^2.
+        let deviation = (COUNT * 4.0 / 3.0).sqrt();
+        for sum in neighbours.into_iter().chain([next_seed]) {
+            assert!(sum.abs() < DEVIATIONS * deviation, "{neighbours:?} {next_seed}");
+        }
+    }
+
+    #[test]
+    fn values_have_mean_zero_and_slopes_the_stated_variance() {
+        const COUNT: u32 = 200_000;
+        let mut random = Random(4);
+        let (mut sum, mut squares, mut slopes, mut fourth) = (0.0, 0.0, DVec3::ZERO, 0.0);
+        for _ in 0..COUNT {
+            let NoiseSample { value, gradient } = gradient_noise(random.position(), 1);
+            assert!(value.abs() <= LARGEST_NOISE);
+            (sum, squares) = (sum + value, squares + value * value);
+            slopes += gradient * gradient;
+            fourth += gradient.x.powi(4);
+        }
+        // Four standard errors of a mean: of the values, and of the squares of slopes.
+        let error = |square: f64| 4.0 * (square / f64::from(COUNT)).sqrt();
+        let count = f64::from(COUNT);
+        assert!((sum / count).abs() < error(squares / count), "{}", sum / count);
+        let variance = slopes / count;
+        let off = (variance - NOISE_SLOPE_VARIANCE).abs().max_element();
+        assert!(off < error(fourth / count - variance.x * variance.x), "{variance}");
+    }
+
+    #[test]
+    fn positions_without_noise_are_flat() {
+        for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, NOISE_REACH, -NOISE_REACH, 1e300] {
+            for axis in 0..3 {
+                let mut p = DVec3::new(0.3, 0.4, 0.6);
+                p[axis] = odd;
+                assert_eq!(gradient_noise(p, 0), NoiseSample::FLAT, "{p}");
+            }
+        }
+        // The last cells have noise.
+        assert_ne!(gradient_noise(DVec3::splat(NOISE_REACH - 0.5), 0), NoiseSample::FLAT);
+        assert_ne!(gradient_noise(DVec3::splat(0.5 - NOISE_REACH), 0), NoiseSample::FLAT);
+    }
 }

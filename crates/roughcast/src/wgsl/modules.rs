@@ -298,7 +298,7 @@ pub const MODULES: &[Module] = &[
         needs: &[],
         summary: "octaves of gradient noise, and the distribution of their slopes under a footprint",
         citation: "Perlin, Improving Noise, 2002",
-        role: Role::Companion,
+        role: Role::Part,
     },
     Module {
         name: "detail",
