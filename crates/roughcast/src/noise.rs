@@ -158,7 +158,8 @@ impl Noise {
     ///
     /// Source: Mikkelsen, "Bump Mapping Unparametrized Surfaces on the GPU", 2010, section 6.
     pub fn numeric_gradient(&self, p: DVec3, step: f64) -> DVec3 {
-        let along = |axis: DVec3| (self.height(p + axis * step) - self.height(p - axis * step)) / (2.0 * step);
+        let along =
+            |axis: DVec3| (self.height(p + axis * step) - self.height(p - axis * step)) / (2.0 * step);
         DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z))
     }
 
@@ -221,7 +222,8 @@ mod unit_tests {
         let mut random = Random(1);
         for _ in 0..200 {
             let p = random.position();
-            let noise = Noise { octaves: 3, frequency: 1.7, amplitude: 0.3, seed: u32::MAX, ..Noise::default() };
+            let noise =
+                Noise { octaves: 3, frequency: 1.7, amplitude: 0.3, seed: u32::MAX, ..Noise::default() };
             let octaves = [(1.0, u32::MAX), (2.0, 0), (4.0, 1)]
                 .map(|(scale, seed)| (scale, gradient_noise(p * 1.7 * scale, seed).value));
             let fbm: f64 = octaves.iter().map(|(scale, value)| 0.3 * value / scale).sum();
@@ -329,7 +331,8 @@ mod unit_tests {
         assert_eq!(noise.to_words(), [2.5_f32.to_bits(), (-0.25_f32).to_bits(), 7, 0, 77, 0, 0, 0]);
         let (_, rest) = include_str!("noise.wgsl").split_once("struct Noise {").expect("it is there");
         let (fields, _) = rest.split_once('}').expect("it ends");
-        let names: Vec<&str> = fields.lines().filter_map(|line| Some(line.trim().split_once(':')?.0)).collect();
+        let names: Vec<&str> =
+            fields.lines().filter_map(|line| Some(line.trim().split_once(':')?.0)).collect();
         assert_eq!(names, ["frequency", "amplitude", "octaves", "kind", "seed", "unused_word", "unused"]);
     }
 }

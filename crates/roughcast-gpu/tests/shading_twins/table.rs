@@ -7,6 +7,7 @@ use crate::distribution_table::{distribution_twins, model_twins};
 use crate::footprint_table::{footprint_twins, masking_twins};
 use crate::harness::{Gives, Twin};
 use crate::inputs::{Inputs, gaussian_words};
+use crate::noise_table::noise_twins;
 use crate::texel_table::texel_twins;
 
 pub fn v3(a: &[f32]) -> [f32; 3] {
@@ -263,6 +264,7 @@ pub fn twins() -> Vec<Twin> {
         model_twins(),
         surface_twins(),
         lobe_twins(),
+        noise_twins(),
     ]
     .into_iter()
     .flatten()

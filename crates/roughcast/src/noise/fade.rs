@@ -17,16 +17,14 @@ const LAST: usize = 24;
 /// That distance matters to planes along two axes of the lattice: their variance of slopes is 0.45 half-way between
 /// lattice points and up to 0.53 near them, 0.9 to 1.06 times the mean.
 pub(super) const FBM: [f64; LAST + 1] = [
-    1.0, 0.9716, 0.8935, 0.7827, 0.6582, 0.5353, 0.4243, 0.3299, 0.2534, 0.1932,
-    0.147, 0.112, 0.0857, 0.066, 0.0512, 0.0401, 0.0316, 0.0252, 0.0202, 0.0163,
-    0.0133, 0.011, 0.0091, 0.0077, 0.0,
+    1.0, 0.9716, 0.8935, 0.7827, 0.6582, 0.5353, 0.4243, 0.3299, 0.2534, 0.1932, 0.147, 0.112, 0.0857, 0.066,
+    0.0512, 0.0401, 0.0316, 0.0252, 0.0202, 0.0163, 0.0133, 0.011, 0.0091, 0.0077, 0.0,
 ];
 
 /// The same for turbulence, whose creases fade sooner.
 pub(super) const TURBULENCE: [f64; LAST + 1] = [
-    1.0, 0.8175, 0.6195, 0.4412, 0.301, 0.2008, 0.1331, 0.0888, 0.0601, 0.0415,
-    0.0294, 0.0212, 0.0157, 0.012, 0.009, 0.0069, 0.0054, 0.0043, 0.0035, 0.0027,
-    0.0023, 0.0017, 0.0014, 0.0012, 0.0,
+    1.0, 0.8175, 0.6195, 0.4412, 0.301, 0.2008, 0.1331, 0.0888, 0.0601, 0.0415, 0.0294, 0.0212, 0.0157,
+    0.012, 0.009, 0.0069, 0.0054, 0.0043, 0.0035, 0.0027, 0.0023, 0.0017, 0.0014, 0.0012, 0.0,
 ];
 
 /// The part of the slopes of an octave that a round Gaussian footprint keeps, 0 to 1. `variance` is that of the
@@ -110,7 +108,8 @@ mod tests {
         for kind in NoiseKind::ALL {
             assert_eq!(noise_fade(*kind, 0.0), 1.0);
             assert_eq!([1.44, 1e30, f64::INFINITY].map(|variance| noise_fade(*kind, variance)), [0.0; 3]);
-            let values: Vec<f64> = (0..=150).map(|i| noise_fade(*kind, (0.01 * f64::from(i)).powi(2))).collect();
+            let values: Vec<f64> =
+                (0..=150).map(|i| noise_fade(*kind, (0.01 * f64::from(i)).powi(2))).collect();
             assert!(values.is_sorted_by(|a, b| a >= b), "{values:?}");
         }
     }

@@ -70,7 +70,10 @@ pub fn gradient_noise(p: DVec3, seed: u32) -> NoiseSample {
         let row = noise_hash(y.wrapping_add(y_offset).wrapping_add(plane));
         let corner = |x_offset: u32| {
             let offset = [x_offset, y_offset, z_offset].map(f64::from);
-            corner_noise(noise_hash(x.wrapping_add(x_offset).wrapping_add(row)), t - DVec3::from_array(offset))
+            corner_noise(
+                noise_hash(x.wrapping_add(x_offset).wrapping_add(row)),
+                t - DVec3::from_array(offset),
+            )
         };
         corner(0).blend(corner(1), weight.x, DVec3::X * change.x)
     };
@@ -168,7 +171,8 @@ mod tests {
 
     #[test]
     fn lattice_points_have_their_gradient_and_no_height() {
-        for (seed, corner) in [[0, 0, 0], [-1, 5, 7], [12, -300, 4], [1 << 29, -(1 << 29), 3]].into_iter().enumerate()
+        for (seed, corner) in
+            [[0, 0, 0], [-1, 5, 7], [12, -300, 4], [1 << 29, -(1 << 29), 3]].into_iter().enumerate()
         {
             let sample = gradient_noise(DVec3::from_array(corner.map(f64::from)), seed as u32);
             assert_eq!(sample, NoiseSample { value: 0.0, gradient: lattice(corner, seed as u32) });
@@ -202,7 +206,8 @@ mod tests {
         // function is the sum of the two longest offsets.
         let bound = |t: [f64; 3]| -> f64 {
             let corner = |corner: usize| {
-                let d: [f64; 3] = std::array::from_fn(|i| if corner >> i & 1 == 1 { 1.0 - t[i] } else { t[i] });
+                let d: [f64; 3] =
+                    std::array::from_fn(|i| if corner >> i & 1 == 1 { 1.0 - t[i] } else { t[i] });
                 let shortest = d[0].min(d[1]).min(d[2]);
                 d.map(|d| fade(1.0 - d)).iter().product::<f64>() * (d[0] + d[1] + d[2] - shortest)
             };
@@ -210,7 +215,9 @@ mod tests {
         };
         let at = |i: u32| 0.5 * f64::from(i) / f64::from(STEPS);
         let mut largest = 0.0_f64;
-        for (i, j, k) in (0..=STEPS).flat_map(|i| (i..=STEPS).flat_map(move |j| (j..=STEPS).map(move |k| (i, j, k)))) {
+        for (i, j, k) in
+            (0..=STEPS).flat_map(|i| (i..=STEPS).flat_map(move |j| (j..=STEPS).map(move |k| (i, j, k))))
+        {
             largest = largest.max(bound([at(i), at(j), at(k)]));
         }
         assert!(largest < LARGEST_NOISE && largest > LARGEST_NOISE - 1e-3, "{largest}");
@@ -224,7 +231,8 @@ mod tests {
         const DEVIATIONS: f64 = 4.0;
         let points = (0..SIDE).flat_map(|x| (0..SIDE).flat_map(move |y| (0..SIDE).map(move |z| [x, y, z])));
         let mut counts = std::collections::BTreeMap::new();
-        let steps = [[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, -1, 0], [0, 1, 1], [1, 0, -1], [2, 0, 0]];
+        let steps =
+            [[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, -1, 0], [0, 1, 1], [1, 0, -1], [2, 0, 0]];
         let (mut neighbours, mut next_seed) = ([0.0; 8], 0.0);
         for [x, y, z] in points {
             let here = [x - SIDE / 2, y - SIDE / 2, z - SIDE / 2];
