@@ -18,6 +18,7 @@
 //!    bounds their errors. [`precision`] determines which sample type represents which shininess.
 //! 5. **Shading.** A [`texture::TexelReader`] converts filtered texels to a [`Distribution`] of slopes, and the models
 //!    in [`shading`] shade with it. [`wgsl`] contains the same functions for GPUs.
+//! 6. **Procedural bumps.** [`noise`] gives the [`Distribution`] of gradient noise under a footprint, without textures.
 //!
 //! # Out of scope
 //!
@@ -40,15 +41,15 @@
 //!
 //! # Compatibility
 //!
-//! - *Options* ([`SourceOptions`], [`BakeOptions`], [`PbrOptions`], [`shading::ShadingOptions`]) are
-//!   `#[non_exhaustive]`: start from `default()` and change fields with the `with_…` methods. A minor version may add a
-//!   field, whose default changes no byte.
+//! - *Options* ([`SourceOptions`], [`BakeOptions`], [`PbrOptions`], [`shading::ShadingOptions`], [`noise::Noise`])
+//!   are `#[non_exhaustive]`: start from `default()` and change fields with the `with_…` methods. A minor version may add
+//!   a field, whose default changes no byte.
 //! - *Metadata* ([`texture::TextureInfo`]) is a plain struct with public fields. End its initialisers with
 //!   `..TextureInfo::new(…)`, even if they name all fields, because a minor version may add one.
 //! - *Reports* are `#[non_exhaustive]`: callers read them and never construct them.
 //! - *Enums* that may grow (layouts, parts, models, errors) are `#[non_exhaustive]`. Enums that every map reader or
 //!   sampler must handle are exhaustive: [`SampleType`], [`Wrap`], [`Gradient`], [`MaxSlope`], [`Kind`], [`Green`],
-//!   [`Red`], [`NormalRange`] and [`HeightSense`].
+//!   [`Red`], [`NormalRange`], [`HeightSense`], [`noise::NoiseKind`] and [`noise::OctaveFilter`].
 //! - *Values* ([`Slope`], [`Moments`], [`Covariance`]) have exactly the components that they have in the papers.
 //!
 //! # Features

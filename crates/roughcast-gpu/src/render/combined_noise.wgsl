@@ -3,7 +3,7 @@
 
 struct NoiseOptions {
     noise: Noise,
-    octaves: u32,       // OCTAVES_...: what becomes of octaves that are finer than the pixel
+    octaves: u32,       // NOISE_OCTAVES_...: what becomes of octaves that are finer than the pixel
 }
 
 fn combined_slope(at: DetailPoint) -> vec2f {
@@ -17,5 +17,5 @@ fn combined_distribution(at: DetailPoint) -> Distribution {
         noise_options.octaves,
     );
     let mean = at.side * slopes.mean;
-    return distribution_sum(placed_distribution(at), one_gaussian(slope_normal(mean), mean, vec3f(slopes.variance, slopes.covariance), MAPS_WITHOUT_BASE));
+    return distribution_sum(placed_distribution(at), one_gaussian(slope_normal(mean), mean, slopes.covariance, MAPS_WITHOUT_BASE));
 }

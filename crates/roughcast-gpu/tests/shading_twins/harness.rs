@@ -43,6 +43,10 @@ pub enum Gives {
     Axes,
     /// The eight words of a footprint's ratio: parts and their complements to one.
     Ratio,
+    /// Numbers that are small differences of numbers of the size of one.
+    Cancelled,
+    /// The four words of a footprint of noise, whose direction is a small difference if it is nearly round.
+    Footprint,
     /// The eight words of a facet of GGX, whose tangent is a small difference of vectors.
     Ggx,
 }
@@ -198,6 +202,11 @@ fn cancellation(gives: Gives, wanted: &[f32]) -> Vec<f32> {
         }
         // The part of the derivatives along the shorter axis.
         Gives::Axes => left[4..6].fill(unit * wanted[0].sqrt() / wanted[1]),
+        Gives::Cancelled => left.fill(unit),
+        Gives::Footprint => {
+            left[..2].fill(unit * wanted[2] / wanted[3].max(unit * wanted[2]));
+            left[3] = unit * wanted[2];
+        }
         Gives::Ratio => [0, 2, 7].iter().for_each(|place| left[*place] = unit),
         // For a direction in the surface's plane, the part across the normal is no shorter than the normal's z.
         Gives::Ggx => left[4..7].fill(unit / wanted[2]),

@@ -177,3 +177,8 @@ fn put_mixture(surface: MixtureSurface) {
     put_gaussian(surface.third);
     put_gaussian(surface.fourth);
 }
+
+// Frequency, amplitude, and three whole numbers.
+fn noise(i: u32) -> Noise {
+    return Noise(f(i), f(i + 1u), u32(f(i + 2u) + 0.5), u32(f(i + 3u) + 0.5), u32(f(i + 4u) + 0.5), 0u, vec2u(0u));
+}

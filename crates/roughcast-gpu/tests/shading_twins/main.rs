@@ -7,6 +7,7 @@ mod distribution_table;
 mod footprint_table;
 mod harness;
 mod inputs;
+mod noise_table;
 mod surface_table;
 mod table;
 mod texel_table;
@@ -229,6 +230,11 @@ fn wrong_twins_are_detected() {
             "0.5 * log2(1.0 + 12.0 * filtered.variances.x)",
             "log2(1.0 + 12.0 * filtered.variances.x)",
         ),
+        ("gradient_noise", "t * (t * (t - 2.0) + 1.0)", "t * (t * (t - 2.0) + 1.01)"),
+        ("noise_sample", "noise.seed + octave", "noise.seed"),
+        ("noise_octave", "sign(value.w) * value", "abs(value)"),
+        ("noise_kept", "max(footprint.centre - swing, vec2f(0.0))", "vec2f(footprint.centre)"),
+        ("noise_distribution", "c.y * g.x - c.x * g.y", "c.x * g.y - c.y * g.x"),
     ];
     for (name, from, to) in mistakes {
         assert_eq!(right.matches(from).count(), 1, "{from}");

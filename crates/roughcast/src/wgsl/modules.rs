@@ -125,14 +125,6 @@ pub const MODULES: &[Module] = &[
         role: Role::Companion,
     },
     Module {
-        name: "noise",
-        source: include_str!("../noise/noise.wgsl"),
-        needs: &[],
-        summary: "octaves of gradient noise, and the distribution of their slopes under a pixel",
-        citation: "Perlin, Improving Noise, 2002",
-        role: Role::Companion,
-    },
-    Module {
         name: "geometric",
         source: include_str!("../shading/geometric.wgsl"),
         needs: &[],
@@ -314,6 +306,14 @@ pub const MODULES: &[Module] = &[
         needs: &["options", "vector"],
         summary: "ambient, diffuse and specular radiance of a lobe, with Schlick's Fresnel term",
         citation: "Schlick, A customizable reflectance model for everyday rendering, 1993; Kilgard, 2000",
+        role: Role::Companion,
+    },
+    Module {
+        name: "noise",
+        source: include_str!("../noise.wgsl"),
+        needs: &[],
+        summary: "octaves of gradient noise, and the distribution of their slopes under a footprint",
+        citation: "Perlin, Improving Noise, 2002",
         role: Role::Companion,
     },
     Module {
