@@ -2,24 +2,17 @@
 
 mod common;
 
+use common::drawn::{by_cpu, by_gpu, compared, options};
 use common::gpu;
-use common::pictures::{Apart, apart, inside};
-use common::scenes::{SIZE, SPECULAR_POWER, maps, scenes};
+use common::scenes::{maps, scenes};
 use glam::DVec3;
 use roughcast::shading::{Shading, ShadingOptions};
 use roughcast::texture::{Base, Layout};
 use roughcast::{BakeOptions, Covariance, Distribution, SampleType, Slope};
-use roughcast_gpu::render::{
-    Bumps, DetailCode, DrawOptions, Geometry, GpuDetail, RenderTarget, Renderer, render,
-};
-use roughcast_gpu::{Gpu, GpuError};
-use roughcast_scene::render::{Method, unwatched};
-use roughcast_scene::{
-    BakedTextures, Detail, DetailPoint, Filter, Picture, Resolved, Sampler, Scene, Shape, View,
-};
+use roughcast_gpu::GpuError;
+use roughcast_gpu::render::{Bumps, DetailCode, DrawOptions, GpuDetail};
+use roughcast_scene::{BakedTextures, Detail, DetailPoint, Filter, Resolved, Sampler, Shape, View};
 
-/// Number of squares along v in the mesh of a round shape.
-const DETAIL: u32 = 256;
 /// Mean difference of radiance between the renderers: single against double precision on flat shapes, and triangles that
 /// lie within 2e-5 of round ones. Largest measured: 5.4e-5, on the torus.
 const SAME_BUMPS: f64 = 5e-4;
@@ -50,28 +43,6 @@ impl Detail for Washboard {
         Distribution::gaussian(Slope { x: 0.5 * x, y: 0.5 * y }, Covariance { xx, yy, xy })
             .with_base(Base::None)
     }
-}
-
-fn options() -> ShadingOptions {
-    ShadingOptions::default().with_specular_power(SPECULAR_POWER)
-}
-
-fn by_cpu(scene: &Scene, shading: Shading, detail: &dyn Detail) -> Picture {
-    let options = detail.options(options());
-    Method { shading, detail, options }.render(scene, SIZE, &unwatched).expect("a picture")
-}
-
-fn by_gpu(gpu: &Gpu, scene: &Scene, detail: &GpuDetail, options: &DrawOptions) -> Result<Picture, GpuError> {
-    pollster::block_on(async {
-        let mut renderer = Renderer::new(gpu, RenderTarget::Parts).await?;
-        let geometry = Geometry::new(gpu, &scene.shape, DETAIL).await?;
-        let mut drawing = renderer.prepare(&geometry, detail, options).await?;
-        render(&renderer, &mut drawing, scene, SIZE).await
-    })
-}
-
-fn compared(cpu: &Picture, gpu: &Picture) -> Apart {
-    apart(cpu, gpu, |i| cpu.coverage()[i] > 0.0 && inside(cpu, gpu, i))
 }
 
 #[test]

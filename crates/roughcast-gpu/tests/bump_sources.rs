@@ -1,0 +1,241 @@
+//! Sources of bumps that need no tangents, on the GPU against the CPU: heights on the screen, textures placed by
+//! derivatives and along three axes, noise, and curvature.
+
+mod common;
+
+use std::sync::Arc;
+
+use common::drawn::{by_cpu, by_gpu, compared, options};
+use common::gpu;
+use common::scenes::{maps, scene, scenes};
+use roughcast::noise::{Noise, NoiseKind, OctaveFilter};
+use roughcast::shading::{GeometricFilter, Shading};
+use roughcast::{Image, Kind, SampleType, Samples, SourceOptions};
+use roughcast_gpu::Gpu;
+use roughcast_gpu::render::{Bumps, DrawOptions, GpuDetail, GpuPlacement};
+use roughcast_scene::{
+    BakedTextures, Combined, Curved, Detail, Filter, HeightDerivative, HeightDetail, HeightMap, Mesh,
+    NoiseDetail, Picture, Placement, Resolved, Sampler, Scene, Shape, Strengthened, TangentSource, Triplanar,
+    View, height_texture, isosurface, pattern,
+};
+
+/// Mean difference of radiance between the renderers for bumps computed in the shader: single against double precision,
+/// and triangles that lie within 2e-5 of round shapes.
+const SAME_BUMPS: f64 = 5e-4;
+/// The same with textures that graphics hardware interpolates at a known level, in steps of 1/256 of a texel.
+const INTERPOLATED: f64 = 2e-3;
+/// How much more other pictures differ.
+const OTHERS: f64 = 4.0;
+
+/// At a fixed level, where hardware and the CPU's filter agree.
+fn sampler() -> Sampler {
+    Sampler::default().with_filter(Filter::Trilinear).with_level(Some(1.0))
+}
+
+fn draw() -> DrawOptions {
+    DrawOptions::default().with_sampler(sampler()).with_shading_options(options())
+}
+
+/// The shapes of all tests, and a mesh without texture coordinates.
+fn all_scenes() -> Vec<(&'static str, Scene)> {
+    let mesh = Mesh::new(vec![isosurface(32)]).expect("a mesh");
+    let mut all = scenes(View::Mid);
+    all.push(("isosurface", scene(Shape::Mesh(Arc::new(mesh)), View::Mid)));
+    all
+}
+
+/// Whether a source on the CPU and one on the GPU give the same picture, with exact slopes and with distributions.
+fn assert_same(
+    name: &str,
+    scene: &Scene,
+    cpu: &dyn Detail,
+    there: &GpuDetail,
+    tolerance: f64,
+) -> [Picture; 2] {
+    let gpu = gpu();
+    [Bumps::Filtered, Bumps::Resolved].map(|bumps| {
+        let picture = by_gpu(gpu, scene, there, &draw().with_bumps(bumps)).expect("a picture");
+        let here = match bumps {
+            Bumps::Filtered => by_cpu(scene, Shading::Lean, cpu),
+            _ => by_cpu(scene, Shading::Lean, &Resolved(cpu)),
+        };
+        let same = compared(&here, &picture);
+        println!("{name}, {bumps:?}: {:e}", same.mean);
+        assert!(same.mean < tolerance && same.covered > 1000, "{name}, {bumps:?}: {same:?}");
+        picture
+    })
+}
+
+/// Noise with cells of a fraction of the scene, of whose octaves the last are finer than a pixel.
+fn noise(scene: &Scene, kind: NoiseKind) -> Noise {
+    let frequency = 3.0 / scene.shape.bounds().radius;
+    Noise::default()
+        .with_kind(kind)
+        .with_octaves(7)
+        .with_frequency(frequency)
+        .with_amplitude(0.15 / frequency)
+        .with_seed(17)
+}
+
+#[test]
+fn noise_is_the_same_on_both() {
+    let gpu = gpu();
+    for (name, scene) in all_scenes() {
+        for kind in NoiseKind::ALL {
+            let mut pictures = Vec::new();
+            for filter in OctaveFilter::ALL {
+                let noise = noise(&scene, *kind);
+                let here = NoiseDetail { filter: *filter, ..NoiseDetail::new(noise) };
+                let there = GpuDetail::of_noise(Shading::Lean, noise, *filter);
+                pictures.push(assert_same(&gpu, (name, &scene), &here, &there, SAME_BUMPS));
+            }
+            // The filters of octaves differ, and exact slopes have none.
+            let [fade, drop, keep] = &pictures[..] else { panic!("three filters") };
+            for (one, other) in [(fade, drop), (drop, keep), (keep, fade)] {
+                assert!(compared(&one[0], &other[0]).mean > OTHERS * SAME_BUMPS, "{name}, {kind}");
+                assert!(compared(&one[1], &other[1]).mean == 0.0, "{name}, {kind}");
+            }
+        }
+    }
+}
+
+#[test]
+fn textures_are_placed_alike_without_tangents() {
+    let arrays = maps(Shading::Lean, SampleType::F16);
+    let textures = BakedTextures::of_model(Shading::Lean, &arrays).expect("its own textures");
+    let gpu = gpu();
+    let of_model = pollster::block_on(GpuDetail::of_model(&gpu, Shading::Lean, &arrays)).expect("textures");
+    for (name, scene) in scenes(View::Mid) {
+        let texel = scene.shape.bounds().radius / 200.0;
+        let by_derivatives = Placement::default().with_tangent_source(TangentSource::Derivatives);
+        let sized = Placement::default().with_world_height_per_texel(texel);
+        for placement in [Placement::default(), by_derivatives, sized] {
+            let here = textures.sampled(sampler()).placed(placement);
+            let there = of_model.clone().placed(placement);
+            let pictures = assert_same(&gpu, (name, &scene), &here, &there, INTERPOLATED);
+            // A different height is another picture.
+            let twice = Placement::default().with_world_height_per_texel(2.0 * texel);
+            let other = by_cpu(&scene, Shading::Lean, &textures.sampled(sampler()).placed(twice));
+            assert!(compared(&other, &pictures[0]).mean > INTERPOLATED, "{name}, {placement:?}");
+        }
+    }
+}
+
+#[test]
+fn projections_along_three_axes_are_the_same_on_both() {
+    let arrays = maps(Shading::Lean, SampleType::F16);
+    let textures = BakedTextures::of_model(Shading::Lean, &arrays).expect("its own textures");
+    let gpu = gpu();
+    let of_model = pollster::block_on(GpuDetail::of_model(&gpu, Shading::Lean, &arrays)).expect("textures");
+    for (name, mut scene) in all_scenes() {
+        let radius = scene.shape.bounds().radius;
+        scene.repeats = 4.0 / radius;
+        let texel = 1.0 / (scene.repeats * common::scenes::SIDE as f64);
+        let placement = Placement::default()
+            .with_tangent_source(TangentSource::Derivatives)
+            .with_world_height_per_texel(texel);
+        let source = textures.sampled(sampler()).placed(placement);
+        let there = of_model.clone().placed(GpuPlacement::from(placement).triplanar());
+        assert_same(&gpu, (name, &scene), &Triplanar::new(&source), &there, INTERPOLATED);
+    }
+}
+
+#[test]
+fn heights_are_differentiated_alike() {
+    let bumps = pattern::random_bumps(64, 0.4, 5);
+    let source = bumps.source_options();
+    let heights = HeightMap::of(&bumps.heights, &source).expect("a height map");
+    let texture = height_texture(&bumps.heights, &source).expect("a height map");
+    let gpu = gpu();
+    for derivative in HeightDerivative::ALL {
+        let of_heights = GpuDetail::of_heights(&gpu, Shading::Lean, &texture, *derivative);
+        let of_heights = pollster::block_on(of_heights).expect("a texture");
+        for (name, scene) in scenes(View::Mid) {
+            let texel = scene.shape.bounds().radius / 200.0;
+            let sized = Placement::default().with_world_height_per_texel(texel);
+            for placement in [Placement::default(), sized] {
+                let here = HeightDetail {
+                    derivative: *derivative,
+                    sampler: sampler(),
+                    placement,
+                    ..HeightDetail::new(heights.clone())
+                };
+                let name = format!("{name}, {derivative}");
+                assert_same(
+                    &gpu,
+                    (&name, &scene),
+                    &here,
+                    &of_heights.clone().placed(placement),
+                    INTERPOLATED,
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn textures_and_noise_are_perturbed_once() {
+    let arrays = maps(Shading::Lean, SampleType::F16);
+    let textures = BakedTextures::of_model(Shading::Lean, &arrays).expect("its own textures");
+    let gpu = gpu();
+    let of_model = pollster::block_on(GpuDetail::of_model(&gpu, Shading::Lean, &arrays)).expect("textures");
+    for (name, scene) in scenes(View::Mid) {
+        let noise = noise(&scene, NoiseKind::Fbm);
+        let (textures, of_noise) = (textures.sampled(sampler()), NoiseDetail::new(noise));
+        let here = Combined::new(vec![
+            Strengthened { detail: &textures, strength: 1.0 },
+            Strengthened { detail: &of_noise, strength: 1.0 },
+        ]);
+        let there = of_model.clone().with_noise(noise, OctaveFilter::Fade);
+        assert_same(&gpu, (name, &scene), &here, &there, INTERPOLATED);
+    }
+}
+
+#[test]
+fn curvature_widens_alike() {
+    let nothing = Combined::new(Vec::new());
+    let flat = GpuDetail::of_noise(Shading::Lean, Noise::default().with_amplitude(0.0), OctaveFilter::Fade);
+    let gpu = gpu();
+    for (name, scene) in scenes(View::Mid) {
+        let filter = GeometricFilter::default();
+        let here = by_cpu(&scene, Shading::Lean, &Curved { detail: &nothing, filter });
+        let there = by_gpu(&gpu, &scene, &flat, &draw().with_curvature(Some(filter))).expect("a picture");
+        let same = compared(&here, &there);
+        assert!(same.mean < SAME_BUMPS && same.covered > 1000, "{name}: {same:?}");
+        if name.starts_with("plane") {
+            continue;
+        }
+        // The comparison can fail: a larger filter is another picture.
+        let wider = filter.with_pixel_variance(40.0).with_largest_trace(1.0);
+        let other = by_cpu(&scene, Shading::Lean, &Curved { detail: &nothing, filter: wider });
+        assert!(compared(&other, &there).mean > OTHERS * SAME_BUMPS, "{name}");
+    }
+}
+
+#[test]
+fn heights_that_are_no_numbers_leave_no_pixel_that_is_none() {
+    let mut heights = vec![0.5_f32; 16 * 16];
+    for (i, height) in heights.iter_mut().enumerate() {
+        *height = match i % 5 {
+            0 => f32::NAN,
+            1 => f32::INFINITY,
+            _ => 0.01 * (i % 7) as f32,
+        };
+    }
+    let image = Image::new(16, 16, 1, Samples::F32(heights)).expect("a square");
+    let source = SourceOptions::default().with_kind(Kind::Height);
+    let texture = height_texture(&image, &source).expect("they are repaired");
+    let gpu = gpu();
+    for derivative in HeightDerivative::ALL {
+        let of_heights = GpuDetail::of_heights(&gpu, Shading::Lean, &texture, *derivative);
+        let of_heights = pollster::block_on(of_heights).expect("a texture");
+        for (name, scene) in scenes(View::Mid) {
+            for bumps in [Bumps::Filtered, Bumps::Resolved] {
+                let picture =
+                    by_gpu(&gpu, &scene, &of_heights, &draw().with_bumps(bumps)).expect("a picture");
+                let finite = picture.radiance().iter().flatten().all(|radiance| radiance.is_finite());
+                assert!(finite, "{name}, {derivative}, {bumps:?}");
+            }
+        }
+    }
+}
