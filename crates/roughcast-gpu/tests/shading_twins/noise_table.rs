@@ -39,7 +39,7 @@ fn seed(inputs: &mut Inputs) -> f32 {
 
 /// The words of noise: frequency, amplitude, octaves, kind, seed. Slopes of all octaves together are of the size of one.
 fn noise_words(inputs: &mut Inputs) -> Vec<f32> {
-    let [frequency, amplitude] = [inputs.of_any_size(0.25, 2.0).abs(), inputs.of_any_size(0.01, 0.25)];
+    let [frequency, amplitude] = [inputs.of_any_size(0.5, 2.0).abs(), inputs.of_any_size(0.05, 0.25)];
     vec![frequency, amplitude, (1 + inputs.below(5)) as f32, inputs.below(2) as f32, seed(inputs)]
 }
 
