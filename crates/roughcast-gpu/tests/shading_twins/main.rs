@@ -119,10 +119,11 @@ fn far_results_allowed(name: &str) -> f64 {
         "gradient_noise" => 0.003,
         "noise_octave" | "noise_sample" => 0.02,
         "noise_height" => 0.008,
-        "noise_distribution" => 0.05,
+        // And what large footprints leave of slopes, or small ones hide: little, of the size of the roundings of one.
+        "noise_distribution" => 0.15,
+        "noise_kept" => 0.04,
         // Nearly round footprints have no longer axis.
         "noise_footprint" => 5e-4,
-        "noise_kept" => 0.02,
         _ => 0.0,
     }
 }
