@@ -40,7 +40,7 @@ FIXTURES = "roughcast-testdata"
 # Third-party crates that the library may use (tests are unrestricted). The library is arithmetic on images in memory,
 # and an engine that includes it includes these too; the optional ones only if a feature asks for them.
 LIBRARY = "roughcast"
-LIBRARY_MAY_USE = {"half", "thiserror"}
+LIBRARY_MAY_USE = {"glam", "half", "thiserror"}
 LIBRARY_MAY_OFFER = {"multiversion", "rayon", "serde"}
 
 

@@ -100,7 +100,8 @@ fn gradient_noise(p: vec3f, seed: u32) -> vec4f {
     let cell = floor(p);
     let t = p - cell;
     let weight = t * t * t * (t * (6.0 * t - 15.0) + 10.0);
-    let change = 30.0 * t * t * (t * (t - 2.0) + 1.0);
+    let hump = t * (1.0 - t);
+    let change = 30.0 * hump * hump;
     let lattice = bitcast<vec3u>(vec3i(cell));
     // The rows of corners along x: y changes fastest, then z.
     let planes = noise_hash(noise_hash(vec4u(seed)) + lattice.z + vec4u(0u, 0u, 1u, 1u));

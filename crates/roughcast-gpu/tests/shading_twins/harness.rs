@@ -43,8 +43,8 @@ pub enum Gives {
     Axes,
     /// The eight words of a footprint's ratio: parts and their complements to one.
     Ratio,
-    /// Numbers that are small differences of numbers of the size of one.
-    Cancelled,
+    /// Noise: sums of numbers of the size of one, with weights that are small differences of larger ones.
+    Noise,
     /// The four words of a footprint of noise, whose direction is a small difference if it is nearly round.
     Footprint,
     /// The eight words of a facet of GGX, whose tangent is a small difference of vectors.
@@ -155,6 +155,10 @@ const ARGUMENT_ULPS: f32 = 8.0;
 /// Error allowed where intermediate results of the size of one cancel, in units in the last place of one.
 const CANCELLED_ULPS: f32 = 4.0;
 
+/// The same for noise: a weight near one is `10 - 9`, rounded by up to half a unit of each, for each of three axes, and is
+/// the factor of a difference of up to 3.
+const NOISE_ULPS: f32 = 16.0;
+
 /// Relative error allowed in addition: a GPU's `exp` is off by 3 + 2 |x| units (Vulkan), here with |x| <= 87, and its
 /// `log` near 1 by 2^-21, which an exponent of at most 430 (beyond it nothing is left where `log` is used) amplifies to
 /// 1e-4.
@@ -202,7 +206,7 @@ fn cancellation(gives: Gives, wanted: &[f32]) -> Vec<f32> {
         }
         // The part of the derivatives along the shorter axis.
         Gives::Axes => left[4..6].fill(unit * wanted[0].sqrt() / wanted[1]),
-        Gives::Cancelled => left.fill(unit),
+        Gives::Noise => left.fill(NOISE_ULPS * f32::EPSILON),
         Gives::Footprint => {
             left[..2].fill(unit * wanted[2] / wanted[3].max(unit * wanted[2]));
             left[3] = unit * wanted[2];

@@ -39,7 +39,7 @@ fn seed(inputs: &mut Inputs) -> f32 {
 
 /// The words of noise: frequency, amplitude, octaves, kind, seed. Slopes of all octaves together are of the size of one.
 fn noise_words(inputs: &mut Inputs) -> Vec<f32> {
-    let [frequency, amplitude] = [inputs.of_any_size(0.25, 2.0).abs(), inputs.of_any_size(0.01, 0.25)];
+    let [frequency, amplitude] = [inputs.of_any_size(0.5, 2.0).abs(), inputs.of_any_size(0.1, 0.4)];
     vec![frequency, amplitude, (1 + inputs.below(5)) as f32, inputs.below(2) as f32, seed(inputs)]
 }
 
@@ -120,7 +120,7 @@ fn corner_twins() -> Vec<Twin> {
         },
         Twin {
             name: "gradient_noise",
-            gives: Gives::Cancelled,
+            gives: Gives::Noise,
             call: "let n = gradient_noise(f3(0u), u32(f(3u) + 0.5)); put3(n.xyz); put(n.w);",
             arguments: |inputs| [position(inputs), vec![seed(inputs)]].concat(),
             rust: |a, _, _| sample_words(gradient_noise(vector(a), whole(a[3]) as u32)),
@@ -139,7 +139,7 @@ fn octave_twins() -> Vec<Twin> {
         },
         Twin {
             name: "noise_octave",
-            gives: Gives::Cancelled,
+            gives: Gives::Noise,
             call: "let n = noise_octave(noise(0u), f3(5u), u32(f(8u) + 0.5)); put3(n.xyz); put(n.w);",
             arguments: |inputs| {
                 [noise_words(inputs), position(inputs), vec![inputs.below(5) as f32]].concat()
@@ -154,14 +154,14 @@ fn octave_twins() -> Vec<Twin> {
         },
         Twin {
             name: "noise_sample",
-            gives: Gives::Cancelled,
+            gives: Gives::Noise,
             call: "let n = noise_sample(noise(0u), f3(5u)); put3(n.xyz); put(n.w);",
             arguments: |inputs| [noise_words(inputs), position(inputs)].concat(),
             rust: |a, _, _| sample_words(noise(a).sample(vector(&a[5..]))),
         },
         Twin {
             name: "noise_height",
-            gives: Gives::Cancelled,
+            gives: Gives::Noise,
             call: "put(noise_height(noise(0u), f3(5u)));",
             arguments: |inputs| [noise_words(inputs), position(inputs)].concat(),
             rust: |a, _, _| one(noise(a).height(vector(&a[5..])) as f32),
@@ -230,7 +230,7 @@ fn filter_twins() -> Vec<Twin> {
         },
         Twin {
             name: "noise_kept",
-            gives: Gives::Cancelled,
+            gives: Gives::Noise,
             call: "put2(noise_kept(NoiseFootprint(f2(0u), f(2u), f(3u)), u32(f(4u) + 0.5), f(5u)));",
             arguments: |inputs| {
                 let [dx, dy] = changes(inputs).map(|v| DVec2::new(v[0].into(), v[1].into()));
@@ -251,7 +251,7 @@ fn filter_twins() -> Vec<Twin> {
         },
         Twin {
             name: "noise_distribution",
-            gives: Gives::Cancelled,
+            gives: Gives::Noise,
             call: "let s = noise_distribution(noise(0u), f3(5u), f3(8u), f3(11u), f3(14u), f3(17u), u32(f(20u) + 0.5)); put2(s.mean); put3(s.covariance);",
             arguments: distribution_words,
             rust: |a, _, _| {

@@ -13,7 +13,7 @@
 //! w₁ = mean over θ of 2 cos²θ w(s²(θ)),    w₂ = mean over θ of 2 sin²θ w(s²(θ)).
 //! ```
 //!
-//! Four directions per quadrant are enough: against supersampling w is off by less than 0.015 for footprints up to 4:1
+//! Four directions per quadrant are enough: against supersampling w is off by less than 0.01 for footprints up to 4:1
 //! and about 0.03 for 8:1. (The expansion to first order, one `w` of `3/4 s₁² + 1/4 s₂²`, is off by 0.12 and 0.18: along the
 //! shorter axis of a long footprint a few waves always remain.)
 //!

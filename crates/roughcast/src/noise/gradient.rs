@@ -62,7 +62,8 @@ pub fn gradient_noise(p: DVec3, seed: u32) -> NoiseSample {
     let cell = p.floor();
     let t = p - cell;
     let weight = t * t * t * (t * (6.0 * t - 15.0) + 10.0);
-    let change = 30.0 * t * t * (t * (t - 2.0) + 1.0);
+    let hump = t * (1.0 - t);
+    let change = 30.0 * hump * hump;
     let [x, y, z] = cell.to_array().map(|c| c as i32 as u32);
 
     let along_x = |y_offset: u32, z_offset: u32| {
