@@ -17,13 +17,15 @@ use roughcast_pipeline::{Map, bake_for};
 use roughcast_scene::render::MAX_SAMPLES;
 use roughcast_scene::{BakedTextures, Filter, Picture, Sampler, Scene, SlopeDetail, SlopeMap};
 
+use crate::albedo::{Albedo, AlbedoChoice};
 use crate::args::{SourceArgs, one_of, positive};
 #[cfg(feature = "gpu")]
 use crate::backend::GpuBackend;
 use crate::backend::{Backend, GroundTruthBackend, MethodBackend};
-use crate::display::{exposure_of, shown};
+use crate::display::{exposure_of, toned};
 use crate::input::read_map;
 use crate::scene_args::{CameraArgs, SHADING, SceneArgs, ShadingArgs, Size, size};
+use crate::tone::Tone;
 use crate::{UsageError, findings, progress, say, scene_args, textures, usage};
 
 /// Render a map on a shape with LEAN, with conventional methods, or as ground truth.
@@ -69,6 +71,11 @@ pub struct Args {
     #[command(flatten)]
     shading_options: ShadingArgs,
 
+    /// Diffuse colour, linear, as one number or R,G,B; or a picture of it, which lies on the scene as the map does (8- and 16-bit
+    /// files are sRGB, floats linear)
+    #[arg(long, value_name = "COLOUR|FILE", default_value = "0.1", value_parser = AlbedoChoice::parse, help_heading = SHADING)]
+    albedo: AlbedoChoice,
+
     #[command(flatten)]
     scene: SceneArgs,
 
@@ -82,6 +89,11 @@ pub struct Args {
     /// Radiance that PNG shows as white [default: all but the brightest hundredth of the picture is below it]
     #[arg(long, value_name = "RADIANCE", value_parser = positive)]
     white: Option<f32>,
+
+    /// How PNG shows bright radiance: linear clamps it to white; neutral leaves up to 80 % of white unchanged, and lets what is
+    /// brighter approach white
+    #[arg(long, default_value = "linear", value_parser = one_of::<Tone>())]
+    tone: Tone,
 
     /// Render this many frames of a slow camera move into the output folder
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_FRAMES))]
@@ -177,9 +189,9 @@ impl PictureFormat {
 /// Renders the picture, or the frames.
 pub fn run(args: &Args) -> Result<ExitCode> {
     args.check()?;
+    let albedo = args.albedo.load(&args.source.limits())?;
     let subject = args.subject()?;
-    let material = args.shading_options.material();
-    let scene = args.camera.scene(&args.scene, subject.texels(), args.size, material)?;
+    let scene = args.scene_of(&subject, albedo)?;
     let mut backend = args.backend(&subject, &scene)?;
     match args.frames {
         None => {
@@ -189,7 +201,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             bar.finish_and_clear();
             let mut set = AtomicSet::new();
             let exposure = args.exposure_of(&picture);
-            add(&mut set, &args.output, format, &picture, exposure)?;
+            add(&mut set, &args.output, format, &picture, (exposure, args.tone))?;
             set.commit()?;
             if format == PictureFormat::Png {
                 // So that another picture can use the same exposure.
@@ -212,6 +224,10 @@ impl Args {
                     "it is the map, which would be lost: give the output another name",
                 ));
             }
+            if self.albedo.file().is_some_and(|albedo| is_same_file(&self.output, albedo)) {
+                let line = "it is the picture of --albedo, which would be lost: give the output another name";
+                return Err(usage(&self.output, line));
+            }
             let output = || self.output.display().to_string();
             AtomicFile::create(&self.output).map(drop).with_context(output)?;
         }
@@ -229,6 +245,17 @@ impl Args {
             return Err(UsageError(line.to_owned()).into());
         }
         Ok(())
+    }
+
+    /// The scene, with its diffuse colour.
+    fn scene_of(&self, subject: &Subject, albedo: Albedo) -> Result<Scene> {
+        let (colour, map) = match albedo {
+            Albedo::Colour(colour) => (colour, None),
+            Albedo::Map(map) => ([1.0; 3], Some(map)),
+        };
+        let material = self.shading_options.material(colour);
+        let scene = self.camera.scene(&self.scene, subject.texels(), self.size, material)?;
+        Ok(Scene { albedo: map, ..scene })
     }
 
     /// The exposure of a picture. All frames use the first one's, since they would flicker otherwise.
@@ -355,7 +382,7 @@ fn render_frames(args: &Args, scene: &Scene, backend: &mut Backend, frames: u32)
         let picture = backend.render(&scene, &bar)?;
         let exposure = *exposure.get_or_insert_with(|| args.exposure_of(&picture));
         let path = args.output.join(format!("{frame:04}.{}", roughcast::Named::name(args.frame_format)));
-        add(&mut set, &path, args.frame_format, &picture, exposure)?;
+        add(&mut set, &path, args.frame_format, &picture, (exposure, args.tone))?;
     }
     bar.finish_and_clear();
     set.commit().with_context(folder)
@@ -367,12 +394,12 @@ fn add(
     path: &Path,
     format: PictureFormat,
     picture: &Picture,
-    exposure: f32,
+    (exposure, tone): (f32, Tone),
 ) -> Result<()> {
     let named = || path.display().to_string();
     let mut file = AtomicFile::create(path).with_context(named)?;
     match format {
-        PictureFormat::Png => write_png(&shown(picture, exposure), &mut file),
+        PictureFormat::Png => write_png(&toned(picture, exposure, tone), &mut file),
         PictureFormat::Exr => write_exr((picture.width(), picture.height()), planes(picture), &mut file),
     }
     .with_context(named)?;

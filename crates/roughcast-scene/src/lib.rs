@@ -48,12 +48,14 @@
 
 #![forbid(unsafe_code)]
 
+mod albedo;
 mod camera;
 mod detail;
 #[cfg(feature = "render")]
 mod filter;
 mod footprint;
 mod hit;
+mod level;
 mod light;
 mod mesh;
 #[cfg(feature = "render")]
@@ -73,6 +75,7 @@ mod split_mix;
 mod uv_sets;
 mod views;
 
+pub use albedo::{AlbedoError, AlbedoMap, MAX_ALBEDO};
 pub use camera::{Camera, CameraError, PixelRays};
 #[cfg(feature = "render")]
 pub use detail::{
@@ -82,10 +85,11 @@ pub use detail::{DetailError, TextureInputs, model_inputs, texture_inputs};
 #[cfg(feature = "render")]
 pub use filter::SummedAreaTable;
 pub use hit::{Footprint, Frame, Hit, Ray, Side};
+pub use level::Level;
 pub use light::Light;
 pub use mesh::{MAX_TRIANGLES, MAX_VERTICES, Mesh, MeshFault};
 #[cfg(feature = "render")]
-pub use mipmap::{Level, Mipmap};
+pub use mipmap::Mipmap;
 pub use picture::{Picture, PictureError, luminance};
 pub use placement::Placement;
 pub use render::MipmapError;

@@ -11,6 +11,7 @@ use super::detail::DetailSource;
 pub(super) const FIRST_TEXTURE: u32 = 4;
 
 const SCENE: &str = include_str!("scene.wgsl");
+const SAMPLING: &str = include_str!("sampling.wgsl");
 const MAPS: &str = include_str!("maps.wgsl");
 const FOOTPRINT: &str = include_str!("footprint.wgsl");
 const MAP0: &str = include_str!("map0.wgsl");
@@ -76,9 +77,11 @@ pub struct ShaderKey {
 }
 
 /// The WGSL of a model with a source of bumps: the vertex shader `project`, and the fragment shaders `radiance` (one
-/// colour target, alpha is coverage) and `parts` (the same, with the specular part in a second target).
+/// colour target, alpha is coverage) and `parts` (the same, with the specular part in a second target), with the twins
+/// `mapped_radiance` and `mapped_parts`, which read the diffuse colour from a map.
 ///
-/// Group 0 changes with the view: binding 0 is the view and the material's colours, 1 the lights. Group 1 contains the
+/// Group 0 changes with the view: binding 0 is the view and the material's colours, 1 the lights, 2 the map of diffuse
+/// colours in linear light, which `radiance` and `parts` do not read. Group 1 contains the
 /// maps: 0 [`roughcast::shading::ShadingOptions`], 1 [`roughcast::texture::Packing`], 2 the sampling, 3 a sampler, and
 /// from 4 on the textures in the order of [`TexelReader::inputs`].
 ///
@@ -88,11 +91,12 @@ pub fn shader_source(key: ShaderKey) -> Result<String, UnknownName> {
     let ShaderKey { shading, detail, level, bumps } = key;
     let calls = shading.calls(detail.gaussians());
     let mut modules = vec![calls.module, "reflectance", "detail"];
-    let mut parts = Vec::new();
+    let [filtered, variances] = level.sources();
+    let mut parts = vec![SAMPLING, filtered];
     match detail {
         DetailSource::Textures(reader) => {
             modules.push(reader.module);
-            parts.extend(sampling_of(reader, level));
+            parts.extend(sampling_of(reader, variances));
         }
         DetailSource::Code(code) => {
             modules.extend(code.needs);
@@ -107,9 +111,8 @@ pub fn shader_source(key: ShaderKey) -> Result<String, UnknownName> {
 }
 
 /// WGSL of the functions that sample the textures of a layout.
-fn sampling_of(reader: &TexelReader, level: LevelOfDetail) -> Vec<&'static str> {
-    let [filtered, variances] = level.sources();
-    let mut parts = vec![MAPS, filtered];
+fn sampling_of(reader: &TexelReader, variances: &'static str) -> Vec<&'static str> {
+    let mut parts = vec![MAPS];
     parts.extend(reader.inputs.iter().enumerate().map(|(place, input)| match place {
         0 => MAP0,
         1 if input.part == Part::Roughness => MAP1_ROUGHNESS,

@@ -5,7 +5,7 @@ use roughcast::shading::ShadingOptions;
 use roughcast::{Distribution, Slope, SlopeMatrix};
 
 use crate::filter::Quad;
-use crate::{Footprint, Hit, Placement, Ray, SlopeFrame};
+use crate::{Footprint, Hit, Placement, Ray, Sampler, SlopeFrame};
 
 /// A source of bumps on a surface. Slopes are in the tangent frame of the hit.
 pub trait Detail: Sync {
@@ -18,6 +18,12 @@ pub trait Detail: Sync {
     /// The options, with overrides if the source itself specifies the base roughness.
     fn options(&self, options: ShadingOptions) -> ShadingOptions {
         options
+    }
+
+    /// How other textures of the surface, such as its [colours](crate::Scene::albedo), are sampled: like those of the
+    /// bumps.
+    fn sampler(&self) -> Sampler {
+        Sampler::default()
     }
 }
 
@@ -37,6 +43,10 @@ impl Detail for Resolved<'_> {
 
     fn options(&self, options: ShadingOptions) -> ShadingOptions {
         self.0.options(options)
+    }
+
+    fn sampler(&self) -> Sampler {
+        self.0.sampler().finest()
     }
 }
 
