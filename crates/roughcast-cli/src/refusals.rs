@@ -81,6 +81,9 @@ pub fn of_read_map(path: &Path, error: ReadMapError) -> Error {
 /// Why a file is not a picture of colours.
 pub fn of_colours(path: &Path, error: ColourError) -> Error {
     let cause = match error {
+        ColourError::Read(error @ ReadError::OpenChannels { .. }) => {
+            anyhow!("{error}: give a file with the channels of one colour, R, G and B")
+        }
         ColourError::Read(error) => of_size(error),
         ColourError::Baked(_) => {
             anyhow!("it is a texture that `bake` wrote, not a picture of colours: give a picture of colours")
