@@ -3,6 +3,8 @@
 use roughcast_io::picture::Srgb8Picture;
 use roughcast_scene::Picture;
 
+use crate::tone::Tone;
+
 /// The fraction of a picture's values that automatic exposure keeps below white.
 const KEPT: f64 = 0.99;
 
@@ -20,9 +22,16 @@ pub fn exposure_of(picture: &Picture) -> f32 {
     }
 }
 
-/// The picture at an exposure, in sRGB; values brighter than white are clamped to white.
+/// The picture at an exposure, in sRGB; values brighter than white are clamped to white. For pictures that are compared,
+/// because it changes no other value.
 pub fn shown(picture: &Picture, exposure: f32) -> Srgb8Picture {
-    let pixels = picture.radiance().iter().flat_map(|pixel| pixel.map(|value| srgb8(value * exposure)));
+    toned(picture, exposure, Tone::Linear)
+}
+
+/// The picture at an exposure, through a tone curve, in sRGB.
+pub fn toned(picture: &Picture, exposure: f32, tone: Tone) -> Srgb8Picture {
+    let pixel = |radiance: &[f32; 3]| tone.shown(radiance.map(|value| value * exposure)).map(srgb8);
+    let pixels = picture.radiance().iter().flat_map(pixel);
     let (width, height) = (picture.width() as u32, picture.height() as u32);
     Srgb8Picture::new(width, height, pixels.collect()).expect("rendered pictures have pixels")
 }

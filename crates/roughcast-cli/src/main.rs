@@ -3,6 +3,7 @@
 //! Results go to stdout, everything else to stderr. Exit codes: 0 done, 1 an input or a file failed, 2 the command
 //! line is invalid.
 
+mod albedo;
 mod args;
 mod backend;
 mod bake;
@@ -27,6 +28,7 @@ mod roughness;
 mod scene_args;
 mod shader;
 mod textures;
+mod tone;
 mod unpack;
 
 use std::io::{ErrorKind, Write};

@@ -11,8 +11,8 @@ use roughcast::texture::InfoError;
 use roughcast_io::texture_files::{ReadFilesError, WriteFilesError};
 use roughcast_io::{ContainerError, ReadError};
 use roughcast_pipeline::{
-    ChoiceError, EXTENSIONS, FolderError, JobError, MapError, PbrChoice, ReadMapError, RoughnessError,
-    TargetError,
+    ChoiceError, ColourError, EXTENSIONS, FolderError, JobError, MapError, PbrChoice, ReadMapError,
+    RoughnessError, TargetError,
 };
 
 pub use self::bake_options::{filter_refusal, with_options};
@@ -73,6 +73,21 @@ pub fn of_read_map(path: &Path, error: ReadMapError) -> Error {
     let cause = match error {
         ReadMapError::Read(error) => of_read(error),
         ReadMapError::Map(error) => of_map(error),
+        error => error.into(),
+    };
+    at(path, cause)
+}
+
+/// Why a file is not a picture of colours.
+pub fn of_colours(path: &Path, error: ColourError) -> Error {
+    let cause = match error {
+        ColourError::Read(error @ ReadError::OpenChannels { .. }) => {
+            anyhow!("{error}: give a file with the channels of one colour, R, G and B")
+        }
+        ColourError::Read(error) => of_size(error),
+        ColourError::Baked(_) => {
+            anyhow!("it is a texture that `bake` wrote, not a picture of colours: give a picture of colours")
+        }
         error => error.into(),
     };
     at(path, cause)

@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result};
 use clap::ValueHint;
 use roughcast::Kind;
-use roughcast::shading::{Material, Shading};
+use roughcast::shading::Shading;
 use roughcast::texture::TextureArray;
 use roughcast_io::picture::{Plane, write_exr, write_png};
 use roughcast_io::texture_files::is_same_file;
@@ -21,16 +21,18 @@ use roughcast_scene::{
     height_texture, repeats_per_length,
 };
 
+use crate::albedo::{Albedo, AlbedoChoice};
 use crate::args::{SourceArgs, one_of, positive};
 use crate::backend::{Backend, GroundTruthBackend, MapBumps, MethodBackend, Projected, SceneBumps};
 #[cfg(feature = "gpu")]
 use crate::backend::{GpuBackend, GpuBumps, GpuMap};
 use crate::bumps::{Bump, BumpArgs, FrameChoice};
-use crate::display::{exposure_of, shown};
+use crate::display::{exposure_of, toned};
 use crate::input::read_map;
 use crate::scene_args::{
     CameraArgs, CameraChoice, SHADING, SceneArgs, ShadingArgs, Size, TextureCoordinates, size,
 };
+use crate::tone::Tone;
 use crate::{UsageError, findings, progress, say, scene_args, textures, usage};
 
 /// Render a map on a shape with LEAN, with conventional methods, or as ground truth.
@@ -82,6 +84,11 @@ pub struct Args {
     #[command(flatten)]
     shading_options: ShadingArgs,
 
+    /// Diffuse colour, linear, as one number or R,G,B; or a picture of it, which lies on the scene as the map does (8- and 16-bit
+    /// files are sRGB, floats linear)
+    #[arg(long, value_name = "COLOUR|FILE", default_value = "0.1", value_parser = AlbedoChoice::parse, help_heading = SHADING)]
+    albedo: AlbedoChoice,
+
     #[command(flatten)]
     scene: SceneArgs,
 
@@ -95,6 +102,11 @@ pub struct Args {
     /// Radiance that PNG shows as white [default: all but the brightest hundredth of the picture is below it]
     #[arg(long, value_name = "RADIANCE", value_parser = positive)]
     white: Option<f32>,
+
+    /// How PNG shows bright radiance: linear clamps it to white; neutral leaves up to 80 % of white unchanged, and lets what is
+    /// brighter approach white
+    #[arg(long, default_value = "linear", value_parser = one_of::<Tone>())]
+    tone: Tone,
 
     /// Render this many frames of a slow camera move into the output folder
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_FRAMES))]
@@ -190,9 +202,9 @@ impl PictureFormat {
 /// Renders the picture, or the frames.
 pub fn run(args: &Args) -> Result<ExitCode> {
     args.check()?;
+    let albedo = args.albedo.load(&args.source.limits())?;
     let subject = args.subject()?;
-    let material = args.shading_options.material();
-    let scene = args.scene_of(&subject, material)?;
+    let scene = args.scene_of(&subject, albedo)?;
     let mut backend = args.backend(&subject, &scene)?;
     match args.frames {
         None => {
@@ -202,7 +214,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             bar.finish_and_clear();
             let mut set = AtomicSet::new();
             let exposure = args.exposure_of(&picture);
-            add(&mut set, &args.output, format, &picture, exposure)?;
+            add(&mut set, &args.output, format, &picture, (exposure, args.tone))?;
             set.commit()?;
             if format == PictureFormat::Png {
                 // So that another picture can use the same exposure.
@@ -225,6 +237,10 @@ impl Args {
                     "it is the map, which would be lost: give the output another name",
                 ));
             }
+            if self.albedo.file().is_some_and(|albedo| is_same_file(&self.output, albedo)) {
+                let line = "it is the picture of --albedo, which would be lost: give the output another name";
+                return Err(usage(&self.output, line));
+            }
             let output = || self.output.display().to_string();
             AtomicFile::create(&self.output).map(drop).with_context(output)?;
         }
@@ -245,16 +261,24 @@ impl Args {
         Ok(())
     }
 
-    /// The scene. Projected maps repeat per unit of length, others over the scene's texture coordinates.
-    fn scene_of(&self, subject: &Subject, material: Material) -> Result<Scene> {
+    /// The scene, with its diffuse colour. Projected maps repeat per unit of length, others over the scene's texture
+    /// coordinates.
+    fn scene_of(&self, subject: &Subject, albedo: Albedo) -> Result<Scene> {
+        let (colour, map) = match albedo {
+            Albedo::Colour(colour) => (colour, None),
+            Albedo::Map(map) => ([1.0; 3], Some(map)),
+        };
+        let material = self.shading_options.material(colour);
         let projected = self.bumps.frame == FrameChoice::Triplanar;
         let coordinates = match subject {
+            _ if map.is_some() => TextureCoordinates::Needed,
             Subject::Nothing => TextureCoordinates::Unneeded,
             _ if projected => TextureCoordinates::Unneeded,
             _ => TextureCoordinates::Needed,
         };
         let texels = subject.texels();
         let mut scene = self.camera.scene(&self.scene, texels, self.size, material, coordinates)?;
+        scene.albedo = map;
         if projected && self.camera.repeat.is_none() {
             let view = match self.camera.camera {
                 CameraChoice::View(view) => view,
@@ -496,7 +520,7 @@ fn render_frames(args: &Args, scene: &Scene, backend: &mut Backend, frames: u32)
         let picture = backend.render(&scene, &bar)?;
         let exposure = *exposure.get_or_insert_with(|| args.exposure_of(&picture));
         let path = args.output.join(format!("{frame:04}.{}", roughcast::Named::name(args.frame_format)));
-        add(&mut set, &path, args.frame_format, &picture, exposure)?;
+        add(&mut set, &path, args.frame_format, &picture, (exposure, args.tone))?;
     }
     bar.finish_and_clear();
     set.commit().with_context(folder)
@@ -508,12 +532,12 @@ fn add(
     path: &Path,
     format: PictureFormat,
     picture: &Picture,
-    exposure: f32,
+    (exposure, tone): (f32, Tone),
 ) -> Result<()> {
     let named = || path.display().to_string();
     let mut file = AtomicFile::create(path).with_context(named)?;
     match format {
-        PictureFormat::Png => write_png(&shown(picture, exposure), &mut file),
+        PictureFormat::Png => write_png(&toned(picture, exposure, tone), &mut file),
         PictureFormat::Exr => write_exr((picture.width(), picture.height()), planes(picture), &mut file),
     }
     .with_context(named)?;

@@ -276,7 +276,8 @@ fn angle(text: &str) -> Result<f64, String> {
     }
 }
 
-fn scene_colour(text: &str) -> Result<[f32; 3], String> {
+/// A colour, linear: one number or R,G,B.
+pub fn colour(text: &str) -> Result<[f32; 3], String> {
     match numbers(text).as_deref() {
         Some([all]) if *all >= 0.0 => Ok([*all as f32; 3]),
         Some([r, g, b]) if r.min(*g).min(*b) >= 0.0 => Ok([*r as f32, *g as f32, *b as f32]),
@@ -322,16 +323,12 @@ pub struct ShadingArgs {
     #[arg(long, default_value = "16", value_parser = one_of::<SampleType>())]
     pub bits: SampleType,
 
-    /// Diffuse colour, linear, as one number or R,G,B
-    #[arg(long, value_name = "COLOUR", default_value = "0.1", value_parser = scene_colour)]
-    pub albedo: [f32; 3],
-
     /// Ambient light, as one number or R,G,B
-    #[arg(long, value_name = "COLOUR", default_value = "0.2", value_parser = scene_colour)]
+    #[arg(long, value_name = "COLOUR", default_value = "0.2", value_parser = colour)]
     pub ambient: [f32; 3],
 
     /// Reflectance at normal incidence, as one number or R,G,B; 0.04 is plastic
-    #[arg(long, value_name = "COLOUR", default_value = "0.04", value_parser = scene_colour)]
+    #[arg(long, value_name = "COLOUR", default_value = "0.04", value_parser = colour)]
     pub specular: [f32; 3],
 }
 
@@ -355,9 +352,9 @@ impl ShadingArgs {
             .with_specular_power(self.specular_power)
     }
 
-    /// The material.
-    pub fn material(&self) -> Material {
-        Material::default().with_albedo(self.albedo).with_ambient(self.ambient).with_specular(self.specular)
+    /// The material with this diffuse colour, linear.
+    pub fn material(&self, albedo: [f32; 3]) -> Material {
+        Material::default().with_albedo(albedo).with_ambient(self.ambient).with_specular(self.specular)
     }
 }
 

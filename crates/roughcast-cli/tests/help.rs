@@ -90,7 +90,7 @@ fn the_documented_options_exist() {
         ("unpack", &["output", "max-pixels"]),
         ("precision", &["specular-power", "json", "max-slope"]),
         ("compare", &["views", "filters", "samples", "frames", "scene", "reconstruction", "json"]),
-        ("render", &["camera", "up", "look-at", "shading", "filter"]),
+        ("render", &["camera", "up", "look-at", "shading", "filter", "albedo", "tone"]),
         ("shader", &["lang", "output", "json"]),
     ] {
         let text = help(subcommand, "-h");

@@ -12,6 +12,8 @@
 //! 5. [`FolderJob`] processes a folder of maps, several at a time.
 //! 6. A [`Watch`] receives the progress of jobs, and may stop them.
 //!
+//! [`read_colours`] reads a picture of colours for a renderer.
+//!
 //! [`bake_for`] is the shortcut for renderers: it bakes the textures of a shading model from a map in memory.
 //!
 //! The library prints nothing and does not depend on command-line options. The work runs on the rayon pool in which it
@@ -50,6 +52,7 @@
 #![forbid(unsafe_code)]
 
 mod choices;
+mod colour;
 mod error;
 mod findings;
 mod folder;
@@ -64,6 +67,7 @@ mod target;
 mod watch;
 
 pub use choices::{BakeChoices, ChoiceError, LayerFiles, PbrChoice};
+pub use colour::{ColourError, read_colours};
 pub use error::{FolderError, JobError};
 pub use findings::{Finding, RoughnessForm};
 pub use folder::{DEFAULT_JOBS, EXTENSIONS, FileOutcome, FolderJob, FolderResult, SkipReason};

@@ -48,6 +48,7 @@
 
 #![forbid(unsafe_code)]
 
+mod albedo;
 mod camera;
 mod detail;
 #[cfg(feature = "render")]
@@ -55,6 +56,7 @@ mod filter;
 mod footprint;
 mod hit;
 mod isosurface;
+mod level;
 mod light;
 mod mesh;
 #[cfg(feature = "render")]
@@ -74,6 +76,7 @@ mod split_mix;
 mod uv_sets;
 mod views;
 
+pub use albedo::{AlbedoError, AlbedoMap, MAX_ALBEDO};
 pub use camera::{Camera, CameraError, PixelRays};
 #[cfg(feature = "render")]
 pub use detail::{
@@ -88,10 +91,11 @@ pub use detail::{
 pub use filter::SummedAreaTable;
 pub use hit::{Footprint, Frame, Hit, Ray, Side};
 pub use isosurface::isosurface;
+pub use level::Level;
 pub use light::Light;
 pub use mesh::{MAX_TRIANGLES, MAX_VERTICES, Mesh, MeshFault};
 #[cfg(feature = "render")]
-pub use mipmap::{Level, Mipmap};
+pub use mipmap::Mipmap;
 pub use picture::{Picture, PictureError, luminance};
 pub use placement::{Placement, TangentSource};
 pub use render::MipmapError;

@@ -6,16 +6,8 @@ use rayon::prelude::*;
 use roughcast::texture::Texture;
 use roughcast::{Image, Wrap};
 
-use crate::MipmapError;
 use crate::filter::SummedAreaTable;
-
-/// One level: `height` rows of `width` texels. The centre of texel i of n lies at `(i + 0.5) / n`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Level {
-    width: usize,
-    height: usize,
-    texels: Vec<[f32; 4]>,
-}
+use crate::{Level, MipmapError};
 
 /// A texture with its levels, as stored: integer texels as 0 ..= 1, floats unchanged. Missing channels are 0, or 1 for
 /// the fourth, as in graphics hardware.
@@ -29,18 +21,6 @@ pub struct Mipmap {
 }
 
 impl Level {
-    /// Creates a level from these texels, row by row from the top.
-    ///
-    /// # Errors
-    /// [`MipmapError::Size`] if the number of texels does not match the size, or is zero.
-    pub fn new(width: usize, height: usize, texels: Vec<[f32; 4]>) -> Result<Self, MipmapError> {
-        let got = texels.len();
-        if got == 0 || width.checked_mul(height) != Some(got) {
-            return Err(MipmapError::Size { level: 0, width, height, got });
-        }
-        Ok(Self { width, height, texels })
-    }
-
     fn of(image: &Image) -> Self {
         let (width, channels) = (image.width(), image.channels().min(4));
         let mut texels = vec![[0.0, 0.0, 0.0, 1.0]; width * image.height()];
@@ -51,33 +31,13 @@ impl Level {
                 }
             }
         });
-        Self { width, height: image.height(), texels }
-    }
-
-    /// Number of texels in a row.
-    pub fn width(&self) -> usize {
-        self.width
-    }
-
-    /// Number of rows.
-    pub fn height(&self) -> usize {
-        self.height
-    }
-
-    /// A row of texels.
-    pub fn row(&self, y: usize) -> &[[f32; 4]] {
-        &self.texels[y * self.width..(y + 1) * self.width]
-    }
-
-    /// A texel.
-    pub fn texel(&self, x: usize, y: usize) -> [f32; 4] {
-        self.texels[y * self.width + x]
+        Self::new(width, image.height(), texels).expect("an image has as many texels as its size says")
     }
 
     /// Four neighbouring texels, row by row. `at` is the column and row of the first, which may lie beyond the edges.
     #[inline]
     pub(crate) fn square(&self, at: (i64, i64), wrap: Wrap) -> [[f32; 4]; 4] {
-        square_at(at, (self.width, self.height), wrap).map(|texel| self.texels[texel])
+        square_at(at, (self.width(), self.height()), wrap).map(|texel| self.texels()[texel])
     }
 }
 
@@ -107,7 +67,7 @@ impl Mipmap {
 
     /// The same texture with another channel in place of the first.
     pub(crate) fn with_first_channel(mut self, channel: usize) -> Self {
-        for texel in self.levels.iter_mut().flat_map(|level| &mut level.texels) {
+        for texel in self.levels.iter_mut().flat_map(Level::texels_mut) {
             texel[0] = texel[channel];
         }
         self.table = OnceLock::new();
@@ -121,7 +81,7 @@ impl Mipmap {
 
     /// Width and height of level 0.
     pub fn size(&self) -> (usize, usize) {
-        (self.levels[0].width, self.levels[0].height)
+        (self.levels[0].width(), self.levels[0].height())
     }
 
     /// The summed-area table of level 0, computed on first use.

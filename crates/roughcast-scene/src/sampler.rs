@@ -60,6 +60,12 @@ impl Sampler {
     pub fn with_wrap(self, wrap: Wrap) -> Self {
         Self { wrap, ..self }
     }
+
+    /// The same sampler, interpolating between the texels of the finest level: what the ground truth samples.
+    #[cfg(feature = "render")]
+    pub(crate) fn finest(self) -> Self {
+        self.with_filter(Filter::Trilinear).with_level(Some(0.0))
+    }
 }
 
 impl Default for Sampler {

@@ -86,7 +86,7 @@ impl View {
         // On closed shapes a fractional number would produce a visible seam.
         let repeats = if matches!(*shape, Shape::Plane(_)) { repeats } else { repeats.round().max(1.0) };
         let lights = vec![default_light(&shape, &camera, size, self)];
-        Scene { shape, camera, lights, material, repeats, background: [0.0; 3] }
+        Scene { shape, camera, lights, material, albedo: None, repeats, background: [0.0; 3] }
     }
 }
 

@@ -172,6 +172,7 @@ fn plane_scene() -> Scene {
             irradiance: Light::WHITE,
         }],
         material: Default::default(),
+        albedo: None,
         repeats: 2.0,
         background: [0.0; 3],
     }

@@ -88,6 +88,7 @@ fn plane(texels_per_pixel: f64) -> Scene {
             irradiance: [3.0; 3],
         }],
         material: Material::default(),
+        albedo: None,
         repeats: texels_per_pixel * 4.0 / (256.0 * pixel),
         background: [0.0; 3],
     }

@@ -384,6 +384,7 @@ fn picture(quad: Quad, mirror: fn(DVec3) -> DVec3) -> Picture {
             irradiance: Light::WHITE,
         }],
         material: Material::default(),
+        albedo: None,
         repeats: 2.0,
         background: [0.0; 3],
     };

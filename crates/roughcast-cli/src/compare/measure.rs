@@ -27,6 +27,8 @@ pub struct Settings<'a> {
     pub scene: &'a SceneArgs,
     pub shape: Arc<Shape>,
     pub shading: &'a ShadingArgs,
+    /// Diffuse colour, in linear RGB.
+    pub albedo: [f32; 3],
     pub filters: Vec<Filter>,
     pub size: Size,
     /// Samples per pixel of the ground truths.
@@ -94,8 +96,8 @@ impl Settings<'_> {
     /// Compares all methods on a map in a view.
     pub fn compare(&self, subject: &Subject, view: View, bar: &ProgressBar) -> Result<Comparison> {
         let texels = (subject.image.width(), subject.image.height());
-        let scene =
-            self.scene.view(view, Arc::clone(&self.shape), texels, self.size, self.shading.material());
+        let material = self.shading.material(self.albedo);
+        let scene = self.scene.view(view, Arc::clone(&self.shape), texels, self.size, material);
         let lights = scene.lights.clone();
         let moves = slow_move(&scene, self.frame_count());
         let truths = self.truths(subject, &moves, bar)?;

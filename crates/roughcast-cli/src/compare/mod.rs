@@ -23,7 +23,7 @@ use serde_json::Value;
 
 use crate::args::{REPORT, SourceArgs, one_of};
 use crate::input::read_map;
-use crate::scene_args::{SHADING, SceneArgs, ShadingArgs, Size, TextureCoordinates, samples, size};
+use crate::scene_args::{SHADING, SceneArgs, ShadingArgs, Size, TextureCoordinates, colour, samples, size};
 use crate::{UsageError, findings, progress, say, say_json, usage};
 use distribution::Distribution;
 use measure::{Comparison, Settings};
@@ -82,6 +82,10 @@ pub struct Args {
     #[command(flatten)]
     shading: ShadingArgs,
 
+    /// Diffuse colour, linear, as one number or R,G,B
+    #[arg(long, value_name = "COLOUR", default_value = "0.1", value_parser = colour, help_heading = SHADING)]
+    albedo: [f32; 3],
+
     #[command(flatten)]
     source: SourceArgs,
 
@@ -113,6 +117,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         scene: &args.scene,
         shape: Arc::new(args.scene.scene.shape(TextureCoordinates::Needed)?),
         shading: &args.shading,
+        albedo: args.albedo,
         filters: without_repeats(&args.filters),
         size: args.size,
         samples: args.samples,

@@ -75,7 +75,7 @@ fn how_it_was_made(page: &mut Page, settings: &Settings<'_>, given: &Compared) {
             "material",
             format!(
                 "albedo {}, ambient {}, specular {}",
-                numbers(shading.albedo),
+                numbers(settings.albedo),
                 numbers(shading.ambient),
                 numbers(shading.specular)
             ),

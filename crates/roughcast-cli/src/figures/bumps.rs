@@ -43,6 +43,7 @@ pub fn scene(shape: Shape, zoom: f64) -> Scene {
         camera,
         lights: vec![Light::Directional { towards, irradiance: Light::WHITE }],
         material: Material::default().with_albedo([0.35, 0.3, 0.25]).with_ambient([0.15; 3]),
+        albedo: None,
         repeats: 1.0,
         background: [1.0; 3],
     }

@@ -36,6 +36,7 @@ pub fn scene(shape: Shape, repeats: f64, camera: Camera, towards_light: DVec3) -
         camera,
         lights: vec![Light::Directional { towards: towards_light.normalize(), irradiance: Light::WHITE }],
         material: dark_plastic(),
+        albedo: None,
         repeats,
         background: [0.0; 3],
     }

@@ -51,6 +51,7 @@
 //!
 //! [`Picture`]: roughcast_scene::Picture
 
+mod albedo;
 mod detail;
 mod geometry;
 mod headless;
@@ -63,9 +64,10 @@ mod uniforms;
 mod views;
 
 use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use roughcast::shading::{GeometricFilter, ShadingOptions};
-use roughcast_scene::{Filter, Sampler, Scene};
+use roughcast_scene::{AlbedoMap, Filter, Sampler, Scene};
 
 pub use detail::{DetailCode, DetailSource, GpuDetail};
 pub use geometry::Geometry;
@@ -75,6 +77,7 @@ pub use surface::{Curvature, GpuNoise, GpuPlacement, Octaves, Projection, Surfac
 pub use views::{Order, Part, Views};
 
 use crate::{Gpu, GpuError};
+use albedo::{Colours, GpuAlbedo};
 use geometry::upload;
 use pipeline::{BindGroups, MapUniforms, create_layouts, create_pipeline};
 use sampling::Sampling;
@@ -106,10 +109,12 @@ impl RenderTarget {
         }
     }
 
-    fn fragment_shader(self) -> &'static str {
-        match self {
-            Self::Colour(_) => "radiance",
-            Self::Parts => "parts",
+    fn fragment_shader(self, colours: Colours) -> &'static str {
+        match (self, colours) {
+            (Self::Colour(_), Colours::One) => "radiance",
+            (Self::Colour(_), Colours::Map) => "mapped_radiance",
+            (Self::Parts, Colours::One) => "parts",
+            (Self::Parts, Colours::Map) => "mapped_parts",
         }
     }
 }
@@ -180,7 +185,10 @@ pub struct Renderer {
     /// The bind group layout of the view; those of the maps depend on the number of maps.
     view_layout: wgpu::BindGroupLayout,
     map_layouts: Vec<wgpu::BindGroupLayout>,
-    pipelines: HashMap<ShaderKey, wgpu::RenderPipeline>,
+    /// Behind a lock, because a scene with a map of colours needs another one while its view is set.
+    pipelines: Mutex<HashMap<(ShaderKey, Colours), wgpu::RenderPipeline>>,
+    /// What is bound for a scene without a map of colours.
+    no_map: GpuAlbedo,
 }
 
 /// A shape with a source of bumps and its model, ready to be drawn.
@@ -191,6 +199,7 @@ pub struct Drawing {
     detail: GpuDetail,
     sampling: Sampling,
     key: ShaderKey,
+    albedo: GpuAlbedo,
     uniforms: MapUniforms,
     maps: wgpu::BindGroup,
     view: wgpu::Buffer,
@@ -214,7 +223,8 @@ impl Renderer {
             return Err(GpuError::Feature { feature: "storage buffers in shaders", instead });
         }
         let (view_layout, map_layouts) = gpu.checked("the layouts of a renderer", create_layouts).await?;
-        Ok(Self { gpu: gpu.clone(), target, view_layout, map_layouts, pipelines: HashMap::new() })
+        let no_map = GpuAlbedo::new(gpu, None).await?;
+        Ok(Self { gpu: gpu.clone(), target, view_layout, map_layouts, pipelines: Mutex::default(), no_map })
     }
 
     /// The device.
@@ -239,7 +249,8 @@ impl Renderer {
         options: &DrawOptions,
     ) -> Result<Drawing, GpuError> {
         let sampling = Sampling::new(&options.sampler())?;
-        let pipeline = self.pipeline(key(detail, &sampling, options)).await?;
+        let albedo = self.no_map.clone();
+        let pipeline = self.pipeline(key(detail, &sampling, options), albedo.colours()).await?;
         let groups = BindGroups { gpu: &self.gpu, view_layout: &self.view_layout };
         let uniforms = MapUniforms::new(&self.gpu, detail, options, &sampling).await?;
         let maps = groups.maps(self.map_layout(detail.views.len()), detail, &uniforms, &sampling).await?;
@@ -248,13 +259,14 @@ impl Renderer {
             upload(&self.gpu, "the view of a scene", bytemuck::cast_slice(&[0_u32; VIEW_WORDS]), usage)
                 .await?;
         let lights = self.lights(&light_words(&[])).await?;
-        let scene = groups.scene(&view, &lights).await?;
+        let scene = groups.scene(&view, &lights, &albedo.view).await?;
         Ok(Drawing {
             pipeline,
             geometry: geometry.clone(),
             detail: detail.clone(),
             sampling,
             key: key(detail, &sampling, options),
+            albedo,
             uniforms,
             maps,
             view,
@@ -268,14 +280,22 @@ impl Renderer {
         &self.map_layouts[textures]
     }
 
-    async fn pipeline(&mut self, key: ShaderKey) -> Result<wgpu::RenderPipeline, GpuError> {
-        if let Some(pipeline) = self.pipelines.get(&key) {
-            return Ok(pipeline.clone());
+    async fn pipeline(&self, key: ShaderKey, colours: Colours) -> Result<wgpu::RenderPipeline, GpuError> {
+        // The lock is never held while waiting. No code panics under it.
+        let pipelines = || self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = pipelines().get(&(key, colours)).cloned();
+        if let Some(pipeline) = known {
+            return Ok(pipeline);
         }
         let layouts = [&self.view_layout, self.map_layout(key.detail.texture_count())];
-        let pipeline = create_pipeline(&self.gpu, key, self.target, layouts).await?;
-        self.pipelines.insert(key, pipeline.clone());
+        let pipeline = create_pipeline(&self.gpu, (key, colours), self.target, layouts).await?;
+        pipelines().insert((key, colours), pipeline.clone());
         Ok(pipeline)
+    }
+
+    /// The map of a scene, uploaded, or what stands for none.
+    async fn albedo(&self, map: Option<&Arc<AlbedoMap>>) -> Result<GpuAlbedo, GpuError> {
+        if map.is_none() { Ok(self.no_map.clone()) } else { GpuAlbedo::new(&self.gpu, map).await }
     }
 
     async fn lights(&self, words: &[u32]) -> Result<wgpu::Buffer, GpuError> {
@@ -314,7 +334,7 @@ impl Drawing {
         let sampling = Sampling::new(&options.sampler())?;
         let key = key(&self.detail, &sampling, options);
         if (sampling, key) != (self.sampling, self.key) {
-            let pipeline = renderer.pipeline(key).await?;
+            let pipeline = renderer.pipeline(key, self.albedo.colours()).await?;
             let groups = BindGroups { gpu: &renderer.gpu, view_layout: &renderer.view_layout };
             let layout = renderer.map_layout(self.detail.views.len());
             self.maps = groups.maps(layout, &self.detail, &self.uniforms, &sampling).await?;
@@ -324,11 +344,13 @@ impl Drawing {
         Ok(())
     }
 
-    /// Sets the camera, lights, material, repeats and background for the next frames, in a target of `size` pixels. The
-    /// scene's shape must be that of the geometry; here it only determines the depth range.
+    /// Sets the camera, lights, material, map of colours, repeats and background for the next frames, in a target of
+    /// `size` pixels. The scene's shape must be that of the geometry; here it only determines the depth range. A map of
+    /// colours is uploaded when it first appears, or when another one takes its place.
     ///
     /// # Errors
-    /// [`GpuError::Scene`] if the camera is invalid or the size is zero. Too many lights are an error too.
+    /// [`GpuError::Scene`] if the camera is invalid or the size is zero. Too many lights are an error too,
+    /// and a map of colours that is too large.
     pub async fn set_view(
         &mut self,
         renderer: &Renderer,
@@ -337,13 +359,14 @@ impl Drawing {
     ) -> Result<(), GpuError> {
         headless::check_size(size)?;
         scene.camera.validate().map_err(roughcast_scene::render::RenderError::from)?;
+        self.set_albedo(renderer, scene.albedo.as_ref()).await?;
         let words = light_words(&scene.lights);
         if self.lights.size() < size_of_val(words.as_slice()) as u64 {
             let mut room = words.clone();
             room.resize(room_for(words.len(), renderer.gpu.limits().max_storage_buffer_binding_size), 0);
             let lights = renderer.lights(&room).await?;
             let groups = BindGroups { gpu: &renderer.gpu, view_layout: &renderer.view_layout };
-            self.scene = groups.scene(&self.view, &lights).await?;
+            self.scene = groups.scene(&self.view, &lights, &self.albedo.view).await?;
             self.lights = lights;
         } else {
             renderer.gpu.queue().write_buffer(&self.lights, 0, bytemuck::cast_slice(&words));
@@ -351,6 +374,24 @@ impl Drawing {
         let view = view_words(scene, size);
         renderer.gpu.queue().write_buffer(&self.view, 0, bytemuck::cast_slice(&view));
         self.background = scene.background;
+        Ok(())
+    }
+
+    /// Uploads the map of colours unless it is the one of the last frame, and switches to the shader that reads it.
+    async fn set_albedo(
+        &mut self,
+        renderer: &Renderer,
+        map: Option<&Arc<AlbedoMap>>,
+    ) -> Result<(), GpuError> {
+        if self.albedo.is_of(map) {
+            return Ok(());
+        }
+        let albedo = renderer.albedo(map).await?;
+        let key = self.key;
+        let pipeline = renderer.pipeline(key, albedo.colours()).await?;
+        let groups = BindGroups { gpu: &renderer.gpu, view_layout: &renderer.view_layout };
+        self.scene = groups.scene(&self.view, &self.lights, &albedo.view).await?;
+        (self.pipeline, self.albedo) = (pipeline, albedo);
         Ok(())
     }
 

@@ -7,7 +7,7 @@ use super::geometry::{VERTEX_LAYOUT, upload};
 use super::sampling::Sampling;
 use super::shader::{FIRST_TEXTURE, ShaderKey, shader_source};
 use super::surface::{noise_words, surface_words};
-use super::{DEPTH_FORMAT, DrawOptions, RenderTarget};
+use super::{Colours, DEPTH_FORMAT, DrawOptions, RenderTarget};
 use crate::{Gpu, GpuError};
 
 /// The bind group layout of the view, and those of the maps, by their number of textures.
@@ -20,13 +20,14 @@ pub(super) fn create_layouts(device: &wgpu::Device) -> (wgpu::BindGroupLayout, V
     let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
         device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
     };
-    let view = layout("view", &[entry(0, both, uniform), entry(1, fragment, storage)]);
     let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
     let texture = wgpu::BindingType::Texture {
         sample_type: wgpu::TextureSampleType::Float { filterable: true },
         view_dimension: wgpu::TextureViewDimension::D2,
         multisampled: false,
     };
+    let view =
+        layout("view", &[entry(0, both, uniform), entry(1, fragment, storage), entry(2, fragment, texture)]);
     let fixed = [uniform, uniform, uniform, sampler, uniform, uniform];
     let mut entries = fixed.map(|ty| entry(0, fragment, ty)).to_vec();
     for (binding, entry) in entries.iter_mut().enumerate() {
@@ -39,10 +40,10 @@ pub(super) fn create_layouts(device: &wgpu::Device) -> (wgpu::BindGroupLayout, V
     (view, maps.collect())
 }
 
-/// Creates the pipeline of a model.
+/// Creates the pipeline of a model, for a diffuse colour of this kind.
 pub(super) async fn create_pipeline(
     gpu: &Gpu,
-    key: ShaderKey,
+    (key, colours): (ShaderKey, Colours),
     target: RenderTarget,
     [view, maps]: [&wgpu::BindGroupLayout; 2],
 ) -> Result<wgpu::RenderPipeline, GpuError> {
@@ -79,7 +80,7 @@ pub(super) async fn create_pipeline(
             multisample: Default::default(),
             fragment: Some(wgpu::FragmentState {
                 module: &module,
-                entry_point: Some(target.fragment_shader()),
+                entry_point: Some(target.fragment_shader(colours)),
                 compilation_options: Default::default(),
                 targets: &targets,
             }),
@@ -97,13 +98,15 @@ pub(super) struct BindGroups<'a> {
 }
 
 impl BindGroups<'_> {
-    /// The bind group of the view and the lights.
+    /// The bind group of the view, the lights and the map of colours.
     pub async fn scene(
         &self,
         view: &wgpu::Buffer,
         lights: &wgpu::Buffer,
+        albedo: &wgpu::TextureView,
     ) -> Result<wgpu::BindGroup, GpuError> {
-        let resources = [view.as_entire_binding(), lights.as_entire_binding()];
+        let albedo = wgpu::BindingResource::TextureView(albedo);
+        let resources = [view.as_entire_binding(), lights.as_entire_binding(), albedo];
         self.group("the view of a scene", self.view_layout, resources).await
     }
 

@@ -18,6 +18,7 @@ struct SceneLight {
 
 @group(0) @binding(0) var<uniform> scene_view: SceneView;
 @group(0) @binding(1) var<storage, read> scene_lights: array<SceneLight>;
+@group(0) @binding(2) var albedo_map: texture_2d<f32>;  // linear colours
 @group(1) @binding(0) var<uniform> options: ShadingOptions;
 
 struct Varyings {
@@ -87,19 +88,24 @@ struct Parts {
     @location(1) specular: vec4f,   // the part of the radiance from specular lobes
 }
 
-fn shaded(fragment: Varyings, front: bool) -> Parts {
+// The colour of the map at texture coordinates.
+fn mapped_albedo(uv: vec2f) -> vec3f {
+    return filtered(albedo_map, uv).rgb;
+}
+
+fn shaded(fragment: Varyings, front: bool, albedo: vec3f) -> Parts {
     let towards_eye = normalize(scene_view.eye - fragment.position);
     let frame = world_from_tangent(fragment, towards_eye, front);
     let distribution = bumps_at(DetailPoint(fragment.uv, fragment.position, frame, select(-1.0, 1.0, front)));
     let surface = model_surface(distribution, options);
     let view = towards_eye * frame;
-    var diffuse = ambient_radiance(scene_view.albedo, scene_view.ambient);
+    var diffuse = ambient_radiance(albedo, scene_view.ambient);
     var specular = vec3f(0.0);
     for (var i = 0u; i < scene_view.light_count; i++) {
         let light = light_at(scene_lights[i], fragment.position);
         let towards = light.towards * frame;
         let lobe = model_lobe(surface, view, towards, options);
-        diffuse += diffuse_radiance(distribution.normal, scene_view.albedo, towards, light.irradiance);
+        diffuse += diffuse_radiance(distribution.normal, albedo, towards, light.irradiance);
         specular += specular_radiance(lobe, scene_view.specular, view, towards, light.irradiance, options);
     }
     return Parts(vec4f(diffuse + specular, 1.0), vec4f(specular, 1.0));
@@ -107,10 +113,20 @@ fn shaded(fragment: Varyings, front: bool) -> Parts {
 
 @fragment
 fn radiance(fragment: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4f {
-    return shaded(fragment, front).radiance;
+    return shaded(fragment, front, scene_view.albedo).radiance;
+}
+
+@fragment
+fn mapped_radiance(fragment: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    return shaded(fragment, front, mapped_albedo(fragment.uv)).radiance;
 }
 
 @fragment
 fn parts(fragment: Varyings, @builtin(front_facing) front: bool) -> Parts {
-    return shaded(fragment, front);
+    return shaded(fragment, front, scene_view.albedo);
+}
+
+@fragment
+fn mapped_parts(fragment: Varyings, @builtin(front_facing) front: bool) -> Parts {
+    return shaded(fragment, front, mapped_albedo(fragment.uv));
 }

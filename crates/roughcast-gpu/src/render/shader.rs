@@ -15,6 +15,7 @@ pub(super) const FIRST_TEXTURE: u32 = 6;
 
 const SCENE: &str = include_str!("scene.wgsl");
 const SURFACE_OPTIONS: &str = include_str!("surface_options.wgsl");
+const SAMPLING: &str = include_str!("sampling.wgsl");
 const MAPS: &str = include_str!("maps.wgsl");
 const FOOTPRINT: &str = include_str!("footprint.wgsl");
 const MAP0: &str = include_str!("map0.wgsl");
@@ -110,9 +111,11 @@ impl ShaderKey {
 }
 
 /// The WGSL of a model with a source of bumps: the vertex shader `project`, and the fragment shaders `radiance` (one
-/// colour target, alpha is coverage) and `parts` (the same, with the specular part in a second target).
+/// colour target, alpha is coverage) and `parts` (the same, with the specular part in a second target), with the twins
+/// `mapped_radiance` and `mapped_parts`, which read the diffuse colour from a map.
 ///
-/// Group 0 changes with the view: binding 0 is the view and the material's colours, 1 the lights. Group 1 contains the
+/// Group 0 changes with the view: binding 0 is the view and the material's colours, 1 the lights, 2 the map of diffuse
+/// colours in linear light, which `radiance` and `parts` do not read. Group 1 contains the
 /// maps: 0 [`roughcast::shading::ShadingOptions`], 1 [`roughcast::texture::Packing`], 2 the sampling, 3 a sampler, 4 how the
 /// bumps are placed, 5 the noise, and from 6 on the textures in the order of [`TexelReader::inputs`].
 ///
@@ -122,11 +125,12 @@ pub fn shader_source(key: ShaderKey) -> Result<String, UnknownName> {
     let ShaderKey { shading, detail, level, bumps, surface } = key;
     let calls = shading.calls(detail.gaussians());
     let mut modules = vec![calls.module, "reflectance", "detail"];
-    let mut parts = vec![SURFACE_OPTIONS];
+    let [filtered, variances] = level.sources();
+    let mut parts = vec![SURFACE_OPTIONS, SAMPLING, filtered];
     match detail {
         DetailSource::Textures(reader) => {
             modules.push(reader.module);
-            parts.extend(sampling_of(reader, level));
+            parts.extend(sampling_of(reader, variances));
         }
         DetailSource::Heights(derivative) => {
             modules.extend(["surface-gradient", "footprint", "packing"]);
@@ -174,7 +178,6 @@ fn placement_of(projection: Projection) -> (Vec<&'static str>, Vec<&'static str>
 
 /// WGSL of the functions that sample and differentiate heights.
 fn heights_of(derivative: HeightDerivative, level: LevelOfDetail) -> Vec<&'static str> {
-    let [filtered, _] = level.sources();
     let differences = match derivative {
         HeightDerivative::Forward => include_str!("heights_forward.wgsl"),
         HeightDerivative::Central => include_str!("heights_central.wgsl"),
@@ -185,13 +188,12 @@ fn heights_of(derivative: HeightDerivative, level: LevelOfDetail) -> Vec<&'stati
         LevelOfDetail::Derivatives => include_str!("height_level_from_derivatives.wgsl"),
         LevelOfDetail::Fixed => include_str!("height_level_fixed.wgsl"),
     };
-    vec![MAPS, filtered, MAP0, include_str!("heights.wgsl"), differences, level]
+    vec![MAPS, MAP0, include_str!("heights.wgsl"), differences, level]
 }
 
 /// WGSL of the functions that sample the textures of a layout.
-fn sampling_of(reader: &TexelReader, level: LevelOfDetail) -> Vec<&'static str> {
-    let [filtered, variances] = level.sources();
-    let mut parts = vec![MAPS, filtered];
+fn sampling_of(reader: &TexelReader, variances: &'static str) -> Vec<&'static str> {
+    let mut parts = vec![MAPS];
     parts.extend(reader.inputs.iter().enumerate().map(|(place, input)| match place {
         0 => MAP0,
         1 if input.part == Part::Roughness => MAP1_ROUGHNESS,

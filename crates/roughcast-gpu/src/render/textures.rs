@@ -62,7 +62,17 @@ pub(super) async fn upload(gpu: &Gpu, texture: &Texture) -> Result<wgpu::Texture
 }
 
 fn write_level(gpu: &Gpu, texture: &wgpu::Texture, mip_level: u32, image: &Image) {
-    let bytes = texels(image);
+    write_texels(gpu, texture, mip_level, (image.width(), image.height()), &texels(image));
+}
+
+/// Writes the texels of a level of `(width, height)` texels.
+pub(super) fn write_texels(
+    gpu: &Gpu,
+    texture: &wgpu::Texture,
+    mip_level: u32,
+    (width, height): (usize, usize),
+    bytes: &[u8],
+) {
     let target = wgpu::TexelCopyTextureInfo {
         texture,
         mip_level,
@@ -71,15 +81,11 @@ fn write_level(gpu: &Gpu, texture: &wgpu::Texture, mip_level: u32, image: &Image
     };
     let layout = wgpu::TexelCopyBufferLayout {
         offset: 0,
-        bytes_per_row: Some((bytes.len() / image.height()) as u32),
+        bytes_per_row: Some((bytes.len() / height) as u32),
         rows_per_image: None,
     };
-    let size = wgpu::Extent3d {
-        width: image.width() as u32,
-        height: image.height() as u32,
-        depth_or_array_layers: 1,
-    };
-    gpu.queue().write_texture(target, &bytes, layout, size);
+    let size = wgpu::Extent3d { width: width as u32, height: height as u32, depth_or_array_layers: 1 };
+    gpu.queue().write_texture(target, bytes, layout, size);
 }
 
 /// The bytes of an image. Three channels are padded to four, because GPUs have no three-channel formats.

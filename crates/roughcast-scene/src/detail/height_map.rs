@@ -4,8 +4,8 @@ use glam::DVec2;
 use roughcast::{BakeError, ImageView, SourceOptions, Wrap};
 
 use super::height_texture;
-use crate::Mipmap;
-use crate::mipmap::{Level, whole_and_rest, wrapped};
+use crate::mipmap::{whole_and_rest, wrapped};
+use crate::{Level, Mipmap};
 
 /// Heights in texels of level 0, averaged into levels.
 #[derive(Clone, Debug)]

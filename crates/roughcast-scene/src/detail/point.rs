@@ -6,7 +6,7 @@ use roughcast::surface_gradient::slope_of_gradient;
 use roughcast::{Distribution, Slope, SlopeMatrix};
 
 use crate::filter::Quad;
-use crate::{Footprint, Hit, Placement, Ray, Side, SlopeFrame};
+use crate::{Footprint, Hit, Placement, Ray, Sampler, Side, SlopeFrame};
 
 /// A source of bumps on a surface. Slopes are in the tangent frame of the hit.
 pub trait Detail: Sync {
@@ -19,6 +19,12 @@ pub trait Detail: Sync {
     /// The options, with overrides if the source itself specifies the base roughness.
     fn options(&self, options: ShadingOptions) -> ShadingOptions {
         options
+    }
+
+    /// How other textures of the surface, such as its [colours](crate::Scene::albedo), are sampled: like those of the
+    /// bumps.
+    fn sampler(&self) -> Sampler {
+        Sampler::default()
     }
 }
 
@@ -38,6 +44,10 @@ impl Detail for Resolved<'_> {
 
     fn options(&self, options: ShadingOptions) -> ShadingOptions {
         self.0.options(options)
+    }
+
+    fn sampler(&self) -> Sampler {
+        self.0.sampler().finest()
     }
 }
 

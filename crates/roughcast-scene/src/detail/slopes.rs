@@ -4,8 +4,8 @@ use roughcast::shading::ShadingOptions;
 use roughcast::{Covariance, Distribution, Moments, Normal, Slope, Wrap, normal_from_slope};
 
 use super::{Detail, DetailPoint, Reconstruction, SlopeMap};
-use crate::Placement;
 use crate::render::pixel_filter_quantile;
+use crate::{Placement, Sampler};
 
 /// Samples along each side of a pixel for the distribution of [`SlopeDetail`].
 const SIDE: u32 = 16;
@@ -79,5 +79,9 @@ impl Detail for SlopeDetail {
             Some(matrix) => distribution.transformed(matrix),
             None => distribution,
         }
+    }
+
+    fn sampler(&self) -> Sampler {
+        Sampler::default().with_wrap(self.wrap)
     }
 }

@@ -121,4 +121,8 @@ impl Detail for TextureDetail<'_> {
     fn options(&self, options: ShadingOptions) -> ShadingOptions {
         options.for_maps(&self.textures.info)
     }
+
+    fn sampler(&self) -> Sampler {
+        self.sampler
+    }
 }

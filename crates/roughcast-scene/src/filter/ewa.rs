@@ -8,8 +8,8 @@ use roughcast::Wrap;
 use roughcast::shading::{FilterVariances, PIXEL_STANDARD_DEVIATION};
 
 use super::footprint::Ellipse;
-use crate::Footprint;
-use crate::mipmap::{Level, Mipmap, wrapped};
+use crate::mipmap::{Mipmap, wrapped};
+use crate::{Footprint, Level};
 
 /// Number of standard deviations at which the Gaussian is truncated. The 1 % of its weight beyond is distributed over
 /// the texels within.

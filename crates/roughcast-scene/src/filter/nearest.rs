@@ -3,7 +3,8 @@
 use glam::DVec2;
 use roughcast::Wrap;
 
-use crate::mipmap::{Level, wrapped};
+use crate::Level;
+use crate::mipmap::wrapped;
 
 /// The texel whose area contains `uv`.
 pub(super) fn sample(level: &Level, uv: DVec2, wrap: Wrap) -> [f64; 4] {

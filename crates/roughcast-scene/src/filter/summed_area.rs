@@ -7,8 +7,7 @@ use glam::DVec2;
 use roughcast::Wrap;
 use roughcast::shading::FilterVariances;
 
-use crate::Footprint;
-use crate::mipmap::Level;
+use crate::{Footprint, Level};
 
 /// Maximum number of texture periods in a box. The mean over more of them is that of the texture.
 const MAX_PERIODS: f64 = 64.0;

@@ -5,7 +5,8 @@ use std::f64::consts::TAU;
 use roughcast::Wrap;
 
 use super::*;
-use crate::mipmap::{Level, wrapped};
+use crate::Level;
+use crate::mipmap::wrapped;
 
 /// Rounding error of f64 sums of numbers near one that are stored as f32.
 const ROUNDING: f64 = 1e-6;

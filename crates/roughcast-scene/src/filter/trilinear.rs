@@ -4,8 +4,8 @@ use glam::DVec2;
 use roughcast::Wrap;
 
 use super::footprint::Ellipse;
-use crate::Footprint;
-use crate::mipmap::{Level, Mipmap, whole_and_rest};
+use crate::mipmap::{Mipmap, whole_and_rest};
+use crate::{Footprint, Level};
 
 /// The level of detail at which a footprint is about one texel wide: the logarithm of its larger extent in texels.
 ///

@@ -2,7 +2,7 @@
 
 use roughcast::shading::{Shading, ShadingOptions};
 
-use super::shade::Shaded;
+use super::shade::{Shaded, material_at};
 use super::{Progress, RenderError, render_rows};
 use crate::{Detail, DetailPoint, Picture, Scene};
 
@@ -30,6 +30,7 @@ impl Method<'_> {
         progress: Progress<'_>,
     ) -> Result<Picture, RenderError> {
         let options = self.detail.options(self.options);
+        let sampler = self.detail.sampler();
         let rays = scene.camera.pixel_rays(size.0, size.1);
         render_rows(scene, size, progress, |column, row| {
             let (x, y) = (f64::from(column) + 0.5, f64::from(row) + 0.5);
@@ -39,7 +40,7 @@ impl Method<'_> {
             let at = DetailPoint::under_pixel(&hit, scene.repeats, (column, row), &right, &below);
             let distribution = self.detail.distribution(&at, &options);
             let surface = self.shading.surface_of(&distribution, &options);
-            Shaded::lit(scene, &ray, &hit, &surface, &options)
+            Shaded::lit(scene, &material_at(scene, &at, &sampler), &ray, &hit, &surface, &options)
         })
     }
 }

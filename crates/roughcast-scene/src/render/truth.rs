@@ -6,7 +6,7 @@ use glam::DVec2;
 use roughcast::shading::{PIXEL_STANDARD_DEVIATION, Shading, ShadingOptions};
 
 use super::normal_quantile::normal_quantile;
-use super::shade::Shaded;
+use super::shade::{Shaded, material_at};
 use super::{MAX_SAMPLES, Progress, RenderError, render_rows_of_each};
 use crate::split_mix::{GOLDEN_RATIO, scrambled};
 use crate::{Detail, DetailPoint, Picture, Ray, Scene};
@@ -82,10 +82,12 @@ impl Truth<'_> {
             let background = Shaded::background(scene);
             return sums.iter_mut().for_each(|sum| sum.add(&background));
         };
-        let slope = self.detail.slope(&DetailPoint::new(&hit, scene.repeats));
+        let at = DetailPoint::new(&hit, scene.repeats);
+        let slope = self.detail.slope(&at);
+        let material = material_at(scene, &at, &self.detail.sampler().finest());
         for (sum, shading) in sums.iter_mut().zip(shadings) {
             let surface = shading.surface_of_slope(slope, &self.options);
-            sum.add(&Shaded::lit(scene, ray, &hit, &surface, &self.options));
+            sum.add(&Shaded::lit(scene, &material, ray, &hit, &surface, &self.options));
         }
     }
 }
