@@ -28,6 +28,33 @@ const FOOTPRINT: &[&str] = &[
     "  or, without it, ratio = whole_footprint();",
 ];
 
+/// How to call the modules of bumps that need no tangents, in a fragment shader.
+const BUMPS: &[(&str, &[&str])] = &[
+    (
+        "surface-gradient",
+        &[
+            "  normal of a height, with dpdx(position) and so on (HLSL ddx_fine, ddy_fine; GLSL dFdxFine, dFdyFine; Metal dfdx, dfdy):",
+            "    gradient = surface_gradient(dpdx(position), dpdy(position), normal, dpdx(height), dpdy(height));",
+            "    normal = perturbed_normal(normal, gradient);",
+            "  of a height in space with a gradient, in any stage: surface_gradient_of_volume(normal, gradient)",
+        ],
+    ),
+    (
+        "geometric",
+        &[
+            "  curvature under the pixel, with the tangent frame's axes x and y, to add to the covariance of the distribution:",
+            "    covariance = geometric_covariance((dot(dpdx(normal), x), dot(dpdx(normal), y)), (the same of dpdy), filter);",
+        ],
+    ),
+    (
+        "noise",
+        &[
+            "  bumps of noise under the pixel, along two perpendicular unit tangents:",
+            "    slopes = noise_distribution(noise, position, tangent, bitangent, dpdx(position), dpdy(position), filter);",
+        ],
+    ),
+];
+
 /// The header of an export of these modules, as comment lines.
 pub fn header(modules: &[&Module], parsed: &naga::Module, language: Language, prefix: &Prefix) -> String {
     let mut lines =
@@ -68,6 +95,11 @@ pub fn header(modules: &[&Module], parsed: &naga::Module, language: Language, pr
         lines.push(prefix.apply(
             "    + specular_radiance(lobe, specular, view, light, irradiance, options); the last two for every light",
         ));
+    }
+    for (name, calls) in BUMPS {
+        if modules.iter().any(|module| module.name == *name) {
+            lines.extend(calls.iter().map(|line| prefix.apply(line)));
+        }
     }
     if models(modules).any(|model| reader_of(model).mean_input.is_some()) {
         lines.extend(FOOTPRINT.iter().map(|line| prefix.apply(line)));
