@@ -89,6 +89,27 @@ fn the_graphics_card_makes_the_same_picture() {
 }
 
 #[test]
+fn the_neutral_tone_changes_only_what_is_near_white_or_brighter() {
+    /// The sRGB code of 80 % of white.
+    const SHOULDER: u8 = 231;
+    let folder = scratch();
+    let [linear, neutral] = ["linear", "neutral"].map(|tone| {
+        let output = folder.path().join(format!("{tone}.png"));
+        let further = ["--tone", tone, "--white", "0.3", "--specular", "0.9,0.7,0.4"];
+        render(&output, &further).expect_success();
+        let decoded = read_image_file(&output, &ReadOptions::default()).expect("a picture");
+        let Samples::U8(samples) = decoded.image.samples() else { panic!("8 bits") };
+        samples.chunks_exact(3).map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect::<Vec<_>>()
+    });
+    let bright = |pixel: &[u8; 3]| pixel.iter().any(|value| *value > SHOULDER);
+    assert!(linear.iter().zip(&neutral).all(|(linear, neutral)| bright(linear) || linear == neutral));
+    let clamped = linear.iter().filter(|pixel| pixel[0] == 255 && pixel[1] == 255).count();
+    let kept =
+        neutral.iter().filter(|pixel| bright(pixel) && pixel[0] > pixel[1] && pixel[1] > pixel[2]).count();
+    assert!(clamped > 100 && kept > clamped, "{clamped} pixels are clamped, {kept} keep their hue");
+}
+
+#[test]
 fn frames_of_a_camera_move_go_to_a_folder_and_differ() {
     let folder = scratch();
     let frames = folder.path().join("frames");
