@@ -148,7 +148,7 @@ fn list(as_json: bool) -> Result<()> {
         return say_json(&Value::Array(exports().map(entry).collect()));
     }
     for module in exports() {
-        say(&format!("{:<12} {}", module.name, module.summary))?;
+        say(&format!("{:<16} {}", module.name, module.summary))?;
     }
     Ok(())
 }

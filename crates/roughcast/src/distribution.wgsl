@@ -72,27 +72,27 @@ fn whole_gaussian(distribution: Distribution) -> WeightedGaussian {
     return WeightedGaussian(mean, sigma.xy, sigma.z, 1.0);
 }
 
-// A Gaussian in another frame: new slope = matrix * old slope.
-fn transformed_gaussian(gaussian: WeightedGaussian, matrix: mat2x2f) -> WeightedGaussian {
+// A Gaussian in another frame: new slope = new_from_old * old slope.
+fn transformed_gaussian(gaussian: WeightedGaussian, new_from_old: mat2x2f) -> WeightedGaussian {
     let sigma = mat2x2f(gaussian.variance.x, gaussian.covariance, gaussian.covariance, gaussian.variance.y);
-    let turned = matrix * sigma * transpose(matrix);
+    let turned = new_from_old * sigma * transpose(new_from_old);
     return WeightedGaussian(
-        matrix * gaussian.mean, vec2f(turned[0].x, turned[1].y), turned[0].y, gaussian.weight,
+        new_from_old * gaussian.mean, vec2f(turned[0].x, turned[1].y), turned[0].y, gaussian.weight,
     );
 }
 
 // The distribution in another frame of the same tangent plane. The filtered normal keeps its length.
-fn transformed_distribution(distribution: Distribution, matrix: mat2x2f) -> Distribution {
-    let turned = vec3f(matrix * distribution.normal.xy, distribution.normal.z);
+fn transformed_distribution(distribution: Distribution, new_from_old: mat2x2f) -> Distribution {
+    let turned = vec3f(new_from_old * distribution.normal.xy, distribution.normal.z);
     let squared = dot(turned, turned);
     let scale = select(0.0, length(distribution.normal) * inverseSqrt(squared), squared > 1e-37);
     return Distribution(
         turned * scale,
         distribution.base,
-        transformed_gaussian(distribution.first, matrix),
-        transformed_gaussian(distribution.second, matrix),
-        transformed_gaussian(distribution.third, matrix),
-        transformed_gaussian(distribution.fourth, matrix),
+        transformed_gaussian(distribution.first, new_from_old),
+        transformed_gaussian(distribution.second, new_from_old),
+        transformed_gaussian(distribution.third, new_from_old),
+        transformed_gaussian(distribution.fourth, new_from_old),
     );
 }
 

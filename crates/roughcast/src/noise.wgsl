@@ -23,37 +23,12 @@ const NOISE_INFINITE: f32 = 1e20;
 // cos of twice 11.25 and 33.75 degrees.
 const NOISE_DOUBLE_ANGLES: vec2f = vec2f(0.9238795325112867, 0.3826834323650898);
 
-// What remains of the slopes of an octave under a round Gaussian footprint, by its standard deviation in cells.
-const NOISE_FADE_STEPS: f32 = 20.0;     // entries per cell
-const NOISE_FADE_LAST: f32 = 24.0;      // the last entry
-const NOISE_FADE_FBM = array<f32, 25>(
-    1.0, 0.9716, 0.8935, 0.7827, 0.6582, 0.5353, 0.4243, 0.3299, 0.2534, 0.1932,
-    0.147, 0.112, 0.0857, 0.066, 0.0512, 0.0401, 0.0316, 0.0252, 0.0202, 0.0163,
-    0.0133, 0.011, 0.0091, 0.0077, 0.0,
-);
-const NOISE_FADE_TURBULENCE = array<f32, 25>(
-    1.0, 0.8175, 0.6195, 0.4412, 0.301, 0.2008, 0.1331, 0.0888, 0.0601, 0.0415,
-    0.0294, 0.0212, 0.0157, 0.012, 0.009, 0.0069, 0.0054, 0.0043, 0.0035, 0.0027,
-    0.0023, 0.0017, 0.0014, 0.0012, 0.0,
-);
-
-const NOISE_FBM: u32 = 0u;          // the noise itself
-const NOISE_TURBULENCE: u32 = 1u;   // its absolute value
-
-const NOISE_OCTAVES_FADE: u32 = 0u; // octaves too small for the footprint become covariance
-const NOISE_OCTAVES_DROP: u32 = 1u; // nothing is left of them
-const NOISE_OCTAVES_KEEP: u32 = 2u; // all octaves at full strength, which aliases
-
-// Uploaded: 32 bytes, one word each.
-struct Noise {
-    frequency: f32,     // cells of the first octave per unit of length, above 0
-    amplitude: f32,     // factor of the noise of the first octave, in units of length
-    octaves: u32,       // 1 to MAX_OCTAVES
-    kind: u32,          // NOISE_FBM or NOISE_TURBULENCE
-    seed: u32,          // of the first octave; the next has the next number
-    unused_word: u32,   // padding
-    unused: vec2u,
-}
+// Coefficients of s, s^2, s^4 and s^5 in the reciprocal of what remains of the slopes of an octave under a round Gaussian
+// footprint of s cells of standard deviation, minus one: fractal noise, and its absolute value.
+const NOISE_FADE_FBM: vec4f = vec4f(0.0, 11.553, 28.757, 35.358);
+const NOISE_FADE_TURBULENCE: vec4f = vec4f(3.061, 26.969, 393.06, 0.0);
+// From this standard deviation on nothing remains.
+const NOISE_FADE_LAST: f32 = 1.2;
 
 struct NoiseSlopes {
     mean: vec2f,        // mean slope along tangent and bitangent
@@ -155,13 +130,10 @@ fn noise_height(noise: Noise, p: vec3f) -> f32 {
 
 // The part of an octave's slopes that a round footprint of variance q, in squared cells of the octave, keeps.
 fn noise_fade(kind: u32, q: f32) -> f32 {
-    let place = min(sqrt(q) * NOISE_FADE_STEPS, NOISE_FADE_LAST);
-    let entry = u32(min(place, NOISE_FADE_LAST - 1.0));
-    let rest = place - f32(entry);
-    if kind == NOISE_TURBULENCE {
-        return mix(NOISE_FADE_TURBULENCE[entry], NOISE_FADE_TURBULENCE[entry + 1u], rest);
-    }
-    return mix(NOISE_FADE_FBM[entry], NOISE_FADE_FBM[entry + 1u], rest);
+    let fit = select(NOISE_FADE_FBM, NOISE_FADE_TURBULENCE, kind == NOISE_TURBULENCE);
+    let sigma = sqrt(q);
+    let fade = 1.0 / (1.0 + sigma * fit.x + q * (fit.y + q * (fit.z + sigma * fit.w)));
+    return select(0.0, fade, sigma < NOISE_FADE_LAST);
 }
 
 // The footprint of a pixel, given the changes of the position to the adjacent pixels, in cells of the first octave.

@@ -4,12 +4,17 @@
 //! In GLSL, HLSL and Metal's language each module has a guard. A constant that an export does not use is omitted from
 //! it, so each constant has its own guard; constants for the caller are always included.
 
+use std::collections::BTreeSet;
+
 use roughcast::wgsl::Module;
 
 use super::prefix::{CONSTRUCT, Prefix, global_names, is_constant};
 
-/// The modules whose constants are for the caller: the choices of `ShadingOptions` and of `Packing`.
-const FOR_CALLERS: &[&str] = &["options", "packing"];
+/// The modules whose constants are for the caller: the choices of `ShadingOptions`, of `Packing` and of `Noise`.
+const FOR_CALLERS: &[&str] = &["options", "packing", "noise-options"];
+
+/// How the names of functions begin that naga adds, such as conversions of floats to integers that never overflow.
+const NAGAS_HELPER: &str = "naga_";
 
 /// A constant, struct or function of the generated code.
 struct Item<'a> {
@@ -23,6 +28,8 @@ struct Item<'a> {
 /// A line about code that belongs to no module.
 pub fn with_guards(code: &str, modules: &[&Module], prefix: &Prefix) -> Result<String, String> {
     let (prelude, items) = items(code);
+    let (helpers, items): (Vec<_>, Vec<_>) =
+        items.into_iter().partition(|item| item.name.starts_with(NAGAS_HELPER));
     let names = global_names();
     let module_of = |item: &Item<'_>| {
         let name = item.name.strip_prefix(CONSTRUCT).unwrap_or(item.name);
@@ -30,6 +37,11 @@ pub fn with_guards(code: &str, modules: &[&Module], prefix: &Prefix) -> Result<S
     };
     let owners = items.iter().map(module_of).collect::<Result<Vec<_>, _>>()?;
     let mut out = prelude;
+    let helper_names: BTreeSet<&str> = helpers.iter().map(|helper| helper.name).collect();
+    for name in helper_names {
+        let overloads: Vec<_> = helpers.iter().filter(|helper| helper.name == name).collect();
+        guarded(&prefix.module_guard(name), &overloads, prefix, &mut out);
+    }
     for module in modules {
         let own =
             || items.iter().zip(&owners).filter(|(_, owner)| **owner == module.name).map(|(item, _)| item);

@@ -45,7 +45,7 @@ impl Prefix {
 
     /// The macro that marks constants as defined; their names have the prefix in capitals.
     pub fn constant_guard(&self, name: &str) -> String {
-        format!("{}{}_CONSTANT", self.0, name).to_ascii_uppercase()
+        format!("{}{}_CONSTANT", self.0, name.replace('-', "_")).to_ascii_uppercase()
     }
 
     /// Prefixes every global name of the library in the code, including names changed by naga. Members of structs keep

@@ -227,7 +227,7 @@ fn wrong_twins_are_detected() {
         ("blinn_normal", "tilt / length(normal)", "tilt"),
         ("slope_matrix", "gradients[0] * -height_per_uv.x", "gradients[0] * height_per_uv.x"),
         ("geometric_covariance", "filtering.largest_trace / trace", "filtering.largest_trace"),
-        ("transformed_gaussian", "matrix * sigma * transpose(matrix)", "matrix * sigma"),
+        ("transformed_gaussian", "new_from_old * sigma * transpose(new_from_old)", "new_from_old * sigma"),
         (
             "distribution_sum",
             "filtered_slope(one.normal) + filtered_slope(other.normal)",

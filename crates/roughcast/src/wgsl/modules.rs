@@ -309,9 +309,17 @@ pub const MODULES: &[Module] = &[
         role: Role::Companion,
     },
     Module {
+        name: "noise-options",
+        source: include_str!("../noise_options.wgsl"),
+        needs: &[],
+        summary: "noise as the caller describes it",
+        citation: "",
+        role: Role::Part,
+    },
+    Module {
         name: "noise",
         source: include_str!("../noise.wgsl"),
-        needs: &[],
+        needs: &["noise-options"],
         summary: "octaves of gradient noise, and the distribution of their slopes under a footprint",
         citation: "Perlin, Improving Noise, 2002",
         role: Role::Companion,
