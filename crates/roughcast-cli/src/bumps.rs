@@ -174,6 +174,31 @@ impl BumpArgs {
         }
     }
 
+    /// Refuses options that would have no effect.
+    pub fn check(&self, has_map: bool) -> Result<(), UsageError> {
+        let refuse = |line: &str| Err(UsageError(line.to_owned()));
+        let has_noise = self.bumps.iter().any(|bump| matches!(bump, Bump::Noise(_)));
+        let is_analytic = self.noise_derivative == VolumeDerivative::Analytic
+            && self.perturbation == Perturbation::SurfaceGradient;
+        if !has_map && (self.world_height.is_some() || self.uv_set != 0 || self.frame != FrameChoice::Mesh) {
+            return refuse("--frame, --world-height and --uv-set place a map: give one, or leave them out");
+        }
+        if !has_noise && !(is_analytic && self.octaves == OctaveFilter::Fade) {
+            return refuse(
+                "--octaves, --noise-derivative and --perturbation go with --bump noise:KIND:OCTAVES",
+            );
+        }
+        if !is_analytic && self.octaves != OctaveFilter::Fade {
+            return refuse(
+                "--octaves filters noise with its formula and the surface gradient: leave out --noise-derivative and --perturbation",
+            );
+        }
+        if self.frame == FrameChoice::Triplanar && self.uv_set != 0 {
+            return refuse("--frame triplanar uses no texture coordinates: leave out --uv-set");
+        }
+        self.of_map(has_map).map(drop)
+    }
+
     /// The noise in a scene of this radius.
     pub fn noise(&self, radius: f64) -> Result<Option<NoiseDetail>, UsageError> {
         let mut choices = self.bumps.iter().filter_map(|bump| match bump {

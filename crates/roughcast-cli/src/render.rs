@@ -17,8 +17,8 @@ use roughcast_io::{AtomicFile, AtomicSet};
 use roughcast_pipeline::{Map, bake_for};
 use roughcast_scene::render::MAX_SAMPLES;
 use roughcast_scene::{
-    BakedTextures, Filter, HeightDetail, HeightMap, Picture, Sampler, Scene, SlopeDetail, SlopeMap, View,
-    height_texture, repeats_per_length,
+    BakedTextures, Filter, HeightDetail, HeightMap, Picture, Sampler, Scene, Shape, SlopeDetail, SlopeMap,
+    View, height_texture, repeats_per_length,
 };
 
 use crate::albedo::{Albedo, AlbedoChoice};
@@ -257,7 +257,7 @@ impl Args {
             let line = "--gpu filters as the hardware does: nearest, trilinear or anisotropic; leave --gpu out for the others";
             return Err(UsageError(line.to_owned()).into());
         }
-        self.bumps.of_map(self.map.is_some())?;
+        self.bumps.check(self.map.is_some())?;
         Ok(())
     }
 
@@ -278,6 +278,23 @@ impl Args {
         };
         let texels = subject.texels();
         let mut scene = self.camera.scene(&self.scene, texels, self.size, material, coordinates)?;
+        if let (Shape::Mesh(mesh), Some(path)) = (&*scene.shape, self.scene.scene.mesh_path()) {
+            let sets = mesh.uv_set_count();
+            if coordinates == TextureCoordinates::Needed && self.bumps.uv_set >= sets {
+                let line = format!(
+                    "the mesh has {sets} sets of texture coordinates, counted from 0: use a lower --uv-set"
+                );
+                return Err(usage(path, &line));
+            }
+        } else if self.bumps.uv_set > 0 {
+            let line = "only meshes have several sets of texture coordinates: leave out --uv-set";
+            return Err(UsageError(line.to_owned()).into());
+        }
+        if map.is_some() && (projected || self.bumps.uv_set > 0) {
+            let line = "a picture as --albedo lies on the first set of texture coordinates, with the repeats of the bumps: leave out \
+                        --frame triplanar and --uv-set, or give a colour";
+            return Err(UsageError(line.to_owned()).into());
+        }
         scene.albedo = map;
         if projected && self.camera.repeat.is_none() {
             let view = match self.camera.camera {

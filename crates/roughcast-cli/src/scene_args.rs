@@ -1,6 +1,6 @@
 //! Arguments for the scene and its shading, shared by the subcommands that render.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::{Context, Result};
@@ -48,6 +48,14 @@ impl SceneChoice {
             Self::Mesh(path) => {
                 path.file_stem().map_or_else(|| "mesh".to_owned(), |name| name.to_string_lossy().into_owned())
             }
+        }
+    }
+
+    /// The file of a mesh.
+    pub fn mesh_path(&self) -> Option<&Path> {
+        match self {
+            Self::Mesh(path) => Some(path),
+            _ => None,
         }
     }
 

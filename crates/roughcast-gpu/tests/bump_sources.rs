@@ -166,6 +166,19 @@ fn heights_are_differentiated_alike() {
                 assert_same(&gpu, (&name, &scene), &here, &of_heights.clone().placed(placement), PLACED);
             }
         }
+        for (name, mut scene) in all_scenes() {
+            scene.repeats = 4.0 / scene.shape.bounds().radius;
+            let placement = Placement::default().with_world_height_per_texel(1.0 / (64.0 * scene.repeats));
+            let heights = HeightDetail {
+                derivative: *derivative,
+                sampler: sampler(),
+                placement,
+                ..HeightDetail::new(heights.clone())
+            };
+            let there = of_heights.clone().placed(GpuPlacement::from(placement).triplanar());
+            let name = format!("{name}, {derivative}, along three axes");
+            assert_same(&gpu, (&name, &scene), &Triplanar::new(&heights), &there, PLACED);
+        }
     }
 }
 

@@ -30,11 +30,6 @@ const NOISE_FADE_TURBULENCE: vec4f = vec4f(3.061, 26.969, 393.06, 0.0);
 // From this standard deviation on nothing remains.
 const NOISE_FADE_LAST: f32 = 1.2;
 
-struct NoiseSlopes {
-    mean: vec2f,        // mean slope along tangent and bitangent
-    covariance: vec3f,  // xx, yy, xy
-}
-
 struct NoiseFootprint {
     double_angle: vec2f,    // cosine and sine of twice the angle of the longer axis from the tangent, or zero
     centre: f32,            // variance, in squared cells of the first octave: centre + radius along the longer axis
@@ -163,7 +158,7 @@ fn noise_kept(footprint: NoiseFootprint, kind: u32, squared_scale: f32) -> vec2f
 // Mean and covariance of the slopes under the footprint of a pixel at p, along tangent and bitangent, which are
 // orthonormal. The changes of the position to the adjacent pixels may be zero or of any size.
 fn noise_distribution(noise: Noise, p: vec3f, tangent: vec3f, bitangent: vec3f, position_dx: vec3f,
-    position_dy: vec3f, octave_filter: u32) -> NoiseSlopes {
+    position_dy: vec3f, octave_filter: u32) -> WeightedGaussian {
     let cells = p * noise.frequency;
     let cells_dx = vec2f(dot(position_dx, tangent), dot(position_dx, bitangent)) * noise.frequency;
     let cells_dy = vec2f(dot(position_dy, tangent), dot(position_dy, bitangent)) * noise.frequency;
@@ -192,5 +187,5 @@ fn noise_distribution(noise: Noise, p: vec3f, tangent: vec3f, bitangent: vec3f, 
     }
     let steepness = noise.amplitude * noise.frequency;
     let variance = select(0.0, steepness * steepness * NOISE_SLOPE_VARIANCE, octave_filter == NOISE_OCTAVES_FADE);
-    return NoiseSlopes(-steepness * gradient, variance * hidden);
+    return WeightedGaussian(-steepness * gradient, variance * hidden.xy, variance * hidden.z, 1.0);
 }

@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use glam::DVec3;
 use roughcast::noise::{Noise, NoiseKind};
 use roughcast::shading::ShadingOptions;
-use roughcast::{Distribution, Gradient, Image, Samples, Slope, SourceOptions};
+use roughcast::{Distribution, Gradient, HeightSense, Image, Samples, Slope, SourceOptions};
 use roughcast_io::mesh::load_mesh;
 use roughcast_pipeline::{MapOptions, read_map};
 use roughcast_scene::pattern::Pattern;
@@ -59,6 +59,9 @@ impl Subject {
             Some(path) => {
                 let mut options = MapOptions::default();
                 options.kind = Some(roughcast::Kind::Height);
+                if args.invert_height {
+                    options.height_sense = HeightSense::WhiteDeep;
+                }
                 let map = read_map(path, &options).with_context(|| path.display().to_string())?;
                 (map.image, map.options, path.file_name().unwrap_or_default().to_string_lossy().into_owned())
             }

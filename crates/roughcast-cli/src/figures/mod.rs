@@ -65,6 +65,10 @@ pub struct Args {
     /// The height map of mikkelsen-4 [default: random bumps]
     #[arg(long, value_name = "MAP", value_hint = ValueHint::FilePath)]
     height_map: Option<PathBuf>,
+
+    /// Treat white as deep in that map
+    #[arg(long, requires = "height_map")]
+    invert_height: bool,
 }
 
 /// The figures that can be reproduced, by paper and number.

@@ -17,5 +17,7 @@ fn combined_distribution(at: DetailPoint) -> Distribution {
         noise_options.octaves,
     );
     let mean = at.side * slopes.mean;
-    return distribution_sum(placed_distribution(at), one_gaussian(slope_normal(mean), mean, slopes.covariance, MAPS_WITHOUT_BASE));
+    let sigma = vec3f(slopes.variance, slopes.covariance);
+    let bumps = one_gaussian(slope_normal(mean), mean, sigma, MAPS_WITHOUT_BASE);
+    return distribution_sum(placed_distribution(at), bumps);
 }

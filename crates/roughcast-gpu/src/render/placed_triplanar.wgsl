@@ -28,12 +28,11 @@ fn placed_slope(at: DetailPoint) -> vec2f {
     let x = projected_along_x(at);
     let y = projected_along_y(at);
     let z = projected_along_z(at);
-    return weights.x * (placement_matrix(x) * detail_slope(x)) + weights.y * (placement_matrix(y) * detail_slope(y))
-        + weights.z * (placement_matrix(z) * detail_slope(z));
+    return weights.x * projected_slope(x) + weights.y * projected_slope(y) + weights.z * projected_slope(z);
 }
 
 fn weighted_projection(at: DetailPoint, weight: f32) -> Distribution {
-    return transformed_distribution(detail_distribution(at), weight * placement_matrix(at));
+    return transformed_distribution(projected_distribution(at), mat2x2f(weight, 0.0, 0.0, weight));
 }
 
 fn placed_distribution(at: DetailPoint) -> Distribution {

@@ -142,7 +142,7 @@ pub fn shader_source(key: ShaderKey) -> Result<String, UnknownName> {
         }
         DetailSource::Flat => parts.push(include_str!("flat.wgsl")),
     }
-    let (placed, needed) = placement_of(surface.projection);
+    let (placed, needed) = placement_of(surface.projection, detail);
     modules.extend(needed);
     parts.extend(placed);
     match surface.octaves {
@@ -163,16 +163,20 @@ pub fn shader_source(key: ShaderKey) -> Result<String, UnknownName> {
 }
 
 /// WGSL of `placed_slope` and `placed_distribution`, and the modules that it needs.
-fn placement_of(projection: Projection) -> (Vec<&'static str>, Vec<&'static str>) {
+fn placement_of(projection: Projection, detail: DetailSource) -> (Vec<&'static str>, Vec<&'static str>) {
     const MATRIX: &str = include_str!("placement_matrix.wgsl");
+    const BY_MATRIX: &str = include_str!("projected_by_matrix.wgsl");
+    const AS_IS: &str = include_str!("projected_as_is.wgsl");
+    const TRIPLANAR: &str = include_str!("placed_triplanar.wgsl");
     match projection {
         Projection::Mesh => (vec![include_str!("placed_mesh.wgsl")], vec![]),
         Projection::Derivatives => {
             (vec![MATRIX, include_str!("placed_derivatives.wgsl")], vec!["surface-gradient"])
         }
-        Projection::Triplanar => {
-            (vec![MATRIX, include_str!("placed_triplanar.wgsl")], vec!["surface-gradient"])
+        Projection::Triplanar if matches!(detail, DetailSource::Heights(_)) => {
+            (vec![AS_IS, TRIPLANAR], vec![])
         }
+        Projection::Triplanar => (vec![MATRIX, BY_MATRIX, TRIPLANAR], vec!["surface-gradient"]),
     }
 }
 

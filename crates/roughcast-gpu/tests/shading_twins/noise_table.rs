@@ -252,7 +252,7 @@ fn filter_twins() -> Vec<Twin> {
         Twin {
             name: "noise_distribution",
             gives: Gives::Noise,
-            call: "let s = noise_distribution(noise(0u), f3(5u), f3(8u), f3(11u), f3(14u), f3(17u), u32(f(20u) + 0.5)); put2(s.mean); put3(s.covariance);",
+            call: "let s = noise_distribution(noise(0u), f3(5u), f3(8u), f3(11u), f3(14u), f3(17u), u32(f(20u) + 0.5)); put2(s.mean); put2(s.variance); put(s.covariance);",
             arguments: distribution_words,
             rust: |a, _, _| {
                 let filter = OctaveFilter::ALL[whole(a[20]) as usize];

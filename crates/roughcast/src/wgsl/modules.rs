@@ -319,7 +319,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "noise",
         source: include_str!("../noise.wgsl"),
-        needs: &["noise-options"],
+        needs: &["noise-options", "distribution"],
         summary: "octaves of gradient noise, and the distribution of their slopes under a footprint",
         citation: "Perlin, Improving Noise, 2002",
         role: Role::Companion,

@@ -1,0 +1,8 @@
+// Each projection is placed by its derivatives.
+fn projected_slope(at: DetailPoint) -> vec2f {
+    return placement_matrix(at) * detail_slope(at);
+}
+
+fn projected_distribution(at: DetailPoint) -> Distribution {
+    return transformed_distribution(detail_distribution(at), placement_matrix(at));
+}
