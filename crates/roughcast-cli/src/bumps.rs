@@ -21,6 +21,8 @@ pub enum Bump {
     Normal,
     /// The heights of the map, differentiated on the screen.
     Height(HeightDerivative),
+    /// The map's normals, in the axes of the mesh.
+    ObjectNormal,
     /// Procedural noise.
     Noise(NoiseChoice),
 }
@@ -48,10 +50,14 @@ impl Bump {
         };
         let bump = match parts.next() {
             Some("normal") => Self::Normal,
+            Some("object-normal") => Self::ObjectNormal,
             Some("height") => Self::Height(rest(parts.next())?),
             Some("noise") => Self::Noise(NoiseChoice::parse(&mut parts)?),
             _ => {
-                return Err("it must be normal, height, height:DERIVATIVE or noise:KIND:OCTAVES".to_owned());
+                return Err(
+                    "it must be normal, height, height:DERIVATIVE, object-normal or noise:KIND:OCTAVES"
+                        .to_owned(),
+                );
             }
         };
         match parts.next() {
@@ -118,7 +124,7 @@ impl Named for FrameChoice {
 #[command(next_help_heading = BUMPS)]
 pub struct BumpArgs {
     /// A source of bumps: normal, the slopes of the map, filtered by the model; height[:fine|forward|central|bicubic], the heights of
-    /// the map, differentiated on the screen (Mikkelsen); or noise:KIND:OCTAVES[:FREQUENCY[:AMPLITUDE]], KIND being fbm or turbulence,
+    /// the map, differentiated on the screen (Mikkelsen); object-normal, normals in the axes of the mesh; or noise:KIND:OCTAVES[:FREQUENCY[:AMPLITUDE]], KIND being fbm or turbulence,
     /// frequency in cells per unit of length. May be given twice, to add noise to a map [default: normal]
     #[arg(long = "bump", value_name = "BUMP", value_parser = Bump::parse)]
     pub bumps: Vec<Bump>,
@@ -162,9 +168,13 @@ impl BumpArgs {
             self.bumps.iter().copied().filter(|bump| !matches!(bump, Bump::Noise(_))).collect();
         let refuse = |line: &str| Err(UsageError(line.to_owned()));
         match (maps.as_slice(), has_map) {
-            ([_, _, ..], _) => refuse("--bump takes the map once: give either normal or height"),
+            ([_, _, ..], _) => {
+                refuse("--bump takes the map once: give either normal, height or object-normal")
+            }
             ([bump], true) => Ok(Some(*bump)),
-            ([_], false) => refuse("--bump normal and --bump height need a map: give one before the options"),
+            ([_], false) => {
+                refuse("--bump normal, height and object-normal need a map: give one before the options")
+            }
             ([], true) if self.bumps.is_empty() => Ok(Some(Bump::Normal)),
             ([], true) => refuse("the map is not used: leave it out, or add --bump normal or --bump height"),
             ([], false) if self.bumps.is_empty() => {
@@ -191,6 +201,12 @@ impl BumpArgs {
         if !is_analytic && self.octaves != OctaveFilter::Fade {
             return refuse(
                 "--octaves filters noise with its formula and the surface gradient: leave out --noise-derivative and --perturbation",
+            );
+        }
+        let places = self.world_height.is_some() || self.uv_set != 0 || self.frame != FrameChoice::Mesh;
+        if self.bumps.contains(&Bump::ObjectNormal) && places {
+            return refuse(
+                "--frame, --world-height and --uv-set do not go with --bump object-normal: its normals are those of the mesh's own surface",
             );
         }
         if self.frame == FrameChoice::Triplanar && self.uv_set != 0 {

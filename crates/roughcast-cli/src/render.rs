@@ -17,8 +17,8 @@ use roughcast_io::{AtomicFile, AtomicSet};
 use roughcast_pipeline::{Map, bake_for};
 use roughcast_scene::render::MAX_SAMPLES;
 use roughcast_scene::{
-    BakedTextures, Filter, HeightDetail, HeightMap, Picture, Sampler, Scene, Shape, SlopeDetail, SlopeMap,
-    View, height_texture, repeats_per_length,
+    BakedTextures, Filter, HeightDetail, HeightMap, ObjectNormalDetail, ObjectNormalMap, Picture, Sampler,
+    Scene, Shape, SlopeDetail, SlopeMap, View, height_texture, repeats_per_length,
 };
 
 use crate::albedo::{Albedo, AlbedoChoice};
@@ -363,6 +363,11 @@ impl Args {
                     ..HeightDetail::new(heights)
                 })
             }
+            (Some(Bump::ObjectNormal), subject) => {
+                let map = self.object_normals(subject)?;
+                let normals = ObjectNormalMap::of(&map.image, map.options.range).with_context(named)?;
+                MapBumps::ObjectNormals(ObjectNormalDetail { normals, sampler })
+            }
             (Some(Bump::Normal), Subject::Map(map)) if self.samples().is_some() => {
                 let slopes = SlopeMap::of(&map.image, &map.options).with_context(named)?;
                 MapBumps::Slopes(SlopeDetail::new(slopes, map.options.wrap).placed(placement))
@@ -412,6 +417,10 @@ impl Args {
                 heights = height_texture(&map.image, &map.options).with_context(named)?;
                 GpuMap::Heights(&heights, derivative)
             }
+            (Some(Bump::ObjectNormal), _) => {
+                let line = "--gpu has no object-space normals: leave --gpu out";
+                return Err(UsageError(line.to_owned()).into());
+            }
             (Some(Bump::Normal), _) => {
                 arrays = self.arrays(subject, shading)?;
                 GpuMap::Textures(&arrays)
@@ -456,6 +465,17 @@ impl Args {
             _ => Err(usage(
                 self.map_path(),
                 "--bump height needs a height map: give one, or use --bump normal; if it is one, say --kind height",
+            )),
+        }
+    }
+
+    /// The map of object-space normals among the subjects.
+    fn object_normals<'s>(&self, subject: &'s Subject) -> Result<&'s Map> {
+        match subject {
+            Subject::Map(map) if map.options.kind == Kind::Normal => Ok(map),
+            _ => Err(usage(
+                self.map_path(),
+                "--bump object-normal needs a normal map in the axes of the mesh: give one; if it is one, add --kind normal",
             )),
         }
     }

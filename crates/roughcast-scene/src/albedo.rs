@@ -79,7 +79,7 @@ impl AlbedoMap {
             return Err(AlbedoError::Colour { column: place % width, row: place / width, red, green, blue });
         }
         let mut levels = vec![finest];
-        while let Some(next) = coarser(&levels[levels.len() - 1]) {
+        while let Some(next) = levels[levels.len() - 1].coarser() {
             levels.push(next);
         }
         #[cfg(feature = "render")]
@@ -150,41 +150,6 @@ fn linear_of_codes(largest: u32) -> Vec<f32> {
         if value <= 0.040_45 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
     };
     (0..=largest).map(|code| linear(f64::from(code) / f64::from(largest)) as f32).collect()
-}
-
-/// The next level; `None` below 1x1.
-fn coarser(fine: &Level) -> Option<Level> {
-    let (from, to) = ((fine.width(), fine.height()), (next_side(fine.width()), next_side(fine.height())));
-    if from == to {
-        return None;
-    }
-    let mut texels = Vec::with_capacity(to.0 * to.1);
-    for (row, column) in (0..to.1).flat_map(|row| (0..to.0).map(move |column| (row, column))) {
-        let mut sum = [0.0_f64; 3];
-        for (y, rows) in covered(from.1, to.1, row) {
-            for (x, columns) in covered(from.0, to.0, column) {
-                let texel = fine.texel(x, y);
-                sum.iter_mut().zip(texel).for_each(|(sum, value)| *sum += rows * columns * f64::from(value));
-            }
-        }
-        let [r, g, b] = sum.map(|value| value as f32);
-        texels.push([r, g, b, 1.0]);
-    }
-    Some(Level::new(to.0, to.1, texels).expect("a level has at least one texel"))
-}
-
-fn next_side(texels: usize) -> usize {
-    (texels / 2).max(1)
-}
-
-/// The texels of a row of `fine` that texel `i` of a row of `coarse` covers, with the part of its width that each takes.
-fn covered(fine: usize, coarse: usize, i: usize) -> impl Iterator<Item = (usize, f64)> {
-    // In units in which a fine texel is `coarse` long and a coarse one `fine`, all edges are whole numbers.
-    let (begin, end) = (i * fine, (i + 1) * fine);
-    (begin / coarse..end.div_ceil(coarse)).map(move |j| {
-        let common = end.min((j + 1) * coarse) - begin.max(j * coarse);
-        (j, common as f64 / fine as f64)
-    })
 }
 
 #[cfg(test)]

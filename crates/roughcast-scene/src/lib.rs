@@ -81,8 +81,8 @@ pub use camera::{Camera, CameraError, PixelRays};
 #[cfg(feature = "render")]
 pub use detail::{
     BakedTextures, Combined, Curved, Decal, Detail, DetailPoint, HeightDetail, HeightMap, NoiseDetail,
-    Perturbation, Reconstruction, Resolved, SlopeDetail, SlopeMap, Strengthened, TextureDetail, Triplanar,
-    VolumeDerivative,
+    ObjectNormalDetail, ObjectNormalMap, Perturbation, Reconstruction, Resolved, SlopeDetail, SlopeMap,
+    Strengthened, TextureDetail, Triplanar, VolumeDerivative,
 };
 pub use detail::{
     DetailError, HeightDerivative, TextureInputs, height_texture, model_inputs, texture_inputs,

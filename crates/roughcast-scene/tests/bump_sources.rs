@@ -9,13 +9,13 @@ use glam::{DAffine3, DVec2, DVec3};
 use roughcast::noise::{Noise, NoiseKind, OctaveFilter};
 use roughcast::shading::{GeometricFilter, Shading, ShadingOptions};
 use roughcast::surface_gradient::{perturbed_normal, surface_gradient_of_volume};
-use roughcast::{Covariance, Distribution, Image, Kind, Samples, Slope, SourceOptions, Wrap};
+use roughcast::{Covariance, Distribution, Image, Kind, NormalRange, Samples, Slope, SourceOptions, Wrap};
 use roughcast_scene::render::{Method, Truth, unwatched};
 use roughcast_scene::{
     BakedTextures, Combined, Curved, Decal, Detail, DetailPoint, Filter, HeightDerivative, HeightDetail,
-    HeightMap, Hit, Mesh, NoiseDetail, Perturbation, Placement, Plane, Ray, Resolved, Sampler, Shape,
-    SlopeDetail, SlopeMap, Sphere, Strengthened, TangentSource, Torus, Triplanar, UvSets, View,
-    VolumeDerivative, isosurface, pattern,
+    HeightMap, Hit, Mesh, NoiseDetail, ObjectNormalDetail, ObjectNormalMap, Perturbation, Placement, Plane,
+    Ray, Resolved, Sampler, Shape, SlopeDetail, SlopeMap, Sphere, Strengthened, TangentSource, Torus,
+    Triplanar, UvSets, View, VolumeDerivative, isosurface, pattern,
 };
 
 /// Slopes are single floats of the size of one.
@@ -351,6 +351,70 @@ fn curvature_widens_by_the_normals_under_the_pixel() {
                 assert!((change - dn).length() < 1e-3 * (1.0 + dn.length()), "{shape:?}: {change} {dn}");
             }
         }
+    }
+}
+
+/// An object-space normal map of the unit sphere with noise, in the sphere's own texture coordinates.
+fn object_normals(side: usize) -> ObjectNormalMap {
+    let texel = |i: usize| {
+        let (u, v) = (((i % side) as f64 + 0.5) / side as f64, ((i / side) as f64 + 0.5) / side as f64);
+        let (longitude, polar) = ((u - 0.5) * std::f64::consts::TAU, v * std::f64::consts::PI);
+        let p = DVec3::new(polar.sin() * longitude.sin(), polar.cos(), polar.sin() * longitude.cos());
+        let gradient = surface_gradient_of_volume(p, noise().sample(p).gradient);
+        perturbed_normal(p, gradient).as_vec3().to_array()
+    };
+    let samples = Samples::F32((0..side * side).flat_map(texel).collect());
+    let image = Image::new(side, side, 3, samples).expect("a square");
+    ObjectNormalMap::of(&image, NormalRange::Signed).expect("three channels")
+}
+
+#[test]
+fn an_object_space_normal_map_is_the_bumps_that_it_was_made_from() {
+    let object = ObjectNormalDetail { normals: object_normals(512), sampler: Sampler::default() };
+    let exact = NoiseDetail::new(noise());
+    let (mut sum, mut steepest, mut count) = (0.0, 0.0_f64, 0);
+    for_each_pixel(&Shape::Sphere(Sphere), 1e-3, |at| {
+        // The map lies on the sphere once.
+        let at = DetailPoint::new(at.hit(), 1.0);
+        let wanted = exact.slope(&at);
+        sum += difference(object.slope(&at), wanted);
+        steepest = steepest.max(f64::from(wanted.x.hypot(wanted.y)));
+        count += 1;
+    });
+    // Linear interpolation between texels of a hundredth of a cell.
+    assert!(sum / f64::from(count) < 2e-3 && steepest > 0.2, "{sum} {count} {steepest}");
+}
+
+#[test]
+fn moments_of_object_space_normals_are_those_of_their_slopes() {
+    // Under a pixel of many texels: mean and covariance of the slopes of the texels themselves.
+    let normals = object_normals(256);
+    let object = ObjectNormalDetail { normals, sampler: Sampler::default().with_level(Some(5.0)) };
+    for hit in hits(&Shape::Sphere(Sphere)) {
+        // Away from the poles and from the edges of texels.
+        if !(0.3..0.7).contains(&hit.uv(0).y) || hit.side == roughcast_scene::Side::Back {
+            continue;
+        }
+        let seen = object.distribution(&DetailPoint::new(&hit, 1.0), &options()).whole();
+        // Texels of level 5 are an eighth of the map a side, interpolated: a tent of two of them, in f64.
+        let (mut sum, mut weights) = (roughcast::Moments::default(), 0.0);
+        for (i, j) in (0..32).flat_map(|j| (0..32).map(move |i| (i, j))) {
+            let offset = DVec2::new(f64::from(i) - 15.5, f64::from(j) - 15.5) / 16.0;
+            let uv = hit.uv(0) + offset / 8.0;
+            let (longitude, polar) = ((uv.x - 0.5) * std::f64::consts::TAU, uv.y * std::f64::consts::PI);
+            let p = DVec3::new(polar.sin() * longitude.sin(), polar.cos(), polar.sin() * longitude.cos());
+            let gradient = surface_gradient_of_volume(p, noise().sample(p).gradient);
+            let n = hit.frame.tangent_from_world(perturbed_normal(p, gradient));
+            let weight = (1.0 - offset.x.abs()) * (1.0 - offset.y.abs());
+            let slope = Slope { x: (n.x / n.z) as f32, y: (n.y / n.z) as f32 };
+            sum = sum + roughcast::Moments::of_slope(slope) * weight as f32;
+            weights += weight;
+        }
+        let wanted = sum * (1.0 / weights as f32);
+        // To first order in the spread of normals, which is 45 degrees of curvature here, and the tent is not that of boxes.
+        assert!(difference(seen.mean, wanted.mean) < 0.25, "{seen:?} {wanted:?}");
+        let (got, trace) = (seen.covariance.trace(), wanted.covariance().trace());
+        assert!((0.5..1.6).contains(&(got / trace)), "{got} {trace}");
     }
 }
 

@@ -3,8 +3,8 @@
 use roughcast::shading::{GeometricFilter, ShadingOptions};
 use roughcast::{Distribution, Slope};
 use roughcast_scene::{
-    BakedTextures, Combined, Curved, Detail, DetailPoint, HeightDetail, NoiseDetail, Placement, Sampler,
-    SlopeDetail, Strengthened, Triplanar,
+    BakedTextures, Combined, Curved, Detail, DetailPoint, HeightDetail, NoiseDetail, ObjectNormalDetail,
+    Placement, Sampler, SlopeDetail, Strengthened, Triplanar,
 };
 
 /// A map as a source of bumps.
@@ -17,6 +17,8 @@ pub enum MapBumps {
     Slopes(SlopeDetail),
     /// Heights, differentiated on the screen.
     Heights(HeightDetail),
+    /// Normals in the axes of the mesh.
+    ObjectNormals(ObjectNormalDetail),
 }
 
 /// Whether the map is projected along the three axes.
@@ -44,6 +46,7 @@ impl SceneBumps {
             }
             MapBumps::Slopes(slopes) => call(Some(slopes)),
             MapBumps::Heights(heights) => call(Some(heights)),
+            MapBumps::ObjectNormals(normals) => call(Some(normals)),
         }
     }
 
@@ -84,5 +87,9 @@ impl Detail for SceneBumps {
 
     fn options(&self, options: ShadingOptions) -> ShadingOptions {
         self.with_all(|detail| detail.options(options))
+    }
+
+    fn sampler(&self) -> Sampler {
+        self.with_all(|detail| detail.sampler())
     }
 }

@@ -4,6 +4,7 @@ use roughcast::shading::ShadingOptions;
 use roughcast::{Distribution, Slope};
 
 use super::{Detail, DetailPoint};
+use crate::Sampler;
 
 /// The sum of several independent sources of bumps, each with a strength that scales its heights.
 ///
@@ -40,6 +41,10 @@ impl Detail for Strengthened<'_> {
     fn options(&self, options: ShadingOptions) -> ShadingOptions {
         self.detail.options(options)
     }
+
+    fn sampler(&self) -> Sampler {
+        self.detail.sampler()
+    }
 }
 
 impl<'a> Combined<'a> {
@@ -61,5 +66,10 @@ impl Detail for Combined<'_> {
 
     fn options(&self, options: ShadingOptions) -> ShadingOptions {
         self.parts.iter().fold(options, |options, part| part.options(options))
+    }
+
+    /// The first source's.
+    fn sampler(&self) -> Sampler {
+        self.parts.first().map_or_else(Sampler::default, Detail::sampler)
     }
 }

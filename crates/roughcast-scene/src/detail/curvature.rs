@@ -4,6 +4,7 @@ use roughcast::shading::{GeometricFilter, ShadingOptions, geometric_covariance};
 use roughcast::{Distribution, Slope};
 
 use super::{Detail, DetailPoint};
+use crate::Sampler;
 
 /// A source of bumps on a surface that bends under the pixel. Its distributions are widened by the variance of the
 /// interpolated normal: see [`geometric_covariance`]. Its exact slopes do not change, since the ground truth samples the
@@ -30,5 +31,9 @@ impl Detail for Curved<'_> {
 
     fn options(&self, options: ShadingOptions) -> ShadingOptions {
         self.detail.options(options)
+    }
+
+    fn sampler(&self) -> Sampler {
+        self.detail.sampler()
     }
 }

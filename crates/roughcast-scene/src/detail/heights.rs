@@ -106,4 +106,8 @@ impl Detail for HeightDetail {
         let gradient = surface_gradient(sigma_dx, sigma_dy, normal, height_dx, height_dy);
         Distribution::of_slope(at.slope_of_gradient(gradient))
     }
+
+    fn sampler(&self) -> Sampler {
+        self.sampler
+    }
 }

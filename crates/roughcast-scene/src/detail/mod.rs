@@ -21,6 +21,8 @@ mod inputs;
 #[cfg(feature = "render")]
 mod noise;
 #[cfg(feature = "render")]
+mod object_normals;
+#[cfg(feature = "render")]
 mod point;
 #[cfg(feature = "render")]
 mod projection;
@@ -43,6 +45,8 @@ pub use heights::HeightDetail;
 pub use inputs::{DetailError, TextureInputs, model_inputs, texture_inputs};
 #[cfg(feature = "render")]
 pub use noise::{NoiseDetail, Perturbation, VolumeDerivative};
+#[cfg(feature = "render")]
+pub use object_normals::{ObjectNormalDetail, ObjectNormalMap};
 #[cfg(feature = "render")]
 pub use point::{Detail, DetailPoint, Resolved};
 #[cfg(feature = "render")]

@@ -8,7 +8,7 @@ use roughcast::shading::ShadingOptions;
 use roughcast::{Distribution, Normal, Slope, normal_from_slope};
 
 use super::{Detail, DetailPoint};
-use crate::{Hit, UvPoint, UvSets};
+use crate::{Hit, Sampler, UvPoint, UvSets};
 
 /// A source of bumps projected along the three axes of world space, and blended by the direction of the normal.
 ///
@@ -87,6 +87,10 @@ impl Detail for Triplanar<'_> {
     fn options(&self, options: ShadingOptions) -> ShadingOptions {
         self.detail.options(options)
     }
+
+    fn sampler(&self) -> Sampler {
+        self.detail.sampler()
+    }
 }
 
 /// A source of bumps inside a box, projected along its z axis: a decal. Outside of the box the surface is flat.
@@ -147,5 +151,9 @@ impl Detail for Decal<'_> {
 
     fn options(&self, options: ShadingOptions) -> ShadingOptions {
         self.detail.options(options)
+    }
+
+    fn sampler(&self) -> Sampler {
+        self.detail.sampler()
     }
 }
