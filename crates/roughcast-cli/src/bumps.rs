@@ -193,7 +193,8 @@ impl BumpArgs {
         if !has_map && (self.world_height.is_some() || self.uv_set != 0 || self.frame != FrameChoice::Mesh) {
             return refuse("--frame, --world-height and --uv-set place a map: give one, or leave them out");
         }
-        if !has_noise && !(is_analytic && self.octaves == OctaveFilter::Fade) {
+        let has_defaults = is_analytic && self.octaves == OctaveFilter::Fade;
+        if !has_noise && !has_defaults {
             return refuse(
                 "--octaves, --noise-derivative and --perturbation go with --bump noise:KIND:OCTAVES",
             );

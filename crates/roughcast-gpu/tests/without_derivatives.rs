@@ -162,7 +162,7 @@ fn a_deferred_pass_needs_positions_and_normals_alone() {
     // The comparison can fail: without bumps the normals are off by the bumps themselves.
     let flat: Vec<_> = points.iter().map(|point| [point.normal; 2]).collect();
     let [without_noise, without_heights] = mean_angles(&points, &flat, &sphere, &heights);
-    assert!(without_noise > 5.0 && without_heights > 4.0 * NEIGHBOURS, "{without_noise} {without_heights}");
+    assert!(without_noise > 5.0 && without_heights > 3.0 * NEIGHBOURS, "{without_noise} {without_heights}");
 }
 
 #[test]
