@@ -18,7 +18,7 @@ use roughcast_pipeline::{Map, bake_for};
 use roughcast_scene::render::MAX_SAMPLES;
 use roughcast_scene::{
     BakedTextures, Filter, HeightDetail, HeightMap, ObjectNormalDetail, ObjectNormalMap, Picture, Sampler,
-    Scene, Shape, SlopeDetail, SlopeMap, View, height_texture, repeats_per_length,
+    Scene, Shape, SlopeDetail, SlopeMap, View, repeats_per_length,
 };
 
 use crate::albedo::{Albedo, AlbedoChoice};
@@ -403,6 +403,7 @@ impl Args {
         sampler: Sampler,
     ) -> Result<Backend> {
         use roughcast_gpu::render::{DrawOptions, GpuPlacement};
+        use roughcast_scene::height_texture;
 
         let named = || self.map_path().display().to_string();
         let draw_options = DrawOptions::default()
