@@ -8,7 +8,7 @@ use common::hits as hits_of;
 use glam::{DAffine3, DVec2, DVec3};
 use roughcast::noise::{Noise, NoiseKind, OctaveFilter};
 use roughcast::shading::{GeometricFilter, Shading, ShadingOptions};
-use roughcast::surface_gradient::{perturbed_normal, surface_gradient_of_volume};
+use roughcast::surface_gradient::{perturbed_normal, surface_gradient, surface_gradient_of_volume};
 use roughcast::{Covariance, Distribution, Image, Kind, NormalRange, Samples, Slope, SourceOptions, Wrap};
 use roughcast_scene::render::{Method, Truth, unwatched};
 use roughcast_scene::{
@@ -424,6 +424,64 @@ fn moments_of_object_space_normals_are_those_of_their_slopes() {
         widest = widest.max(spread);
     }
     assert!(widest > 0.15, "{widest}");
+}
+
+/// A bend and a stretch of space.
+fn deformed(p: DVec3, time: f64) -> DVec3 {
+    let (sin, cos) = (1.5 * time * p.y + 0.4 * time * p.x).sin_cos();
+    DVec3::new(cos * p.x - sin * p.z, p.y * (1.0 + time), sin * p.x + cos * p.z)
+}
+
+#[test]
+fn a_deforming_mesh_needs_no_new_tangents() {
+    // The mesh keeps the tangents of its rest pose, as if only positions and normals were skinned.
+    const HEIGHT: f64 = 0.01;
+    /// Triangles against the smooth surface, in the length of unit normals.
+    const TRIANGLES: f64 = 0.03;
+    let slopes = SlopeMap::of(&waves(64).0, &waves(64).1).expect("a height map");
+    let detail = |placement| SlopeDetail::new(slopes.clone(), Wrap::Repeat).placed(placement);
+    let sized = detail(Placement::default().with_world_height_per_texel(HEIGHT));
+    let by_tangents = detail(Placement::default());
+    let torus = Torus::default();
+    let rest = Shape::Torus(torus).triangles(96);
+    let at_rest = |u: f64, v: f64| {
+        let (around, tube) = ((u - 0.5) * std::f64::consts::TAU, (0.5 - v) * std::f64::consts::TAU);
+        let ring = 1.0 + torus.minor() * tube.cos();
+        DVec3::new(ring * around.sin(), torus.minor() * tube.sin(), ring * around.cos())
+    };
+    let mut stale = 0.0_f64;
+    for time in [0.0, 0.3, 0.8] {
+        let chart = |u: f64, v: f64| deformed(at_rest(u, v), time);
+        let derivatives = |u: f64, v: f64| {
+            const STEP: f64 = 1e-5;
+            let along = |du: f64, dv: f64| (chart(u + du, v + dv) - chart(u - du, v - dv)) / (2.0 * STEP);
+            (along(STEP, 0.0), along(0.0, STEP))
+        };
+        let mut mesh = rest.clone();
+        for (i, [u, v]) in rest.uv_sets[0].iter().enumerate() {
+            let (du, dv) = derivatives(f64::from(*u), f64::from(*v));
+            mesh.positions[i] = chart(f64::from(*u), f64::from(*v)).as_vec3().into();
+            // v grows downwards.
+            mesh.normals[i] = dv.cross(du).normalize().as_vec3().into();
+        }
+        let shape = Shape::Mesh(Arc::new(Mesh::new(vec![mesh]).expect("a mesh")));
+        for_each_pixel(&shape, 1.0, |at| {
+            let (hit, uv) = (at.hit(), at.hit().uv(0));
+            let (du, dv) = derivatives(uv.x, uv.y);
+            let normal = dv.cross(du).normalize();
+            let repeats = at.repeats();
+            let stored = slopes.at(uv * repeats, Wrap::Repeat, sized.reconstruction);
+            let height = HEIGHT * 64.0 * repeats;
+            let gradient =
+                surface_gradient(du, dv, normal, -height * f64::from(stored.x), height * f64::from(stored.y));
+            let wanted = perturbed_normal(normal, gradient);
+            let got = world_normal(hit, sized.slope(at));
+            assert!((got - wanted).length() < TRIANGLES, "{time}: {got} {wanted}");
+            stale = stale.max((world_normal(hit, by_tangents.slope(at)) - wanted).length());
+        });
+    }
+    // The comparison can fail: by the tangents of the rest pose the bumps are wrong.
+    assert!(stale > 5.0 * TRIANGLES, "{stale}");
 }
 
 #[test]

@@ -204,7 +204,7 @@ fn the_surface_gradient_never_turns_the_normal_inward_and_perlins_does() {
 
 #[test]
 fn moments_are_transported_as_each_of_their_slopes() {
-    // DESIGN's form: the mean tilt of the normal and its second moment as a 3x3 matrix, without any tangents.
+    // The form without any tangents: the mean tilt of the normal and its second moment as a 3x3 matrix.
     let (normal, mut numbers) = (DVec3::new(0.2, 0.9, -0.3).normalize(), Numbers(6));
     let (sigma_s, sigma_t) = (DVec3::new(1.0, -0.3, 0.4), DVec3::new(0.2, 0.1, 1.3));
     let (uv_s, uv_t) = (DVec2::new(0.7, -0.2), DVec2::new(0.4, 1.1));
