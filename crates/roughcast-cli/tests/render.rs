@@ -269,3 +269,37 @@ fn the_camera_may_look_straight_down_and_up_turns_the_picture() {
     refused(&["--camera", "0,3,0", "--up", "0,1,0"], "--up: ");
     refused(&["--up", "0,1,0"], "--look-at and --up");
 }
+
+#[test]
+fn bumps_need_what_they_are_made_of() {
+    let folder = scratch();
+    let picture = folder.path().join("picture.png");
+    let picture = text(&picture);
+    let map = map();
+    let map = text(&map);
+    let teapot = data("models/meshes/teapot_keijiro.obj");
+    let refused: [(&[&str], &str); 9] = [
+        (&[], "give a map"),
+        (&["--bump", "normal"], "need a map"),
+        (&[map, "--bump", "noise:fbm:4"], "the map is not used"),
+        (&[map, "--bump", "height"], "needs a height map"),
+        (&[map, "--bump", "normal", "--bump", "object-normal"], "the map once"),
+        (&[map, "--octaves", "drop"], "--bump noise"),
+        (&["--bump", "noise:fbm:4", "--octaves", "drop", "--perturbation", "perlin"], "--octaves"),
+        (&["--bump", "noise:fbm:4", "--world-height", "1"], "place a map"),
+        (&[map, "--scene", text(&teapot), "--uv-set", "7"], "--uv-set"),
+    ];
+    for (arguments, part) in refused {
+        run([&["render", "-o", picture, "--green", "down"][..], arguments].concat()).expect_usage_error(part);
+        assert!(names(folder.path()).is_empty(), "{arguments:?}");
+    }
+    let size = ["--size", "64x48"];
+    for arguments in [
+        &["--bump", "noise:turbulence:6", "--scene", "sphere"][..],
+        &[map, "--frame", "triplanar", "--scene", "sphere", "--bump", "normal", "--bump", "noise:fbm:3"],
+        &[map, "--bump", "object-normal", "--kind", "normal", "--scene", "sphere"],
+    ] {
+        run([&["render", "-o", picture][..], arguments, &size].concat()).expect_success();
+        assert_eq!(names(folder.path()), ["picture.png"]);
+    }
+}
