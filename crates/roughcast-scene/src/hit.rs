@@ -1,6 +1,7 @@
 //! Rays, hits, and the frame of the surface at a hit.
 
 use glam::{DVec2, DVec3};
+use roughcast::surface_gradient::{surface_basis, texture_gradients};
 
 use crate::{UvPoint, UvSets};
 
@@ -182,6 +183,12 @@ impl Hit<'_> {
         let UvPoint { ds, dt, .. } = self.uv_sets.get(set);
         let det = ds.perp_dot(dt);
         if det == 0.0 { DVec3::ZERO } else { (self.dpdt * ds.x - self.dpds * dt.x) / det }
+    }
+
+    /// The gradients on the surface of the two texture coordinates of a set; zero where they are not determined.
+    pub fn texture_gradients(&self, set: usize) -> [DVec3; 2] {
+        let UvPoint { ds, dt, .. } = self.uv_sets.get(set);
+        texture_gradients(surface_basis(self.dpds, self.dpdt, self.frame.normal()), ds, dt)
     }
 }
 

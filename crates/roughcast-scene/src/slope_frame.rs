@@ -22,11 +22,11 @@
 //! in b, so a 2x2 matrix describes it, and moments transform with it. The only division is by the area of the surface's
 //! own parametrization, so texture coordinates may be degenerate.
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use roughcast::SlopeMatrix;
-use roughcast::surface_gradient::{scale_free_gradients, slope_matrix, surface_basis, texture_gradients};
+use roughcast::surface_gradient::{scale_free_gradients, slope_matrix};
 
-use crate::{Hit, Placement, Side, TangentSource, UvPoint};
+use crate::{Hit, Placement, Side, TangentSource};
 
 /// How a texture of slopes is placed on a surface.
 ///
@@ -70,9 +70,11 @@ impl SlopeFrame {
     pub fn matrix(&self, hit: &Hit<'_>) -> SlopeMatrix {
         let (gradients, height_per_uv) =
             match (self.placement.world_height_per_texel(), self.placement.tangent_source()) {
-                (Some(height), _) => (self.texture_gradients(hit), self.texels_per_unit * height),
+                (Some(height), _) => {
+                    (hit.texture_gradients(self.placement.uv_set()), self.texels_per_unit * height)
+                }
                 (None, TangentSource::Derivatives) => {
-                    (scale_free_gradients(self.texture_gradients(hit)), DVec2::ONE)
+                    (scale_free_gradients(hit.texture_gradients(self.placement.uv_set())), DVec2::ONE)
                 }
                 (None, TangentSource::Mesh) => return [[1.0, 0.0], [0.0, 1.0]],
             };
@@ -82,11 +84,5 @@ impl SlopeFrame {
         };
         let [tangent, bitangent] = hit.frame.tangent_covectors();
         slope_matrix(gradients, height_per_uv, tangent, bitangent)
-    }
-
-    /// The gradients of u and v on the surface.
-    fn texture_gradients(&self, hit: &Hit<'_>) -> [DVec3; 2] {
-        let UvPoint { ds, dt, .. } = hit.uv_sets.get(self.placement.uv_set());
-        texture_gradients(surface_basis(hit.dpds, hit.dpdt, hit.frame.normal()), ds, dt)
     }
 }

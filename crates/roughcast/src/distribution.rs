@@ -188,6 +188,13 @@ impl Distribution {
         self
     }
 
+    /// The distribution of slopes that are this many times as steep, as of bumps of another height. Covariances grow with
+    /// its square.
+    #[must_use]
+    pub fn scaled(self, factor: f32) -> Self {
+        self.transformed([[factor, 0.0], [0.0, factor]])
+    }
+
     /// The distribution with this covariance added to every Gaussian: that of other, independent bumps of mean zero.
     #[must_use]
     pub fn widened(mut self, covariance: Covariance) -> Self {

@@ -59,11 +59,14 @@ impl SceneBumps {
                 _ => map,
             };
             let noise = self.noise.as_ref().map(|noise| noise as &dyn Detail);
-            let parts = map.into_iter().chain(noise).map(|detail| Strengthened { detail, strength: 1.0 });
-            let parts: Vec<_> = parts.collect();
-            match parts.as_slice() {
-                [only] => self.with_curvature(only.detail, call),
-                _ => self.with_curvature(&Combined::new(parts), call),
+            match (map, noise) {
+                // One source is not copied into a list: this is called for every sample.
+                (Some(only), None) | (None, Some(only)) => self.with_curvature(only, call),
+                (map, noise) => {
+                    let parts = map.into_iter().chain(noise);
+                    let parts = parts.map(|detail| Strengthened { detail, strength: 1.0 }).collect();
+                    self.with_curvature(&Combined::new(parts), call)
+                }
             }
         })
     }

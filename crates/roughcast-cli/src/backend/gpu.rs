@@ -28,21 +28,17 @@ pub struct GpuBumps<'a> {
 
 impl GpuBumps<'_> {
     async fn detail(&self, gpu: &Gpu, shading: Shading) -> Result<GpuDetail, GpuError> {
-        let map = match (&self.map, self.noise) {
-            (GpuMap::Textures(arrays), _) => Some(GpuDetail::of_model(gpu, shading, arrays).await?),
-            (GpuMap::Heights(heights, derivative), _) => {
-                Some(GpuDetail::of_heights(gpu, shading, heights, *derivative).await?)
+        let map = match &self.map {
+            GpuMap::Textures(arrays) => GpuDetail::of_model(gpu, shading, arrays).await?,
+            GpuMap::Heights(heights, derivative) => {
+                GpuDetail::of_heights(gpu, shading, heights, *derivative).await?
             }
-            (GpuMap::None, _) => None,
+            GpuMap::None => GpuDetail::flat(shading),
         };
-        Ok(match (map, self.noise) {
-            (Some(map), Some((noise, filter))) => map.placed(self.placement).with_noise(noise, filter),
-            (Some(map), None) => map.placed(self.placement),
-            (None, noise) => {
-                let (noise, filter) =
-                    noise.unwrap_or((Noise::default().with_amplitude(0.0), OctaveFilter::Fade));
-                GpuDetail::of_noise(shading, noise, filter)
-            }
+        let placed = map.placed(self.placement);
+        Ok(match self.noise {
+            Some((noise, filter)) => placed.with_noise(noise, filter),
+            None => placed,
         })
     }
 }

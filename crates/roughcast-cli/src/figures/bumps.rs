@@ -6,7 +6,6 @@ use anyhow::Result;
 use glam::DVec3;
 use roughcast::Slope;
 use roughcast::shading::{Material, Shading, ShadingOptions};
-use roughcast_io::picture::Srgb8Picture;
 use roughcast_scene::render::{Method, unwatched};
 use roughcast_scene::{
     Camera, Detail, DetailPoint, Hit, Light, Mesh, Picture, Resolved, Scene, Shape, TriangleMesh,
@@ -51,8 +50,17 @@ pub fn scene(shape: Shape, zoom: f64) -> Scene {
 
 /// A picture of exact slopes or of distributions.
 pub fn picture(scene: &Scene, detail: &dyn Detail, size: (u32, u32)) -> Result<Picture> {
-    let method = Method { shading: Shading::Lean, detail, options: options() };
-    Ok(method.render(scene, size, &unwatched)?)
+    shaded(scene, detail, size, options())
+}
+
+/// A picture with these options of shading.
+pub fn shaded(
+    scene: &Scene,
+    detail: &dyn Detail,
+    size: (u32, u32),
+    options: ShadingOptions,
+) -> Result<Picture> {
+    Ok(Method { shading: Shading::Lean, detail, options }.render(scene, size, &unwatched)?)
 }
 
 /// A picture of exact slopes.
@@ -63,13 +71,8 @@ pub fn exact_picture(scene: &Scene, detail: &dyn Detail, size: (u32, u32)) -> Re
 /// Panels of pictures with one exposure: the first one's.
 pub fn panels(pictures: Vec<(Picture, String)>) -> Vec<Panel> {
     let exposure = pictures.first().map_or(1.0, |(picture, _)| exposure_of(picture));
-    let panel =
-        |(picture, caption): (Picture, String)| Panel { picture: shown_of(&picture, exposure), caption };
+    let panel = |(picture, caption): (Picture, String)| Panel { picture: shown(&picture, exposure), caption };
     pictures.into_iter().map(panel).collect()
-}
-
-fn shown_of(picture: &Picture, exposure: f32) -> Srgb8Picture {
-    shown(picture, exposure)
 }
 
 /// The world-space normal of a slope in the frame of a hit.
@@ -84,11 +87,7 @@ pub fn degrees_between(a: DVec3, b: DVec3) -> f64 {
 }
 
 /// The mean and the largest angle in degrees between the normals of two sources over the pixels of a picture.
-pub fn angles(
-    scene: &Scene,
-    size: (u32, u32),
-    normals: impl Fn(&DetailPoint<'_>) -> Option<[DVec3; 2]>,
-) -> Angles {
+pub fn angles(scene: &Scene, size: (u32, u32), normals: impl Fn(&DetailPoint<'_>) -> [DVec3; 2]) -> Angles {
     let rays = scene.camera.pixel_rays(size.0, size.1);
     let (mut sum, mut largest, mut count) = (0.0, 0.0_f64, 0_u32);
     for (x, y) in (0..size.1).flat_map(|y| (0..size.0).map(move |x| (x, y))) {
@@ -96,7 +95,7 @@ pub fn angles(
         let Some(hit) = scene.shape.hit(&rays.ray(left, top)) else { continue };
         let (right, below) = (rays.ray(left + 1.0, top), rays.ray(left, top + 1.0));
         let at = DetailPoint::under_pixel(&hit, scene.repeats, (x, y), &right, &below);
-        let Some([a, b]) = normals(&at) else { continue };
+        let [a, b] = normals(&at);
         let angle = degrees_between(a, b);
         (sum, largest, count) = (sum + angle, largest.max(angle), count + 1);
     }

@@ -7,11 +7,11 @@ use glam::DVec3;
 use roughcast::shading::{GeometricFilter, Shading, ShadingOptions};
 use roughcast_io::mesh::load_mesh;
 use roughcast_scene::metrics::{energy_error, rmse};
-use roughcast_scene::render::{Method, Truth, unwatched};
-use roughcast_scene::{Combined, Curved, Detail, Picture, Scene, Shape, TriangleMesh};
+use roughcast_scene::render::{Truth, unwatched};
+use roughcast_scene::{Combined, Curved, Shape, TriangleMesh};
 use serde_json::{Map, json};
 
-use super::bumps::{panels, scene, shape_of};
+use super::bumps::{panels, scene, shaded, shape_of};
 use super::{Args, Figure, Table};
 
 const SIZE: (u32, u32) = (160, 160);
@@ -40,10 +40,6 @@ fn options() -> ShadingOptions {
     ShadingOptions::default().with_specular_power(SPECULAR_POWER)
 }
 
-fn shaded(scene: &Scene, detail: &dyn Detail) -> Result<Picture> {
-    Ok(Method { shading: Shading::Lean, detail, options: options() }.render(scene, SIZE, &unwatched)?)
-}
-
 pub fn make(args: &Args) -> Result<Figure> {
     let mut shapes = vec![(BALL.to_owned(), rippled_ball()?)];
     if let Some(path) = &args.mesh {
@@ -59,7 +55,8 @@ pub fn make(args: &Args) -> Result<Figure> {
             let scene = scene(shape.clone(), zoom);
             let truth = Truth { shading: Shading::Lean, detail: &flat, options: options(), samples: SAMPLES };
             let truth = truth.render(&scene, SIZE, &unwatched)?;
-            let (without, with) = (shaded(&scene, &flat)?, shaded(&scene, &filtered)?);
+            let (without, with) =
+                (shaded(&scene, &flat, SIZE, options())?, shaded(&scene, &filtered, SIZE, options())?);
             let (error_without, error_with) = (rmse(&without, &truth)?, rmse(&with, &truth)?);
             let ratio = error_with / error_without;
             numbers.insert(format!("RMSE with / without, {name}, {distance}"), json!(ratio));

@@ -37,7 +37,7 @@ pub fn make() -> Result<Figure> {
     for zoom in ZOOMS {
         let scene = scene(shape.clone(), zoom);
         let error = |detail: &NoiseDetail| {
-            angles(&scene, CLOSE_UP, |at| Some([shaded_normal(detail, at), exact_normal(&exact, at)])).mean
+            angles(&scene, CLOSE_UP, |at| [shaded_normal(detail, at), exact_normal(&exact, at)]).mean
         };
         let row = [
             error(&screen),

@@ -112,11 +112,10 @@ pub fn make(args: &Args) -> Result<Figure> {
 
     let whole = subject.scene(WHOLE);
     let between = |a: &dyn Detail, b: &dyn Detail| {
-        angles(&whole, SIZE, |at| Some([shaded_normal(a, at), exact_normal(b, at)]))
+        angles(&whole, SIZE, |at| [shaded_normal(a, at), exact_normal(b, at)])
     };
     let (of_normal_map, of_cotangent) = (between(&fine, &normal_map), between(&fine, &cotangent));
-    let unperturbed =
-        angles(&whole, SIZE, |at| Some([at.hit().frame.normal(), exact_normal(&normal_map, at)]));
+    let unperturbed = angles(&whole, SIZE, |at| [at.hit().frame.normal(), exact_normal(&normal_map, at)]);
 
     let close = subject.scene(MAGNIFIED);
     let smooth = listing_1(HeightDerivative::Bicubic);
@@ -222,7 +221,7 @@ fn magnified_errors(subject: &Subject) -> Result<Vec<(HeightDerivative, Angles)>
     close.repeats = repeats(&close.shape, &close.camera, (SIDE, SIDE), SIZE, MAGNIFIED).max(1e-3);
     let error = |derivative: &HeightDerivative| {
         let detail = HeightDetail { derivative: *derivative, ..HeightDetail::new(heights.clone()) };
-        let error = angles(&close, SIZE, |at| Some([shaded_normal(&detail, at), exact_normal(&Waves, at)]));
+        let error = angles(&close, SIZE, |at| [shaded_normal(&detail, at), exact_normal(&Waves, at)]);
         (*derivative, error)
     };
     Ok(HeightDerivative::ALL.iter().map(error).collect())

@@ -4,11 +4,11 @@ use anyhow::Result;
 use roughcast::noise::{Noise, NoiseKind, OctaveFilter};
 use roughcast::shading::{Shading, ShadingOptions};
 use roughcast_scene::metrics::{energy_error, rmse};
-use roughcast_scene::render::{Method, Truth, unwatched};
-use roughcast_scene::{Curved, Detail, NoiseDetail, Picture, Scene, isosurface};
+use roughcast_scene::render::{Truth, unwatched};
+use roughcast_scene::{Curved, NoiseDetail, isosurface};
 use serde_json::{Map, json};
 
-use super::bumps::{panels, scene, shape_of};
+use super::bumps::{panels, scene, shaded, shape_of};
 use super::{Figure, Table};
 
 const SIZE: (u32, u32) = (200, 200);
@@ -33,10 +33,6 @@ fn options() -> ShadingOptions {
     ShadingOptions::default().with_specular_power(SPECULAR_POWER)
 }
 
-fn shaded(scene: &Scene, detail: &dyn Detail) -> Result<Picture> {
-    Ok(Method { shading: Shading::Lean, detail, options: options() }.render(scene, SIZE, &unwatched)?)
-}
-
 pub fn make() -> Result<Figure> {
     let scene = scene(shape_of(isosurface(DETAIL))?, 1.0);
     let (mut numbers, mut rows, mut pictures, mut holds) = (Map::new(), Vec::new(), Vec::new(), true);
@@ -48,7 +44,8 @@ pub fn make() -> Result<Figure> {
         for filter in [OctaveFilter::Fade, OctaveFilter::Drop, OctaveFilter::Keep] {
             let detail = bumps(frequency, filter);
             // The surface's own curvature is not what is measured.
-            let picture = shaded(&scene, &Curved { detail: &detail, filter: Default::default() })?;
+            let picture =
+                shaded(&scene, &Curved { detail: &detail, filter: Default::default() }, SIZE, options())?;
             let error = rmse(&picture, &truth)?;
             numbers.insert(format!("RMSE, {distance}, {filter}"), json!(error));
             rows.push(vec![

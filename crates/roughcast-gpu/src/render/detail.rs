@@ -180,7 +180,12 @@ impl GpuDetail {
 
     /// Procedural noise in world space, without textures. See [`GpuDetail::with_noise`] for noise on top of textures.
     pub fn of_noise(shading: Shading, noise: Noise, filter: OctaveFilter) -> Self {
-        Self::without_textures(shading, DetailSource::Flat).with_noise(noise, filter)
+        Self::flat(shading).with_noise(noise, filter)
+    }
+
+    /// No bumps.
+    pub fn flat(shading: Shading) -> Self {
+        Self::without_textures(shading, DetailSource::Flat)
     }
 
     /// The same bumps, placed like this on the surface.

@@ -35,7 +35,7 @@ impl Detail for Strengthened<'_> {
         if self.strength == 1.0 {
             return distribution;
         }
-        distribution.transformed([[self.strength, 0.0], [0.0, self.strength]])
+        distribution.scaled(self.strength)
     }
 
     fn options(&self, options: ShadingOptions) -> ShadingOptions {

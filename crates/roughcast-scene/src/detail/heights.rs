@@ -1,12 +1,12 @@
 //! A height map without slopes of its own: bump mapping as published, by derivatives of heights on the screen.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use roughcast::shading::ShadingOptions;
-use roughcast::surface_gradient::{surface_basis, surface_gradient, texture_gradients};
+use roughcast::surface_gradient::surface_gradient;
 use roughcast::{Distribution, Slope};
 
 use super::{Detail, DetailPoint, HeightDerivative, HeightMap};
-use crate::{Footprint, Placement, Sampler, UvPoint};
+use crate::{Footprint, Placement, Sampler};
 
 /// The heights of a map, filtered by a sampler and differentiated on the screen.
 ///
@@ -33,20 +33,19 @@ impl HeightDetail {
 
     /// The world height of one texel of height at a point: the given one, or one texel in the direction in which it is
     /// smallest.
-    fn world_height_per_texel(&self, at: &DetailPoint<'_>) -> f64 {
+    fn world_height_per_texel(&self, at: &DetailPoint<'_>, [u, v]: [DVec3; 2]) -> f64 {
         if let Some(height) = self.placement.world_height_per_texel() {
             return height;
         }
         let (width, height) = self.heights.size();
-        let [u, v] = gradients(at, self.placement.uv_set());
         let texels = at.repeats() * (width as f64 * u.length()).max(height as f64 * v.length());
         if texels > 0.0 { texels.recip() } else { 0.0 }
     }
 
     /// The slope of bumps whose height in texels changes by this much with u and v.
     fn slope_of(&self, at: &DetailPoint<'_>, along_uv: DVec2) -> Slope {
-        let [u, v] = gradients(at, self.placement.uv_set());
-        let scale = self.world_height_per_texel(at) * at.repeats();
+        let [u, v] = at.hit().texture_gradients(self.placement.uv_set());
+        let scale = self.world_height_per_texel(at, [u, v]) * at.repeats();
         let gradient = (u * along_uv.x + v * along_uv.y) * scale;
         if gradient.is_finite() { at.slope_of_gradient(gradient) } else { Slope::default() }
     }
@@ -79,13 +78,6 @@ impl HeightDetail {
     }
 }
 
-/// The gradients on the surface of the texture coordinates of a set.
-fn gradients(at: &DetailPoint<'_>, set: usize) -> [glam::DVec3; 2] {
-    let hit = at.hit();
-    let UvPoint { ds, dt, .. } = hit.uv_sets.get(set);
-    texture_gradients(surface_basis(hit.dpds, hit.dpdt, hit.frame.normal()), ds, dt)
-}
-
 impl Detail for HeightDetail {
     /// The slope of the surface between the texels of level 0: of the B-spline for bicubic derivatives, else bilinear.
     fn slope(&self, at: &DetailPoint<'_>) -> Slope {
@@ -99,7 +91,8 @@ impl Detail for HeightDetail {
 
     /// The slope by Listing 1, without a spread.
     fn distribution(&self, at: &DetailPoint<'_>, _options: &ShadingOptions) -> Distribution {
-        let height = self.world_height_per_texel(at);
+        let gradients = at.hit().texture_gradients(self.placement.uv_set());
+        let height = self.world_height_per_texel(at, gradients);
         let [height_dx, height_dy] = self.differences(at).map(|difference| height * difference);
         let [sigma_dx, sigma_dy] = at.position_footprint();
         let normal = at.hit().frame.normal();

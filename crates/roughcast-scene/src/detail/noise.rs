@@ -6,7 +6,7 @@ use roughcast::shading::ShadingOptions;
 use roughcast::surface_gradient::{
     displaced_normal, perlin_normal, perturbed_normal, surface_gradient, surface_gradient_of_volume,
 };
-use roughcast::{Covariance, Distribution, Normal, Slope};
+use roughcast::{Distribution, Normal, Slope};
 
 use super::{Detail, DetailPoint};
 use crate::Side;
@@ -167,12 +167,5 @@ impl Detail for NoiseDetail {
             // A bump from the front is a dent from behind, in a frame whose axes are reversed.
             Side::Back => seen.transformed([[-1.0, 0.0], [0.0, -1.0]]),
         }
-    }
-}
-
-impl NoiseDetail {
-    /// The covariance of slopes, per axis, of all octaves together: what is left where none is resolved.
-    pub fn unresolved(&self) -> Covariance {
-        Covariance::isotropic(self.noise.slope_variance() as f32)
     }
 }

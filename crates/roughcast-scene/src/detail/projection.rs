@@ -75,7 +75,7 @@ impl Detail for Triplanar<'_> {
             let weight = *weight as f32;
             let part = self.detail.distribution(&at.with_hit(&projected), options);
             length += weight * part.normal().length();
-            let part = part.transformed([[weight, 0.0], [0.0, weight]]);
+            let part = part.scaled(weight);
             sum = Some(sum.map_or(part, |sum: Distribution| sum.plus(part)));
         }
         let sum = sum.unwrap_or_else(|| Distribution::of_slope(Slope::default()));
@@ -145,8 +145,7 @@ impl Detail for Decal<'_> {
             return Distribution::of_slope(Slope::default());
         };
         let hit = Hit { uv_sets: UvSets::of_points(std::slice::from_ref(&point)), ..*at.hit() };
-        let distribution = self.detail.distribution(&at.with_hit(&hit), options);
-        distribution.transformed([[strength, 0.0], [0.0, strength]])
+        self.detail.distribution(&at.with_hit(&hit), options).scaled(strength)
     }
 
     fn options(&self, options: ShadingOptions) -> ShadingOptions {
