@@ -150,6 +150,33 @@ pub enum GpuError {
         /// Their layout.
         layout: Layout,
     },
+    /// A source of bumps uses texture coordinates that the geometry was uploaded without.
+    #[error(
+        "the bumps use the set of texture coordinates {wanted}, but the geometry was uploaded with the sets {} and {}: upload it \
+         with Geometry::of_uv_sets", .uploaded[0], .uploaded[1]
+    )]
+    UvSet {
+        /// The set, counted from 0.
+        wanted: usize,
+        /// Those of the geometry.
+        uploaded: [usize; 2],
+    },
+    /// More sources of bumps than the device can bind.
+    #[error("this device combines up to {most} sources of bumps, not {got}: bake some of them into one")]
+    Sources {
+        /// The largest number.
+        most: usize,
+        /// The number of sources.
+        got: usize,
+    },
+    /// The pose of a mesh has another number of vertices than the mesh.
+    #[error("a pose needs the vertices of the geometry, {wanted}, not {got}: upload it as another geometry")]
+    OtherVertices {
+        /// The number of the geometry's vertices.
+        wanted: u64,
+        /// The number of the pose's vertices.
+        got: u64,
+    },
     /// Code of a source of bumps needs a module that the library does not have.
     #[error("the source of bumps needs a module that does not exist: {0}")]
     Module(#[from] UnknownName),

@@ -56,7 +56,7 @@ fn shaders_sample_as_many_textures_as_the_model_has_inputs() {
         for anisotropy in [Anisotropy::Isotropic, Anisotropy::Anisotropic] {
             let reader = shading.layout().texel_reader(shading.wanted(), anisotropy).expect("its layout");
             let key = ShaderKey::new(*shading, DetailSource::Textures(reader));
-            let source = shader_source(key).expect("the library has it");
+            let source = shader_source(&key).expect("the library has it");
             // One more for the map of colours, which only the shaders of such maps read.
             assert_eq!(source.matches(": texture_2d<f32>;").count(), reader.inputs.len() + 1, "{shading}");
             assert_eq!(source.matches("textureSampleBias(").count(), 1, "{shading}");

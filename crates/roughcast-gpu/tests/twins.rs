@@ -293,7 +293,7 @@ const LIGHT: f32 = 8.0 * f32::EPSILON;
 
 /// The part of the renderer's shader that starts with `begin` and ends at the next brace on its own line.
 fn item(begin: &str) -> &'static str {
-    let source = include_str!("../src/render/scene.wgsl");
+    let source = include_str!("../src/render/wgsl/scene.wgsl");
     let (_, rest) = source.split_once(begin).unwrap_or_else(|| panic!("the shader has no '{begin}'"));
     let (length, start) = (rest.find("\n}\n").expect("it ends"), source.len() - rest.len() - begin.len());
     &source[start..start + begin.len() + length + 3]
@@ -301,10 +301,11 @@ fn item(begin: &str) -> &'static str {
 
 #[test]
 fn lights_are_finite_at_every_distance_and_match_the_cpu() {
-    let source = include_str!("../src/render/scene.wgsl");
+    let source = include_str!("../src/render/wgsl/scene.wgsl");
     let least = source.lines().find(|line| line.starts_with("const LEAST_SQUARED_DISTANCE"));
-    let functions = ["struct SceneLight {", "fn unit_or(", "struct LightAt {", "fn light_at("].map(item);
-    let functions = format!("{}\n{}", least.expect("the shader has it"), functions.join("\n"));
+    let functions = ["struct SceneLight {", "struct LightAt {", "fn light_at("].map(item);
+    let library = roughcast::wgsl::library(&["vector"]).expect("it exists");
+    let functions = [&library, least.expect("the shader has it"), &functions.join("\n")].join("\n");
     let body = "let point = SceneLight(vec4f(0.0, 0.0, 0.0, 1.0), vec3f(8.0, 4.0, 2.0));\n\
                 let at = light_at(point, input.xyz);\noutput = vec4f(at.towards, at.irradiance.y);";
     // The light is at the origin, so that no distance is rounded before it is squared.

@@ -4,13 +4,16 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use roughcast::Anisotropy;
+use roughcast::noise::Noise;
 use roughcast::shading::Shading;
 use roughcast::texture::Layout;
 use roughcast::wgsl::{MODULES, Role, library, library_of, renamed};
+use roughcast_gpu::GpuError;
 use roughcast_gpu::render::{
-    Bumps, Curvature, DetailSource, LevelOfDetail, Octaves, Projection, ShaderKey, SurfaceKey, shader_source,
+    Bumps, Curvature, DetailSource, LevelOfDetail, MAX_SOURCES, Projection, ShaderKey, SourceKey, Strength,
+    UvSlot, shader_source,
 };
-use roughcast_scene::HeightDerivative;
+use roughcast_scene::{HeightDerivative, NoiseDetail, Perturbation, VolumeDerivative};
 
 /// Parses and validates a module with every check that naga has.
 fn validate(source: &str) -> Result<(), String> {
@@ -55,23 +58,35 @@ fn every_module_of_the_library_is_valid_with_what_it_needs() {
     validate(&library_of(Role::Bake)).unwrap_or_else(|fault| panic!("the rules of baking: {fault}"));
 }
 
-/// Textures and heights in every projection, with and without noise and curvature; and noise alone.
+/// All sources of bumps but those of layouts.
+fn other_sources() -> Vec<DetailSource> {
+    let heights = HeightDerivative::ALL.iter().map(|derivative| DetailSource::Heights(*derivative));
+    let noise = VolumeDerivative::ALL.iter().flat_map(|derivative| {
+        Perturbation::ALL.iter().map(|perturbation| {
+            let noise = NoiseDetail::new(Noise::default());
+            let noise = NoiseDetail { derivative: *derivative, perturbation: *perturbation, ..noise };
+            DetailSource::Noise(noise.into())
+        })
+    });
+    heights.chain(noise).chain([DetailSource::ObjectNormals, DetailSource::Flat]).collect()
+}
+
+/// Every source of bumps alone, in all projections; then two and three of them, of which all but the first are renamed.
 fn surfaces() -> Vec<ShaderKey> {
     let reader =
         Layout::Lean.texel_reader(Shading::Lean.wanted(), Anisotropy::Isotropic).expect("it has one");
-    let heights = HeightDerivative::ALL.iter().map(|derivative| DetailSource::Heights(*derivative));
-    let sources = [DetailSource::Textures(reader), DetailSource::Flat].into_iter().chain(heights);
+    let textures = DetailSource::Textures(reader);
     let mut keys = Vec::new();
-    for source in sources {
-        for projection in [Projection::Mesh, Projection::Derivatives, Projection::Triplanar] {
-            for octaves in [Octaves::None, Octaves::Added] {
-                for curvature in [Curvature::Ignored, Curvature::Filtered] {
-                    let mut surface = SurfaceKey::default();
-                    (surface.projection, surface.octaves, surface.curvature) =
-                        (projection, octaves, curvature);
-                    keys.push(ShaderKey::new(Shading::Lean, source).with_surface(surface));
-                }
-            }
+    for source in other_sources().into_iter().chain([textures]) {
+        for projection in
+            [Projection::Mesh, Projection::Derivatives, Projection::Triplanar, Projection::Decal]
+        {
+            let source = SourceKey::new(source).with_projection(projection);
+            keys.push(ShaderKey::of_sources(Shading::Lean, vec![source]));
+            let below = SourceKey::new(textures);
+            let above = source.with_uv_slot(UvSlot::Second).with_strength(Strength::Given);
+            keys.push(ShaderKey::of_sources(Shading::Lean, vec![below, above]));
+            keys.push(ShaderKey::of_sources(Shading::Ggx, vec![above, below, above]));
         }
     }
     keys
@@ -90,7 +105,7 @@ fn every_shader_of_the_renderer_is_valid_and_has_all_of_its_files() {
                     let key = ShaderKey::new(shading, DetailSource::Textures(reader))
                         .with_level(level)
                         .with_bumps(bumps);
-                    let source = shader_source(key).expect("the library has it");
+                    let source = shader_source(&key).expect("the library has it");
                     validate(&source).unwrap_or_else(|fault| panic!("{layout}, {shading}: {fault}"));
                     sources.push(source);
                 }
@@ -100,11 +115,12 @@ fn every_shader_of_the_renderer_is_valid_and_has_all_of_its_files() {
     let levels = [LevelOfDetail::Derivatives, LevelOfDetail::Fixed];
     let every = |key: ShaderKey| {
         levels.iter().flat_map(move |level| {
-            [Bumps::Filtered, Bumps::Resolved].map(|bumps| key.with_level(*level).with_bumps(bumps))
+            let key = key.clone().with_level(*level);
+            [key.clone(), key.clone().with_curvature(Curvature::Filtered), key.with_bumps(Bumps::Resolved)]
         })
     };
     for key in surfaces().into_iter().flat_map(every) {
-        let source = shader_source(key).expect("the library has it");
+        let source = shader_source(&key).expect("the library has it");
         validate(&source).unwrap_or_else(|fault| panic!("{key:?}: {fault}"));
         sources.push(source);
     }
@@ -217,6 +233,15 @@ fn every_file_of_the_bake_is_valid_in_a_pass() {
     validate(&(copy.to_owned() + &text_of("copy"))).expect("the copy");
     let all: BTreeSet<String> = files.iter().map(|(path, _)| stem(path)).collect();
     assert_eq!(tested, all);
+}
+
+#[test]
+fn no_source_of_bumps_and_too_many_are_refused() {
+    for got in [0, 4] {
+        let sources = vec![SourceKey::new(DetailSource::Flat); got];
+        let key = ShaderKey::of_sources(Shading::Lean, sources);
+        assert_eq!(shader_source(&key), Err(GpuError::Sources { most: MAX_SOURCES, got }));
+    }
 }
 
 #[test]

@@ -80,12 +80,12 @@ pub use albedo::{AlbedoError, AlbedoMap, MAX_ALBEDO};
 pub use camera::{Camera, CameraError, PixelRays};
 #[cfg(feature = "render")]
 pub use detail::{
-    BakedTextures, Combined, Curved, Decal, Detail, DetailPoint, HeightDetail, HeightMap, NoiseDetail,
-    ObjectNormalDetail, ObjectNormalMap, Perturbation, Reconstruction, Resolved, SlopeDetail, SlopeMap,
-    Strengthened, TextureDetail, Triplanar, VolumeDerivative,
+    BakedTextures, Combined, Curved, Decal, Detail, DetailPoint, HeightDetail, HeightMap, ObjectNormalDetail,
+    ObjectNormalMap, Reconstruction, Resolved, SlopeDetail, SlopeMap, Strengthened, TextureDetail, Triplanar,
 };
 pub use detail::{
-    DetailError, HeightDerivative, TextureInputs, height_texture, model_inputs, texture_inputs,
+    DetailError, HeightDerivative, NoiseDetail, Perturbation, TextureInputs, VolumeDerivative,
+    height_texture, model_inputs, object_normal_levels, texture_inputs,
 };
 #[cfg(feature = "render")]
 pub use filter::SummedAreaTable;
@@ -97,7 +97,7 @@ pub use mesh::{MAX_TRIANGLES, MAX_VERTICES, Mesh, MeshFault};
 #[cfg(feature = "render")]
 pub use mipmap::Mipmap;
 pub use picture::{Picture, PictureError, luminance};
-pub use placement::{Placement, TangentSource};
+pub use placement::{Placement, TRIPLANAR_SHARPNESS, TangentSource};
 pub use render::MipmapError;
 pub use sampler::{Filter, Sampler};
 pub use scene::Scene;

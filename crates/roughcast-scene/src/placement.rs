@@ -13,6 +13,9 @@ roughcast::named_enum! {
     }
 }
 
+/// The default sharpness of the blend of projections along three axes: the exponent of the normal's components.
+pub const TRIPLANAR_SHARPNESS: f64 = 4.0;
+
 /// The texture coordinates that place a texture on a surface, and the height of its bumps.
 ///
 /// By default the first set is used, and slopes are interpreted in the tangent frame unchanged. This is glTF's

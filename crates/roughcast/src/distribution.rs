@@ -189,10 +189,20 @@ impl Distribution {
     }
 
     /// The distribution of slopes that are this many times as steep, as of bumps of another height. Covariances grow with
-    /// its square.
+    /// its square, and with them Toksvig's variance `(1 - |n|) / |n|` of the filtered normal: bumps without any height leave a
+    /// unit normal.
     #[must_use]
     pub fn scaled(self, factor: f32) -> Self {
-        self.transformed([[factor, 0.0], [0.0, factor]])
+        let length = self.normal.length().min(1.0);
+        let scaled = self.transformed([[factor, 0.0], [0.0, factor]]);
+        let spread = length + factor * factor * (1.0 - length);
+        let (now, wanted) = (scaled.normal.length(), if spread > 0.0 { length / spread } else { 1.0 });
+        if now == 0.0 {
+            return scaled;
+        }
+        let Normal { x, y, z } = scaled.normal;
+        let scale = wanted / now;
+        scaled.with_normal(Normal { x: x * scale, y: y * scale, z: z * scale })
     }
 
     /// The distribution with this covariance added to every Gaussian: that of other, independent bumps of mean zero.
@@ -292,6 +302,21 @@ mod tests {
         }
         assert_eq!(one.plus(one.with_base(Base::Baked)).base(), Base::Baked);
         assert_eq!(one.with_base(Base::Baked).plus(one).base(), Base::Baked);
+    }
+
+    #[test]
+    fn bumps_without_height_leave_a_unit_normal_and_higher_ones_shorten_it() {
+        let covariance = Covariance { xx: 0.09, yy: 0.04, xy: 0.01 };
+        let shortened = Normal { x: 0.0, y: 0.0, z: 0.9 };
+        let bumps = Distribution::gaussian(Slope { x: 0.1, y: -0.2 }, covariance).with_normal(shortened);
+        assert_eq!(bumps.scaled(0.0).normal(), Normal { x: 0.0, y: 0.0, z: 1.0 });
+        assert_eq!(bumps.scaled(0.0).whole().covariance, Covariance::default());
+        assert!((bumps.scaled(1.0).normal().length() - 0.9).abs() < 1e-6);
+        // Toksvig's variance, 1/9, grows fourfold; dents shorten as bumps do.
+        for factor in [2.0, -2.0] {
+            let length = bumps.scaled(factor).normal().length();
+            assert!((length - 1.0 / (1.0 + 4.0 / 9.0)).abs() < 1e-6, "{length}");
+        }
     }
 
     #[test]

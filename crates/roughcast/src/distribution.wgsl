@@ -96,6 +96,18 @@ fn transformed_distribution(distribution: Distribution, new_from_old: mat2x2f) -
     );
 }
 
+// The distribution of slopes that are this many times as steep, as of bumps of another height. Covariances grow with its
+// square, and with them Toksvig's variance (1 - |n|) / |n| of the filtered normal.
+fn scaled_distribution(distribution: Distribution, factor: f32) -> Distribution {
+    var scaled = transformed_distribution(distribution, mat2x2f(factor, 0.0, 0.0, factor));
+    let squared = dot(scaled.normal, scaled.normal);
+    let before = min(length(distribution.normal), 1.0);
+    let spread = before + factor * factor * (1.0 - before);
+    let after = select(1.0, before / spread, spread > 0.0);
+    scaled.normal *= select(0.0, after * inverseSqrt(squared), squared > 1e-37);
+    return scaled;
+}
+
 // A Gaussian moved by a slope and widened by a covariance (xx, yy, xy); a place that holds none stays empty.
 fn moved_gaussian(gaussian: WeightedGaussian, mean: vec2f, sigma: vec3f) -> WeightedGaussian {
     let held = select(0.0, 1.0, gaussian.weight > 0.0);

@@ -15,13 +15,6 @@ fn finite_or_flat(gradient: vec3f) -> vec3f {
     return select(vec3f(0.0), gradient, dot(gradient, gradient) < LONGEST_SQUARED);
 }
 
-// The unit vector of `v`, or `other` if `v` is zero.
-fn unit_vector_or(v: vec3f, other: vec3f) -> vec3f {
-    let squared = dot(v, v);
-    // Smaller squares may be flushed to zero, whose inverse root is infinite.
-    return select(other, v * inverseSqrt(squared), squared > 1e-37);
-}
-
 // The gradients of s and t on the surface, as columns; zero if the derivatives are parallel. Eq. 3.
 fn surface_basis(sigma_s: vec3f, sigma_t: vec3f, normal: vec3f) -> mat2x3f {
     let r1 = cross(sigma_t, normal);

@@ -160,8 +160,8 @@ impl PreparedMethod {
         let geometry = Geometry::new(&gpu, &scene.shape, 1).await?;
         let mut drawing = renderer.prepare(&geometry, &textures, &DrawOptions::default()).await?;
         drawing.set_view(renderer, &scene, size).await?;
-        let key = ShaderKey::new(timed_method.shading, textures.source());
-        let instructions = count(&shader_source(key)?, "radiance")?;
+        let key = textures.shader_key(&geometry)?;
+        let instructions = count(&shader_source(&key)?, "radiance")?;
         // Measured separately: between render passes, lavapipe's clock reports no time for a compute pass.
         let bake_nanoseconds = match timed_method.maps {
             Maps::Once => 0.0,

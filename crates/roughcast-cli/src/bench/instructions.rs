@@ -181,7 +181,7 @@ mod tests {
     fn models_read_their_textures_and_lean_costs_more_than_blinn_phong() {
         let counted = |shading: Shading| {
             let key = ShaderKey::new(shading, DetailSource::Textures(reader(shading)));
-            count(&shader_source(key).expect("the library has it"), "radiance").expect("it is valid")
+            count(&shader_source(&key).expect("the library has it"), "radiance").expect("it is valid")
         };
         for shading in Shading::ALL {
             let inputs = reader(*shading).inputs.len() as u64;

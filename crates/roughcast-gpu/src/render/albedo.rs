@@ -2,15 +2,15 @@
 
 use std::sync::Arc;
 
-use half::f16;
+use roughcast::SampleType;
 use roughcast_scene::{AlbedoMap, Level};
 
-use super::textures::write_texels;
+use super::textures::upload_levels;
 use crate::{Gpu, GpuError};
 
 /// Filterable on every device, with enough digits for the dark colours of coarse levels; `Rgba8UnormSrgb` would round
 /// those to its 256 codes.
-const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+const SAMPLES: SampleType = SampleType::F16;
 
 /// The source of a surface's diffuse colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -32,9 +32,10 @@ pub(super) struct GpuAlbedo {
 impl GpuAlbedo {
     /// Uploads all levels of a map.
     pub async fn new(gpu: &Gpu, map: Option<&Arc<AlbedoMap>>) -> Result<Self, GpuError> {
+        let what = "the map of diffuse colours";
         let texture = match map {
-            None => upload(gpu, &[white()]).await?,
-            Some(map) => upload(gpu, map.levels()).await?,
+            None => upload_levels(gpu, what, SAMPLES, &[white()]).await?,
+            Some(map) => upload_levels(gpu, what, SAMPLES, map.levels()).await?,
         };
         Ok(Self { map: map.cloned(), view: texture.create_view(&Default::default()) })
     }
@@ -55,27 +56,4 @@ impl GpuAlbedo {
 
 fn white() -> Level {
     Level::new(1, 1, vec![[1.0; 4]]).expect("one texel")
-}
-
-async fn upload(gpu: &Gpu, levels: &[Level]) -> Result<wgpu::Texture, GpuError> {
-    let side = |texels: usize| u32::try_from(texels).unwrap_or(u32::MAX);
-    let (width, height) = (side(levels[0].width()), side(levels[0].height()));
-    let descriptor = wgpu::TextureDescriptor {
-        label: Some("albedo"),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: side(levels.len()),
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: FORMAT,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    };
-    let texture = gpu.create_texture("the map of diffuse colours", &descriptor).await?;
-    for (place, level) in levels.iter().enumerate() {
-        let texels: Vec<f16> =
-            level.texels().as_flattened().iter().map(|value| f16::from_f32(*value)).collect();
-        let size = (level.width(), level.height());
-        write_texels(gpu, &texture, side(place), size, bytemuck::cast_slice(&texels));
-    }
-    Ok(texture)
 }

@@ -1,127 +1,80 @@
-//! Sources of bumps on the GPU, each with the model that shades it.
+//! Sources of bumps on the GPU, with the model that shades them.
 
-use std::hash::{Hash, Hasher};
+use roughcast::shading::{Shading, ShadingOptions};
+use roughcast::texture::{Layout, Packing, Part, Texture, TextureArray, TextureInfo};
+use roughcast::{Anisotropy, ImageView, NormalRange, SampleType};
+use roughcast_scene::{
+    DetailError, HeightDerivative, NoiseDetail, TextureInputs, model_inputs, object_normal_levels,
+    texture_inputs,
+};
 
-use roughcast::noise::{Noise, OctaveFilter};
-use roughcast::shading::{Gaussians, Shading, ShadingOptions};
-use roughcast::texture::{Layout, Packing, Part, TexelReader, Texture, TextureArray, TextureInfo};
-use roughcast::{Anisotropy, SampleType};
-use roughcast_scene::{DetailError, HeightDerivative, TextureInputs, model_inputs, texture_inputs};
-
-use super::surface::{Curvature, GpuNoise, GpuPlacement, Octaves, Projection, SurfaceKey};
-use super::textures::{sample_type, upload};
+use super::geometry::Geometry;
+use super::shader::{ShaderKey, SourceKey, Strength};
+use super::source::{DetailCode, DetailSource};
+use super::surface::{GpuPlacement, Projection, UvSlot};
+use super::textures::{sample_type, upload, upload_levels};
 use crate::{Gpu, GpuError};
 
-/// The WGSL of a source of bumps.
-#[derive(Clone, Copy, Debug)]
-#[non_exhaustive]
-pub enum DetailSource {
-    /// The textures of a layout.
-    Textures(&'static TexelReader),
-    /// A texture of heights, differentiated on the screen.
-    Heights(HeightDerivative),
-    /// Code of the host, without textures.
-    Code(DetailCode),
-    /// No bumps of its own, such as below noise.
-    Flat,
+/// One source of bumps.
+#[derive(Clone, Debug)]
+pub(super) struct GpuSource {
+    pub source: DetailSource,
+    pub views: Vec<wgpu::TextureView>,
+    pub roughness_channel: u32,
+    pub packing: Packing,
+    info: Option<TextureInfo>,
+    /// Width and height of level 0.
+    pub texels: (u32, u32),
+    pub placement: GpuPlacement,
+    /// Factor of the heights.
+    pub strength: f32,
+    pub noise: Option<NoiseDetail>,
 }
 
-/// A source of bumps in WGSL that reads no textures, such as noise: the functions
-///
-/// ```wgsl
-/// fn detail_slope(at: DetailPoint) -> vec2f
-/// fn detail_distribution(at: DetailPoint) -> Distribution
-/// ```
-///
-/// of `detail.wgsl`. The code may call the library's modules that it names, and use the uniform `options`. Its counterpart
-/// on the CPU is an implementation of `roughcast_scene::Detail`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub struct DetailCode {
-    /// The code.
-    pub source: &'static str,
-    /// The modules of [`roughcast::wgsl`] that it calls, beyond `detail` and `distribution`.
-    pub needs: &'static [&'static str],
-    /// The number of Gaussians in its distributions.
-    pub gaussians: Gaussians,
-}
-
-impl DetailCode {
-    /// Code that needs no other modules, and whose distributions are single Gaussians.
-    pub const fn new(source: &'static str) -> Self {
-        Self { source, needs: &[], gaussians: Gaussians::One }
-    }
-
-    /// The same code with these modules of the library.
-    #[must_use]
-    pub const fn with_needs(self, needs: &'static [&'static str]) -> Self {
-        Self { needs, ..self }
-    }
-
-    /// The same code with this number of Gaussians.
-    #[must_use]
-    pub const fn with_gaussians(self, gaussians: Gaussians) -> Self {
-        Self { gaussians, ..self }
-    }
-}
-
-impl DetailSource {
-    /// The number of Gaussians in its distributions.
-    pub fn gaussians(self) -> Gaussians {
-        match self {
-            Self::Textures(reader) => reader.gaussians,
-            Self::Code(code) => code.gaussians,
-            Self::Heights(_) | Self::Flat => Gaussians::One,
+impl GpuSource {
+    fn without_textures(source: DetailSource) -> Self {
+        Self {
+            source,
+            views: Vec::new(),
+            roughness_channel: 0,
+            packing: Packing::new(&TextureInfo::new(Layout::Moments, Part::Whole), SampleType::F32),
+            info: None,
+            texels: (1, 1),
+            placement: GpuPlacement::default(),
+            strength: 1.0,
+            noise: None,
         }
     }
 
-    /// The number of its textures.
-    pub(super) fn texture_count(self) -> usize {
-        match self {
-            Self::Textures(reader) => reader.inputs.len(),
-            Self::Heights(_) => 1,
-            Self::Code(_) | Self::Flat => 0,
-        }
+    /// The parts of the shader for this source on a geometry. Heights are placed by their own code.
+    fn key(&self, geometry: &Geometry) -> Result<SourceKey, GpuError> {
+        let sized = self.placement.world_height_per_texel.is_some();
+        let projection = match (self.source, self.placement.projection) {
+            (DetailSource::Flat | DetailSource::Code(_), _) => Projection::Mesh,
+            (DetailSource::Noise(_) | DetailSource::ObjectNormals, _) => Projection::Mesh,
+            (DetailSource::Heights(_), Projection::Derivatives) => Projection::Mesh,
+            (DetailSource::Heights(_), projection) => projection,
+            (DetailSource::Textures(_), Projection::Mesh) if sized => Projection::Derivatives,
+            (DetailSource::Textures(_), projection) => projection,
+        };
+        let strength = if self.strength == 1.0 { Strength::One } else { Strength::Given };
+        let uv_slot = match self.uses_texture_coordinates() {
+            true => geometry.slot_of(self.placement.uv_set)?,
+            false => UvSlot::First,
+        };
+        Ok(SourceKey { detail: self.source, projection, uv_slot, strength })
     }
 
-    /// The values that are compared; a reader is identified by its module.
-    fn parts(&self) -> (Option<&'static str>, Option<HeightDerivative>, Option<&DetailCode>) {
-        match self {
-            Self::Textures(reader) => (Some(reader.module), None, None),
-            Self::Heights(derivative) => (None, Some(*derivative), None),
-            Self::Code(code) => (None, None, Some(code)),
-            Self::Flat => (None, None, None),
-        }
-    }
-}
-
-impl PartialEq for DetailSource {
-    fn eq(&self, other: &Self) -> bool {
-        self.parts() == other.parts()
+    fn uses_texture_coordinates(&self) -> bool {
+        !self.views.is_empty() && self.placement.projection.uses_texture_coordinates()
     }
 }
 
-impl Eq for DetailSource {}
-
-impl Hash for DetailSource {
-    fn hash<H: Hasher>(&self, state: &mut H) {
-        self.parts().hash(state);
-    }
-}
-
-/// A source of bumps and the model that shades it. Cheap to clone: textures are shared.
+/// Sources of bumps, and the model that shades them. Cheap to clone: textures are shared.
 #[derive(Clone, Debug)]
 pub struct GpuDetail {
     pub(super) shading: Shading,
-    pub(super) source: DetailSource,
-    pub(super) views: Vec<wgpu::TextureView>,
-    pub(super) roughness_channel: u32,
-    pub(super) packing: Packing,
-    info: Option<TextureInfo>,
-    /// Width and height of level 0.
-    pub(super) texels: (u32, u32),
-    pub(super) placement: GpuPlacement,
-    pub(super) noise: Option<GpuNoise>,
+    pub(super) sources: Vec<GpuSource>,
 }
 
 impl GpuDetail {
@@ -149,14 +102,15 @@ impl GpuDetail {
         for texture in inputs.textures {
             views.push(upload(gpu, texture).await?.create_view(&Default::default()));
         }
-        Ok(Self {
+        let source = GpuSource {
             views,
             roughness_channel: inputs.roughness_channel as u32,
             packing: inputs.packing,
             info: Some(inputs.info),
             texels: (width as u32, height as u32),
-            ..Self::without_textures(shading, DetailSource::Textures(inputs.reader))
-        })
+            ..GpuSource::without_textures(DetailSource::Textures(inputs.reader))
+        };
+        Ok(Self::of_source(shading, source))
     }
 
     /// Bumps from a texture of heights in texels, such as `roughcast_scene::height_texture` makes it, differentiated on
@@ -171,33 +125,88 @@ impl GpuDetail {
         derivative: HeightDerivative,
     ) -> Result<Self, GpuError> {
         let view = upload(gpu, heights).await?.create_view(&Default::default());
-        Ok(Self {
+        let source = GpuSource {
             views: vec![view],
             texels: (heights.finest().width() as u32, heights.finest().height() as u32),
-            ..Self::without_textures(shading, DetailSource::Heights(derivative))
-        })
+            ..GpuSource::without_textures(DetailSource::Heights(derivative))
+        };
+        Ok(Self::of_source(shading, source))
     }
 
-    /// Procedural noise in world space, without textures. See [`GpuDetail::with_noise`] for noise on top of textures.
-    pub fn of_noise(shading: Shading, noise: Noise, filter: OctaveFilter) -> Self {
-        Self::flat(shading).with_noise(noise, filter)
+    /// Object-space normals: those of an image of three channels, in the axes of the mesh, whose spread under a pixel becomes
+    /// roughness. Their place is that of the texture coordinates alone. The counterpart of
+    /// `roughcast_scene::ObjectNormalDetail`.
+    ///
+    /// # Errors
+    /// [`GpuError::Detail`] if the image has fewer than three channels; [`GpuError::Format`] if the device cannot filter
+    /// single floats; other errors if the image is too large.
+    pub async fn of_object_normals(
+        gpu: &Gpu,
+        shading: Shading,
+        normals: impl Into<ImageView<'_>>,
+        range: NormalRange,
+    ) -> Result<Self, GpuError> {
+        let textures = object_normal_levels(normals, range).map_err(DetailError::from)?;
+        let texels = (textures[0][0].width() as u32, textures[0][0].height() as u32);
+        let mut views = Vec::with_capacity(textures.len());
+        for levels in &textures {
+            let texture = upload_levels(gpu, "object-space normals", SampleType::F32, levels).await?;
+            views.push(texture.create_view(&Default::default()));
+        }
+        let source = GpuSource { views, texels, ..GpuSource::without_textures(DetailSource::ObjectNormals) };
+        Ok(Self::of_source(shading, source))
+    }
+
+    /// Procedural noise in world space, without textures.
+    pub fn of_noise(shading: Shading, noise: NoiseDetail) -> Self {
+        let source = GpuSource::without_textures(DetailSource::Noise(noise.into()));
+        Self::of_source(shading, GpuSource { noise: Some(noise), ..source })
     }
 
     /// No bumps.
     pub fn flat(shading: Shading) -> Self {
-        Self::without_textures(shading, DetailSource::Flat)
+        Self::of_source(shading, GpuSource::without_textures(DetailSource::Flat))
     }
 
-    /// The same bumps, placed like this on the surface.
+    /// The same bumps, all of them placed like this on the surface.
     #[must_use]
-    pub fn placed(self, placement: impl Into<GpuPlacement>) -> Self {
-        Self { placement: placement.into(), ..self }
+    pub fn placed(mut self, placement: impl Into<GpuPlacement>) -> Self {
+        let placement = placement.into();
+        self.sources.iter_mut().for_each(|source| source.placement = placement);
+        self
     }
 
-    /// The same bumps with procedural noise in world space on top: heights add, and the normal is perturbed once.
+    /// The same bumps with all heights multiplied by a strength: slopes grow with it, and their covariances with its square. Below
+    /// zero, bumps become dents.
     #[must_use]
-    pub fn with_noise(self, noise: Noise, filter: OctaveFilter) -> Self {
-        Self { noise: Some(GpuNoise { noise, filter }), ..self }
+    pub fn with_strength(mut self, strength: f32) -> Self {
+        self.sources.iter_mut().for_each(|source| source.strength *= strength);
+        self
+    }
+
+    /// These bumps with others on top, shaded by this model: heights add, and the normal is perturbed once. Each keeps its placement
+    /// and its strength. The others' distributions count as single Gaussians. The counterpart of
+    /// `roughcast_scene::Combined`.
+    ///
+    /// [`Renderer::prepare`](super::Renderer::prepare) draws as many sources as the device has groups of bindings to spare, three
+    /// on every device.
+    #[must_use]
+    pub fn plus(mut self, others: Self) -> Self {
+        self.sources.extend(others.sources);
+        let is_flat = |source: &GpuSource| source.source == DetailSource::Flat;
+        if self.sources.iter().all(is_flat) {
+            self.sources.truncate(1);
+        } else {
+            self.sources.retain(|source| !is_flat(source));
+        }
+        self
+    }
+
+    /// These bumps with procedural noise on top; see [`GpuDetail::plus`].
+    #[must_use]
+    pub fn with_noise(self, noise: NoiseDetail) -> Self {
+        let noise = Self::of_noise(self.shading, noise);
+        self.plus(noise)
     }
 
     /// Uses textures that are already on the GPU, such as those that a bake fills every frame: one for each layer of
@@ -229,13 +238,14 @@ impl GpuDetail {
         for texture in textures {
             gpu.require_filterable(texture.format())?;
         }
-        Ok(Self {
+        let source = GpuSource {
             views: textures.iter().map(|texture| texture.create_view(&Default::default())).collect(),
             packing: Packing::new(info, sample_type(textures[0].format())),
             info: Some(*info),
             texels: (textures[0].width(), textures[0].height()),
-            ..Self::without_textures(shading, DetailSource::Textures(reader))
-        })
+            ..GpuSource::without_textures(DetailSource::Textures(reader))
+        };
+        Ok(Self::of_source(shading, source))
     }
 
     /// Bumps computed by code, without textures.
@@ -259,35 +269,20 @@ impl GpuDetail {
     /// assert_eq!(detail.shading(), Shading::Lean);
     /// ```
     pub fn of_code(shading: Shading, code: DetailCode) -> Self {
-        Self::without_textures(shading, DetailSource::Code(code))
+        Self::of_source(shading, GpuSource::without_textures(DetailSource::Code(code)))
     }
 
-    fn without_textures(shading: Shading, source: DetailSource) -> Self {
-        Self {
-            shading,
-            source,
-            views: Vec::new(),
-            roughness_channel: 0,
-            packing: Packing::new(&TextureInfo::new(Layout::Moments, Part::Whole), SampleType::F32),
-            info: None,
-            texels: (1, 1),
-            placement: GpuPlacement::default(),
-            noise: None,
-        }
+    fn of_source(shading: Shading, source: GpuSource) -> Self {
+        Self { shading, sources: vec![source] }
     }
 
-    /// The parts of the shader between this source and the model. Heights are placed by their own code.
-    pub(super) fn surface_key(&self, curvature: Curvature) -> SurfaceKey {
-        let sized = self.placement.world_height_per_texel.is_some();
-        let projection = match (self.source, self.placement.projection) {
-            (DetailSource::Flat | DetailSource::Code(_), _) => Projection::Mesh,
-            (DetailSource::Heights(_), Projection::Triplanar) => Projection::Triplanar,
-            (DetailSource::Heights(_), _) => Projection::Mesh,
-            (_, Projection::Mesh) if sized => Projection::Derivatives,
-            (_, projection) => projection,
-        };
-        let octaves = if self.noise.is_some() { Octaves::Added } else { Octaves::None };
-        SurfaceKey { projection, octaves, curvature }
+    /// Identifies the shader of this detail on a geometry, filtered at the hardware's level of detail.
+    ///
+    /// # Errors
+    /// [`GpuError::UvSet`] if a source uses texture coordinates that the geometry was uploaded without.
+    pub fn shader_key(&self, geometry: &Geometry) -> Result<ShaderKey, GpuError> {
+        let sources = self.sources.iter().map(|source| source.key(geometry)).collect::<Result<_, _>>()?;
+        Ok(ShaderKey::of_sources(self.shading, sources))
     }
 
     /// The model.
@@ -295,13 +290,9 @@ impl GpuDetail {
         self.shading
     }
 
-    /// The WGSL of the source of bumps.
-    pub fn source(&self) -> DetailSource {
-        self.source
-    }
-
     /// The options, with overrides from properties stored with the textures.
     pub(super) fn options(&self, options: ShadingOptions) -> ShadingOptions {
-        self.info.as_ref().map_or(options, |info| options.for_maps(info))
+        let infos = self.sources.iter().filter_map(|source| source.info.as_ref());
+        infos.fold(options, |options, info| options.for_maps(info))
     }
 }

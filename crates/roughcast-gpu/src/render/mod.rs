@@ -58,6 +58,8 @@ mod headless;
 mod pipeline;
 mod sampling;
 mod shader;
+mod source;
+mod source_code;
 mod surface;
 mod textures;
 mod uniforms;
@@ -69,17 +71,18 @@ use std::sync::{Arc, Mutex, PoisonError};
 use roughcast::shading::{GeometricFilter, ShadingOptions};
 use roughcast_scene::{AlbedoMap, Filter, Sampler, Scene};
 
-pub use detail::{DetailCode, DetailSource, GpuDetail};
+pub use detail::GpuDetail;
 pub use geometry::Geometry;
 pub use headless::render;
-pub use shader::{Bumps, LevelOfDetail, ShaderKey, shader_source};
-pub use surface::{Curvature, GpuNoise, GpuPlacement, Octaves, Projection, SurfaceKey};
+pub use shader::{Bumps, LevelOfDetail, MAX_SOURCES, ShaderKey, SourceKey, Strength, shader_source};
+pub use source::{DetailCode, DetailSource, NoiseMethod};
+pub use surface::{Curvature, GpuPlacement, Projection, UvSlot};
 pub use views::{Order, Part, Views};
 
 use crate::{Gpu, GpuError};
 use albedo::{Colours, GpuAlbedo};
 use geometry::upload;
-use pipeline::{BindGroups, MapUniforms, create_layouts, create_pipeline};
+use pipeline::{BindGroups, Layouts, Uniforms, create_layouts, create_pipeline};
 use sampling::Sampling;
 use uniforms::{VIEW_WORDS, light_words, room_for, view_words};
 
@@ -182,9 +185,7 @@ impl DrawOptions {
 pub struct Renderer {
     gpu: Gpu,
     target: RenderTarget,
-    /// The bind group layout of the view; those of the maps depend on the number of maps.
-    view_layout: wgpu::BindGroupLayout,
-    map_layouts: Vec<wgpu::BindGroupLayout>,
+    layouts: Layouts,
     /// Behind a lock, because a scene with a map of colours needs another one while its view is set.
     pipelines: Mutex<HashMap<(ShaderKey, Colours), wgpu::RenderPipeline>>,
     /// What is bound for a scene without a map of colours.
@@ -200,8 +201,8 @@ pub struct Drawing {
     sampling: Sampling,
     key: ShaderKey,
     albedo: GpuAlbedo,
-    uniforms: MapUniforms,
-    maps: wgpu::BindGroup,
+    uniforms: Uniforms,
+    sources: Vec<wgpu::BindGroup>,
     view: wgpu::Buffer,
     lights: wgpu::Buffer,
     scene: wgpu::BindGroup,
@@ -222,9 +223,9 @@ impl Renderer {
             let instead = "render on the CPU";
             return Err(GpuError::Feature { feature: "storage buffers in shaders", instead });
         }
-        let (view_layout, map_layouts) = gpu.checked("the layouts of a renderer", create_layouts).await?;
+        let layouts = gpu.checked("the layouts of a renderer", create_layouts).await?;
         let no_map = GpuAlbedo::new(gpu, None).await?;
-        Ok(Self { gpu: gpu.clone(), target, view_layout, map_layouts, pipelines: Mutex::default(), no_map })
+        Ok(Self { gpu: gpu.clone(), target, layouts, pipelines: Mutex::default(), no_map })
     }
 
     /// The device.
@@ -250,25 +251,26 @@ impl Renderer {
     ) -> Result<Drawing, GpuError> {
         let sampling = Sampling::new(&options.sampler())?;
         let albedo = self.no_map.clone();
-        let pipeline = self.pipeline(key(detail, &sampling, options), albedo.colours()).await?;
-        let groups = BindGroups { gpu: &self.gpu, view_layout: &self.view_layout };
-        let uniforms = MapUniforms::new(&self.gpu, detail, options, &sampling).await?;
-        let maps = groups.maps(self.map_layout(detail.views.len()), detail, &uniforms, &sampling).await?;
+        let key = key(geometry, detail, &sampling, options)?;
+        let pipeline = self.pipeline(&key, albedo.colours()).await?;
+        let groups = self.groups();
+        let uniforms = Uniforms::new(&self.gpu, detail, options, &sampling).await?;
+        let sources = groups.sources(detail, &uniforms, &sampling).await?;
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
         let view =
             upload(&self.gpu, "the view of a scene", bytemuck::cast_slice(&[0_u32; VIEW_WORDS]), usage)
                 .await?;
         let lights = self.lights(&light_words(&[])).await?;
-        let scene = groups.scene(&view, &lights, &albedo.view).await?;
+        let scene = groups.scene(&view, &lights, &albedo.view, &uniforms).await?;
         Ok(Drawing {
             pipeline,
             geometry: geometry.clone(),
             detail: detail.clone(),
             sampling,
-            key: key(detail, &sampling, options),
+            key,
             albedo,
             uniforms,
-            maps,
+            sources,
             view,
             lights,
             scene,
@@ -276,20 +278,20 @@ impl Renderer {
         })
     }
 
-    fn map_layout(&self, textures: usize) -> &wgpu::BindGroupLayout {
-        &self.map_layouts[textures]
+    fn groups(&self) -> BindGroups<'_> {
+        BindGroups { gpu: &self.gpu, layouts: &self.layouts }
     }
 
-    async fn pipeline(&self, key: ShaderKey, colours: Colours) -> Result<wgpu::RenderPipeline, GpuError> {
+    async fn pipeline(&self, key: &ShaderKey, colours: Colours) -> Result<wgpu::RenderPipeline, GpuError> {
         // The lock is never held while waiting. No code panics under it.
         let pipelines = || self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = pipelines().get(&(key, colours)).cloned();
+        let own_key = (key.clone(), colours);
+        let known = pipelines().get(&own_key).cloned();
         if let Some(pipeline) = known {
             return Ok(pipeline);
         }
-        let layouts = [&self.view_layout, self.map_layout(key.detail.texture_count())];
-        let pipeline = create_pipeline(&self.gpu, (key, colours), self.target, layouts).await?;
-        pipelines().insert((key, colours), pipeline.clone());
+        let pipeline = create_pipeline(&self.gpu, (key, colours), self.target, &self.layouts).await?;
+        pipelines().insert(own_key, pipeline.clone());
         Ok(pipeline)
     }
 
@@ -308,16 +310,19 @@ impl Renderer {
     }
 }
 
-/// The key of the shader of this detail with this sampler.
-fn key(detail: &GpuDetail, sampling: &Sampling, options: &DrawOptions) -> ShaderKey {
+/// The key of the shader of this detail on this geometry, with this sampler.
+fn key(
+    geometry: &Geometry,
+    detail: &GpuDetail,
+    sampling: &Sampling,
+    options: &DrawOptions,
+) -> Result<ShaderKey, GpuError> {
     let curvature = match options.curvature {
         Some(_) => Curvature::Filtered,
         None => Curvature::Ignored,
     };
-    ShaderKey::new(detail.shading, detail.source)
-        .with_level(sampling.level)
-        .with_bumps(options.bumps)
-        .with_surface(detail.surface_key(curvature))
+    let key = detail.shader_key(geometry)?;
+    Ok(key.with_level(sampling.level).with_bumps(options.bumps).with_curvature(curvature))
 }
 
 impl Drawing {
@@ -332,12 +337,10 @@ impl Drawing {
         options: &DrawOptions,
     ) -> Result<(), GpuError> {
         let sampling = Sampling::new(&options.sampler())?;
-        let key = key(&self.detail, &sampling, options);
-        if (sampling, key) != (self.sampling, self.key) {
-            let pipeline = renderer.pipeline(key, self.albedo.colours()).await?;
-            let groups = BindGroups { gpu: &renderer.gpu, view_layout: &renderer.view_layout };
-            let layout = renderer.map_layout(self.detail.views.len());
-            self.maps = groups.maps(layout, &self.detail, &self.uniforms, &sampling).await?;
+        let key = key(&self.geometry, &self.detail, &sampling, options)?;
+        if sampling != self.sampling || key != self.key {
+            let pipeline = renderer.pipeline(&key, self.albedo.colours()).await?;
+            self.sources = renderer.groups().sources(&self.detail, &self.uniforms, &sampling).await?;
             (self.pipeline, self.sampling, self.key) = (pipeline, sampling, key);
         }
         self.uniforms.write(&renderer.gpu, &self.detail, options, &sampling);
@@ -365,8 +368,8 @@ impl Drawing {
             let mut room = words.clone();
             room.resize(room_for(words.len(), renderer.gpu.limits().max_storage_buffer_binding_size), 0);
             let lights = renderer.lights(&room).await?;
-            let groups = BindGroups { gpu: &renderer.gpu, view_layout: &renderer.view_layout };
-            self.scene = groups.scene(&self.view, &lights, &self.albedo.view).await?;
+            let groups = renderer.groups();
+            self.scene = groups.scene(&self.view, &lights, &self.albedo.view, &self.uniforms).await?;
             self.lights = lights;
         } else {
             renderer.gpu.queue().write_buffer(&self.lights, 0, bytemuck::cast_slice(&words));
@@ -387,10 +390,9 @@ impl Drawing {
             return Ok(());
         }
         let albedo = renderer.albedo(map).await?;
-        let key = self.key;
-        let pipeline = renderer.pipeline(key, albedo.colours()).await?;
-        let groups = BindGroups { gpu: &renderer.gpu, view_layout: &renderer.view_layout };
-        self.scene = groups.scene(&self.view, &self.lights, &albedo.view).await?;
+        let pipeline = renderer.pipeline(&self.key, albedo.colours()).await?;
+        let groups = renderer.groups();
+        self.scene = groups.scene(&self.view, &self.lights, &albedo.view, &self.uniforms).await?;
         (self.pipeline, self.albedo) = (pipeline, albedo);
         Ok(())
     }
@@ -418,7 +420,9 @@ impl Drawing {
         }
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.scene, &[]);
-        pass.set_bind_group(1, &self.maps, &[]);
+        for (group, source) in (1..).zip(&self.sources) {
+            pass.set_bind_group(group, source, &[]);
+        }
         pass.set_vertex_buffer(0, self.geometry.vertices.slice(..));
         pass.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
         pass.draw_indexed(0..self.geometry.index_count, 0, 0..1);

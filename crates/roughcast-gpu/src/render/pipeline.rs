@@ -2,16 +2,25 @@
 
 use roughcast::texture::MAX_TEXTURES;
 
-use super::detail::GpuDetail;
+use super::detail::{GpuDetail, GpuSource};
 use super::geometry::{VERTEX_LAYOUT, upload};
 use super::sampling::Sampling;
-use super::shader::{FIRST_TEXTURE, ShaderKey, shader_source};
-use super::surface::{noise_words, surface_words};
+use super::shader::{MAX_SOURCES, ShaderKey, shader_source};
+use super::source_code::FIRST_TEXTURE;
+use super::surface::{content_words, curvature_words, source_words};
 use super::{Colours, DEPTH_FORMAT, DrawOptions, RenderTarget};
 use crate::{Gpu, GpuError};
 
-/// The bind group layout of the view, and those of the maps, by their number of textures.
-pub(super) fn create_layouts(device: &wgpu::Device) -> (wgpu::BindGroupLayout, Vec<wgpu::BindGroupLayout>) {
+/// The layouts of bind groups.
+#[derive(Debug)]
+pub(super) struct Layouts {
+    view: wgpu::BindGroupLayout,
+    /// Those of a source of bumps, by its number of textures.
+    sources: Vec<wgpu::BindGroupLayout>,
+}
+
+/// Creates the layouts of bind groups.
+pub(super) fn create_layouts(device: &wgpu::Device) -> Layouts {
     let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
     let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
     let uniform = buffer(wgpu::BufferBindingType::Uniform);
@@ -26,28 +35,35 @@ pub(super) fn create_layouts(device: &wgpu::Device) -> (wgpu::BindGroupLayout, V
         view_dimension: wgpu::TextureViewDimension::D2,
         multisampled: false,
     };
-    let view =
-        layout("view", &[entry(0, both, uniform), entry(1, fragment, storage), entry(2, fragment, texture)]);
-    let fixed = [uniform, uniform, uniform, sampler, uniform, uniform];
-    let mut entries = fixed.map(|ty| entry(0, fragment, ty)).to_vec();
-    for (binding, entry) in entries.iter_mut().enumerate() {
-        entry.binding = binding as u32;
-    }
-    let maps = (0..=MAX_TEXTURES as u32).map(|textures| {
+    let view = [
+        entry(0, both, uniform),
+        entry(1, fragment, storage),
+        entry(2, fragment, texture),
+        entry(3, fragment, uniform),
+        entry(4, fragment, uniform),
+    ];
+    let fixed = [entry(0, fragment, uniform), entry(1, fragment, uniform), entry(2, fragment, sampler)];
+    let source = |textures| {
         let of_textures = (0..textures).map(|index| entry(FIRST_TEXTURE + index, fragment, texture));
-        layout("maps", &entries.iter().copied().chain(of_textures).collect::<Vec<_>>())
-    });
-    (view, maps.collect())
+        layout("source of bumps", &fixed.iter().copied().chain(of_textures).collect::<Vec<_>>())
+    };
+    Layouts { view: layout("view", &view), sources: (0..=MAX_TEXTURES as u32).map(source).collect() }
 }
 
 /// Creates the pipeline of a model, for a diffuse colour of this kind.
 pub(super) async fn create_pipeline(
     gpu: &Gpu,
-    (key, colours): (ShaderKey, Colours),
+    (key, colours): (&ShaderKey, Colours),
     target: RenderTarget,
-    [view, maps]: [&wgpu::BindGroupLayout; 2],
+    layouts: &Layouts,
 ) -> Result<wgpu::RenderPipeline, GpuError> {
+    let most = (gpu.limits().max_bind_groups as usize - 1).min(MAX_SOURCES);
+    if key.sources.len() > most {
+        return Err(GpuError::Sources { most, got: key.sources.len() });
+    }
     let source = shader_source(key)?;
+    let of_sources = key.sources.iter().map(|source| &layouts.sources[source.detail.texture_count()]);
+    let groups: Vec<_> = std::iter::once(&layouts.view).chain(of_sources).map(Some).collect();
     let targets: Vec<_> = target.formats().into_iter().map(|format| Some(format.into())).collect();
     let make = |device: &wgpu::Device| {
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -56,7 +72,7 @@ pub(super) async fn create_pipeline(
         });
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("scene"),
-            bind_group_layouts: &[Some(view), Some(maps)],
+            bind_group_layouts: &groups,
             immediate_size: 0,
         });
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -94,41 +110,48 @@ pub(super) async fn create_pipeline(
 /// Makes bind groups.
 pub(super) struct BindGroups<'a> {
     pub gpu: &'a Gpu,
-    pub view_layout: &'a wgpu::BindGroupLayout,
+    pub layouts: &'a Layouts,
 }
 
 impl BindGroups<'_> {
-    /// The bind group of the view, the lights and the map of colours.
+    /// The bind group of the view, the lights, the map of colours, and how the model is evaluated.
     pub async fn scene(
         &self,
         view: &wgpu::Buffer,
         lights: &wgpu::Buffer,
         albedo: &wgpu::TextureView,
+        uniforms: &Uniforms,
     ) -> Result<wgpu::BindGroup, GpuError> {
-        let albedo = wgpu::BindingResource::TextureView(albedo);
-        let resources = [view.as_entire_binding(), lights.as_entire_binding(), albedo];
-        self.group("the view of a scene", self.view_layout, resources).await
+        let resources = [
+            view.as_entire_binding(),
+            lights.as_entire_binding(),
+            wgpu::BindingResource::TextureView(albedo),
+            uniforms.options.as_entire_binding(),
+            uniforms.curvature.as_entire_binding(),
+        ];
+        self.group("the view of a scene", &self.layouts.view, resources).await
     }
 
-    /// The bind group of the textures, a sampler, and the uniforms that specify how to read them.
-    pub async fn maps(
+    /// The bind groups of all sources of bumps: their textures, a sampler, and the uniforms that specify how to read them.
+    pub async fn sources(
         &self,
-        layout: &wgpu::BindGroupLayout,
         detail: &GpuDetail,
-        uniforms: &MapUniforms,
+        uniforms: &Uniforms,
         sampling: &Sampling,
-    ) -> Result<wgpu::BindGroup, GpuError> {
+    ) -> Result<Vec<wgpu::BindGroup>, GpuError> {
         let descriptor = sampling.descriptor();
         let sampler = self.gpu.checked("a sampler", |device| device.create_sampler(&descriptor)).await?;
-        let MapUniforms { options, packing, sampling, surface, noise } = uniforms;
-        let before = [options, packing, sampling].map(wgpu::Buffer::as_entire_binding);
-        let after = [surface, noise].map(wgpu::Buffer::as_entire_binding);
-        let resources = before
-            .into_iter()
-            .chain([wgpu::BindingResource::Sampler(&sampler)])
-            .chain(after)
-            .chain(detail.views.iter().map(wgpu::BindingResource::TextureView));
-        self.group("the maps of a model", layout, resources).await
+        let mut groups = Vec::with_capacity(detail.sources.len());
+        for (source, SourceUniforms { content, options }) in detail.sources.iter().zip(&uniforms.sources) {
+            let resources = [content, options]
+                .map(wgpu::Buffer::as_entire_binding)
+                .into_iter()
+                .chain([wgpu::BindingResource::Sampler(&sampler)])
+                .chain(source.views.iter().map(wgpu::BindingResource::TextureView));
+            let layout = &self.layouts.sources[source.views.len()];
+            groups.push(self.group("a source of bumps", layout, resources).await?);
+        }
+        Ok(groups)
     }
 
     /// A bind group of these resources, bound from 0 upwards.
@@ -147,44 +170,63 @@ impl BindGroups<'_> {
     }
 }
 
-/// The uniforms of the maps' group.
+/// The uniforms of a drawing beyond its view.
 #[derive(Clone, Debug)]
-pub(super) struct MapUniforms {
+pub(super) struct Uniforms {
     options: wgpu::Buffer,
-    packing: wgpu::Buffer,
-    sampling: wgpu::Buffer,
-    surface: wgpu::Buffer,
-    noise: wgpu::Buffer,
+    curvature: wgpu::Buffer,
+    sources: Vec<SourceUniforms>,
 }
 
-impl MapUniforms {
+/// Those of a source of bumps.
+#[derive(Clone, Debug)]
+struct SourceUniforms {
+    /// The packing of its textures, or its noise.
+    content: wgpu::Buffer,
+    /// How it is sampled and placed.
+    options: wgpu::Buffer,
+}
+
+impl Uniforms {
     pub async fn new(
         gpu: &Gpu,
         detail: &GpuDetail,
         options: &DrawOptions,
         sampling: &Sampling,
     ) -> Result<Self, GpuError> {
-        let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
-        let surface = surface_words(&detail.placement, detail.texels, options.curvature);
-        let noise = noise_words(detail.noise);
-        let options = detail.options(options.shading_options).to_words();
-        let packing = detail.packing.to_words();
-        let sampling = sampling.words(detail);
+        let shading = detail.options(options.shading_options).to_words();
+        let mut sources = Vec::with_capacity(detail.sources.len());
+        for source in &detail.sources {
+            sources.push(SourceUniforms::new(gpu, source, sampling).await?);
+        }
         Ok(Self {
-            options: upload(gpu, "the options of shading", bytemuck::cast_slice(&options), usage).await?,
-            packing: upload(gpu, "the packing of textures", bytemuck::cast_slice(&packing), usage).await?,
-            sampling: upload(gpu, "the sampling", bytemuck::cast_slice(&sampling), usage).await?,
-            surface: upload(gpu, "the placement of bumps", bytemuck::cast_slice(&surface), usage).await?,
-            noise: upload(gpu, "the noise", bytemuck::cast_slice(&noise), usage).await?,
+            options: uniform(gpu, "the options of shading", &shading).await?,
+            curvature: uniform(gpu, "the filter of curvature", &curvature_words(options.curvature)).await?,
+            sources,
         })
     }
 
     /// Writes the uniforms that may change from frame to frame.
     pub fn write(&self, gpu: &Gpu, detail: &GpuDetail, options: &DrawOptions, sampling: &Sampling) {
-        let words = detail.options(options.shading_options).to_words();
-        gpu.queue().write_buffer(&self.options, 0, bytemuck::cast_slice(&words));
-        gpu.queue().write_buffer(&self.sampling, 0, bytemuck::cast_slice(&sampling.words(detail)));
-        let surface = surface_words(&detail.placement, detail.texels, options.curvature);
-        gpu.queue().write_buffer(&self.surface, 0, bytemuck::cast_slice(&surface));
+        let write = |buffer, words: &[u32]| gpu.queue().write_buffer(buffer, 0, bytemuck::cast_slice(words));
+        write(&self.options, &detail.options(options.shading_options).to_words());
+        write(&self.curvature, &curvature_words(options.curvature));
+        for (source, uniforms) in detail.sources.iter().zip(&self.sources) {
+            write(&uniforms.options, &source_words(source, sampling));
+        }
     }
+}
+
+impl SourceUniforms {
+    async fn new(gpu: &Gpu, source: &GpuSource, sampling: &Sampling) -> Result<Self, GpuError> {
+        Ok(Self {
+            content: uniform(gpu, "what describes bumps", &content_words(source)).await?,
+            options: uniform(gpu, "the placement of bumps", &source_words(source, sampling)).await?,
+        })
+    }
+}
+
+async fn uniform(gpu: &Gpu, what: &'static str, words: &[u32]) -> Result<wgpu::Buffer, GpuError> {
+    let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+    upload(gpu, what, bytemuck::cast_slice(words), usage).await
 }

@@ -3,7 +3,6 @@
 use roughcast::Wrap;
 use roughcast_scene::{Filter, Sampler};
 
-use super::detail::GpuDetail;
 use super::shader::LevelOfDetail;
 use crate::{GpuError, OnlyOnCpu};
 
@@ -49,12 +48,6 @@ impl Sampling {
             _ => 1,
         };
         Ok(Self { level, value: value as f32, max_anisotropy, filter, wrap })
-    }
-
-    /// WGSL's `Sampling`.
-    pub fn words(&self, detail: &GpuDetail) -> [u32; 4] {
-        let taps = f32::from(self.max_anisotropy);
-        [self.value.to_bits(), detail.roughness_channel, taps.to_bits(), 0]
     }
 
     /// Anisotropic samplers need derivatives; at a fixed level they become trilinear, as on the CPU.

@@ -1,27 +1,14 @@
-//! The shader of a scene, composed from WGSL files: the library's functions, a source of bumps, and a model.
+//! The shader of a scene, composed from WGSL files: the library's functions, sources of bumps, and a model.
 
-use roughcast::UnknownName;
 use roughcast::shading::Shading;
-use roughcast::texture::{Part, TexelReader};
 use roughcast::wgsl;
 
-use roughcast_scene::HeightDerivative;
+use super::source::DetailSource;
+use super::source_code::{SourceCode, instance};
+use super::surface::{Curvature, Projection, UvSlot};
+use crate::GpuError;
 
-use super::detail::DetailSource;
-use super::surface::{Curvature, Octaves, Projection, SurfaceKey};
-
-/// The first texture binding in the maps' group.
-pub(super) const FIRST_TEXTURE: u32 = 6;
-
-const SCENE: &str = include_str!("scene.wgsl");
-const SURFACE_OPTIONS: &str = include_str!("surface_options.wgsl");
-const SAMPLING: &str = include_str!("sampling.wgsl");
-const MAPS: &str = include_str!("maps.wgsl");
-const FOOTPRINT: &str = include_str!("footprint.wgsl");
-const MAP0: &str = include_str!("map0.wgsl");
-const MAP1: &str = include_str!("map1.wgsl");
-const MAP1_ROUGHNESS: &str = include_str!("map1_roughness.wgsl");
-const MAP2: &str = include_str!("map2.wgsl");
+const SCENE: &str = include_str!("wgsl/scene.wgsl");
 
 /// The source of a sampler's level of detail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -35,12 +22,13 @@ pub enum LevelOfDetail {
 
 impl LevelOfDetail {
     /// WGSL of `filtered` and `sampler_variances`.
-    fn sources(self) -> [&'static str; 2] {
+    pub(super) fn sources(self) -> [&'static str; 2] {
         match self {
-            Self::Derivatives => {
-                [include_str!("level_from_derivatives.wgsl"), include_str!("variances_from_derivatives.wgsl")]
-            }
-            Self::Fixed => [include_str!("level_fixed.wgsl"), include_str!("variances_fixed.wgsl")],
+            Self::Derivatives => [
+                include_str!("wgsl/level_from_derivatives.wgsl"),
+                include_str!("wgsl/variances_from_derivatives.wgsl"),
+            ],
+            Self::Fixed => [include_str!("wgsl/level_fixed.wgsl"), include_str!("wgsl/variances_fixed.wgsl")],
         }
     }
 }
@@ -61,34 +49,96 @@ impl Bumps {
     /// WGSL of `bumps_at`.
     fn source(self, curvature: Curvature) -> &'static str {
         match (self, curvature) {
-            (Self::Filtered, Curvature::Ignored) => include_str!("bumps_filtered.wgsl"),
-            (Self::Filtered, Curvature::Filtered) => include_str!("bumps_filtered_curved.wgsl"),
-            (Self::Resolved, _) => include_str!("bumps_resolved.wgsl"),
+            (Self::Filtered, Curvature::Ignored) => include_str!("wgsl/bumps_filtered.wgsl"),
+            (Self::Filtered, Curvature::Filtered) => include_str!("wgsl/bumps_filtered_curved.wgsl"),
+            (Self::Resolved, _) => include_str!("wgsl/bumps_resolved.wgsl"),
         }
     }
 }
 
-/// Identifies a shader.
+/// Whether the heights of a source are multiplied by its strength.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Strength {
+    /// They are used as they are.
+    #[default]
+    One,
+    /// They are.
+    Given,
+}
+
+/// Identifies a source of bumps in a shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub struct SourceKey {
+    /// The source.
+    pub detail: DetailSource,
+    /// The frame of its slopes.
+    pub projection: Projection,
+    /// Its texture coordinates.
+    pub uv_slot: UvSlot,
+    /// Whether it has a strength.
+    pub strength: Strength,
+}
+
+impl SourceKey {
+    /// A source in the tangent frame of the mesh, with the first set of texture coordinates.
+    pub fn new(detail: DetailSource) -> Self {
+        Self {
+            detail,
+            projection: Projection::default(),
+            uv_slot: UvSlot::default(),
+            strength: Strength::default(),
+        }
+    }
+
+    /// The same source with slopes in this frame.
+    #[must_use]
+    pub fn with_projection(self, projection: Projection) -> Self {
+        Self { projection, ..self }
+    }
+
+    /// The same source with these texture coordinates.
+    #[must_use]
+    pub fn with_uv_slot(self, uv_slot: UvSlot) -> Self {
+        Self { uv_slot, ..self }
+    }
+
+    /// The same source with a strength or without.
+    #[must_use]
+    pub fn with_strength(self, strength: Strength) -> Self {
+        Self { strength, ..self }
+    }
+}
+
+/// Identifies a shader.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct ShaderKey {
     /// The model.
     pub shading: Shading,
-    /// The source of bumps.
-    pub detail: DetailSource,
+    /// The sources of bumps, one to [`MAX_SOURCES`].
+    pub sources: Vec<SourceKey>,
     /// The source of the level of detail.
     pub level: LevelOfDetail,
     /// Which slopes are shaded.
     pub bumps: Bumps,
-    /// How the bumps are placed on the surface, and what is added to them.
-    pub surface: SurfaceKey,
+    /// Whether curvature widens filtered bumps.
+    pub curvature: Curvature,
 }
+
+/// The largest number of sources of bumps in a shader: each has a group of bindings, and every device has four groups.
+pub const MAX_SOURCES: usize = 3;
 
 impl ShaderKey {
     /// A model with a source of bumps in the tangent frame of the mesh, filtered at the hardware's level of detail.
     pub fn new(shading: Shading, detail: DetailSource) -> Self {
-        let (level, bumps) = (LevelOfDetail::Derivatives, Bumps::Filtered);
-        Self { shading, detail, level, bumps, surface: SurfaceKey::default() }
+        Self::of_sources(shading, vec![SourceKey::new(detail)])
+    }
+
+    /// A model with several sources of bumps, filtered at the hardware's level of detail.
+    pub fn of_sources(shading: Shading, sources: Vec<SourceKey>) -> Self {
+        let (level, bumps, curvature) = (LevelOfDetail::Derivatives, Bumps::Filtered, Curvature::default());
+        Self { shading, sources, level, bumps, curvature }
     }
 
     /// The same shader with this source of the level of detail.
@@ -103,109 +153,47 @@ impl ShaderKey {
         Self { bumps, ..self }
     }
 
-    /// The same shader with bumps placed like this.
+    /// The same shader with curvature or without.
     #[must_use]
-    pub fn with_surface(self, surface: SurfaceKey) -> Self {
-        Self { surface, ..self }
+    pub fn with_curvature(self, curvature: Curvature) -> Self {
+        Self { curvature, ..self }
     }
 }
 
-/// The WGSL of a model with a source of bumps: the vertex shader `project`, and the fragment shaders `radiance` (one
-/// colour target, alpha is coverage) and `parts` (the same, with the specular part in a second target), with the twins
-/// `mapped_radiance` and `mapped_parts`, which read the diffuse colour from a map.
+/// The WGSL of a model with one to [`MAX_SOURCES`] sources of bumps: the vertex shader `project`, and the fragment shaders
+/// `radiance` (one colour target, alpha is coverage) and `parts` (the same, with the specular part in a second target), with the
+/// twins `mapped_radiance` and `mapped_parts`, which read the diffuse colour from a map.
 ///
-/// Group 0 changes with the view: binding 0 is the view and the material's colours, 1 the lights, 2 the map of diffuse
-/// colours in linear light, which `radiance` and `parts` do not read. Group 1 contains the
-/// maps: 0 [`roughcast::shading::ShadingOptions`], 1 [`roughcast::texture::Packing`], 2 the sampling, 3 a sampler, 4 how the
-/// bumps are placed, 5 the noise, and from 6 on the textures in the order of [`TexelReader::inputs`].
+/// Group 0: binding 0 is the view and the material's colours, 1 the lights, 2 the map of diffuse colours in linear light, which
+/// `radiance` and `parts` do not read, 3 [`roughcast::shading::ShadingOptions`], 4
+/// [`roughcast::shading::GeometricFilter`]. Each source of bumps has a group of its own, from group 1 on: 0
+/// [`roughcast::texture::Packing`] or the noise, 1 how it is sampled and placed, 2 a sampler, and from 3 on its textures, those of a
+/// layout in the order of [`roughcast::texture::TexelReader::inputs`].
 ///
 /// # Errors
-/// [`UnknownName`] if the library lacks a module that the source of bumps needs.
-pub fn shader_source(key: ShaderKey) -> Result<String, UnknownName> {
-    let ShaderKey { shading, detail, level, bumps, surface } = key;
-    let calls = shading.calls(detail.gaussians());
-    let mut modules = vec![calls.module, "reflectance", "detail"];
-    let [filtered, variances] = level.sources();
-    let mut parts = vec![SURFACE_OPTIONS, SAMPLING, filtered];
-    match detail {
-        DetailSource::Textures(reader) => {
-            modules.push(reader.module);
-            parts.extend(sampling_of(reader, variances));
-        }
-        DetailSource::Heights(derivative) => {
-            modules.extend(["surface-gradient", "footprint", "packing"]);
-            parts.extend(heights_of(derivative, level));
-        }
-        DetailSource::Code(code) => {
-            modules.extend(code.needs);
-            parts.push(code.source);
-        }
-        DetailSource::Flat => parts.push(include_str!("flat.wgsl")),
-    }
-    let (placed, needed) = placement_of(surface.projection, detail);
-    modules.extend(needed);
-    parts.extend(placed);
-    match surface.octaves {
-        Octaves::None => parts.push(include_str!("combined_alone.wgsl")),
-        Octaves::Added => {
-            modules.extend(["noise", "surface-gradient"]);
-            parts.push(include_str!("combined_noise.wgsl"));
-        }
-    }
-    if surface.curvature == Curvature::Filtered {
+/// [`GpuError::Sources`] if there are too many sources or none; [`GpuError::Module`] if the library lacks a module that a
+/// source needs.
+pub fn shader_source(key: &ShaderKey) -> Result<String, GpuError> {
+    let combined = match key.sources.len() {
+        1 => include_str!("wgsl/combined_one.wgsl"),
+        2 => include_str!("wgsl/combined_two.wgsl"),
+        3 => include_str!("wgsl/combined_three.wgsl"),
+        got => return Err(GpuError::Sources { most: MAX_SOURCES, got }),
+    };
+    let calls = key.shading.calls(key.sources[0].detail.gaussians());
+    let mut modules = vec![calls.module, "reflectance", "detail", "vector"];
+    if key.curvature == Curvature::Filtered {
         modules.push("geometric");
     }
-    let library = wgsl::library(&modules)?;
+    let mut parts = Vec::new();
+    for (place, source) in key.sources.iter().enumerate() {
+        let code = SourceCode::of(source, key.level)?;
+        modules.extend(code.modules);
+        parts.push(instance(&code.parts.join("\n"), place));
+    }
     let scene = wgsl::renamed(SCENE, &calls.names());
-    parts.insert(0, &library);
-    parts.extend([bumps.source(surface.curvature), &scene]);
-    Ok(parts.join("\n"))
-}
-
-/// WGSL of `placed_slope` and `placed_distribution`, and the modules that it needs.
-fn placement_of(projection: Projection, detail: DetailSource) -> (Vec<&'static str>, Vec<&'static str>) {
-    const MATRIX: &str = include_str!("placement_matrix.wgsl");
-    const BY_MATRIX: &str = include_str!("projected_by_matrix.wgsl");
-    const AS_IS: &str = include_str!("projected_as_is.wgsl");
-    const TRIPLANAR: &str = include_str!("placed_triplanar.wgsl");
-    match projection {
-        Projection::Mesh => (vec![include_str!("placed_mesh.wgsl")], vec![]),
-        Projection::Derivatives => {
-            (vec![MATRIX, include_str!("placed_derivatives.wgsl")], vec!["surface-gradient"])
-        }
-        Projection::Triplanar if matches!(detail, DetailSource::Heights(_)) => {
-            (vec![AS_IS, TRIPLANAR], vec![])
-        }
-        Projection::Triplanar => (vec![MATRIX, BY_MATRIX, TRIPLANAR], vec!["surface-gradient"]),
-    }
-}
-
-/// WGSL of the functions that sample and differentiate heights.
-fn heights_of(derivative: HeightDerivative, level: LevelOfDetail) -> Vec<&'static str> {
-    let differences = match derivative {
-        HeightDerivative::Forward => include_str!("heights_forward.wgsl"),
-        HeightDerivative::Central => include_str!("heights_central.wgsl"),
-        HeightDerivative::Bicubic => include_str!("heights_bicubic.wgsl"),
-        _ => include_str!("heights_fine.wgsl"),
-    };
-    let level = match level {
-        LevelOfDetail::Derivatives => include_str!("height_level_from_derivatives.wgsl"),
-        LevelOfDetail::Fixed => include_str!("height_level_fixed.wgsl"),
-    };
-    vec![MAPS, MAP0, include_str!("heights.wgsl"), differences, level]
-}
-
-/// WGSL of the functions that sample the textures of a layout.
-fn sampling_of(reader: &TexelReader, variances: &'static str) -> Vec<&'static str> {
-    let mut parts = vec![MAPS];
-    parts.extend(reader.inputs.iter().enumerate().map(|(place, input)| match place {
-        0 => MAP0,
-        1 if input.part == Part::Roughness => MAP1_ROUGHNESS,
-        1 => MAP1,
-        _ => MAP2,
-    }));
-    if reader.mean_input.is_some() {
-        parts.extend([variances, FOOTPRINT]);
-    }
-    parts
+    let mut whole = vec![wgsl::library(&modules)?];
+    whole.extend(parts);
+    whole.extend([combined.to_owned(), key.bumps.source(key.curvature).to_owned(), scene]);
+    Ok(whole.join("\n"))
 }

@@ -1,8 +1,11 @@
-//! How bumps are placed on a surface, and what is added to them.
+//! How bumps are placed on a surface.
 
-use roughcast::noise::{Noise, OctaveFilter};
+use glam::{DAffine3, DVec3};
 use roughcast::shading::GeometricFilter;
-use roughcast_scene::{Placement, TangentSource};
+use roughcast_scene::{NoiseDetail, Placement, TRIPLANAR_SHARPNESS, TangentSource};
+
+use super::detail::GpuSource;
+use super::sampling::Sampling;
 
 /// The frame in which the slopes of a source of bumps are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -16,16 +19,25 @@ pub enum Projection {
     Derivatives,
     /// The same for texture coordinates projected along the three axes of world space: the mesh needs none of its own.
     Triplanar,
+    /// The same for texture coordinates projected along an axis of a box, outside of which there are no bumps: a decal.
+    Decal,
 }
 
-/// Whether procedural noise is added to a source of bumps.
+impl Projection {
+    /// Whether it uses the texture coordinates of the mesh.
+    pub(super) fn uses_texture_coordinates(self) -> bool {
+        matches!(self, Self::Mesh | Self::Derivatives)
+    }
+}
+
+/// Which of the two sets of texture coordinates of a [`Geometry`](super::Geometry) a source uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Octaves {
-    /// It is not.
+pub enum UvSlot {
+    /// The first.
     #[default]
-    None,
-    /// It is added.
-    Added,
+    First,
+    /// The second.
+    Second,
 }
 
 /// Whether the curvature of the surface widens the distribution of slopes.
@@ -38,18 +50,6 @@ pub enum Curvature {
     Filtered,
 }
 
-/// The parts of a shader between the source of bumps and the model.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub struct SurfaceKey {
-    /// The frame of the slopes.
-    pub projection: Projection,
-    /// Whether noise is added.
-    pub octaves: Octaves,
-    /// Whether curvature counts.
-    pub curvature: Curvature,
-}
-
 /// How a source of bumps is placed on a surface on the GPU.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -58,25 +58,34 @@ pub struct GpuPlacement {
     pub projection: Projection,
     /// The world height of one texel of height, where bumps have a size. Such bumps are placed by derivatives.
     pub world_height_per_texel: Option<f64>,
+    /// The set of texture coordinates of the mesh, counted from 0.
+    pub uv_set: usize,
     /// For [`Projection::Triplanar`], as `Triplanar::sharpness` of the CPU renderer.
     pub sharpness: f64,
+    /// For [`Projection::Decal`], as `Decal::box_from_world` of the CPU renderer.
+    pub box_from_world: DAffine3,
 }
 
 impl Default for GpuPlacement {
     fn default() -> Self {
-        Self { projection: Projection::Mesh, world_height_per_texel: None, sharpness: 4.0 }
+        Self {
+            projection: Projection::Mesh,
+            world_height_per_texel: None,
+            uv_set: 0,
+            sharpness: TRIPLANAR_SHARPNESS,
+            box_from_world: DAffine3::IDENTITY,
+        }
     }
 }
 
 impl From<Placement> for GpuPlacement {
-    /// The first set of texture coordinates is used.
     fn from(placement: Placement) -> Self {
         let projection = match (placement.tangent_source(), placement.world_height_per_texel()) {
             (TangentSource::Mesh, None) => Projection::Mesh,
             _ => Projection::Derivatives,
         };
         let world_height_per_texel = placement.world_height_per_texel();
-        Self { projection, world_height_per_texel, ..Self::default() }
+        Self { projection, world_height_per_texel, uv_set: placement.uv_set(), ..Self::default() }
     }
 }
 
@@ -92,47 +101,64 @@ impl GpuPlacement {
     pub fn with_sharpness(self, sharpness: f64) -> Self {
         Self { sharpness, ..self }
     }
+
+    /// The same placement inside a box, projected along its z axis. The matrix takes world space to the box, which is the
+    /// cube from -1/2 to 1/2.
+    #[must_use]
+    pub fn decal(self, box_from_world: DAffine3) -> Self {
+        Self { projection: Projection::Decal, box_from_world, ..self }
+    }
 }
 
-/// Procedural noise on top of a source of bumps.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct GpuNoise {
-    /// The noise, in world space.
-    pub noise: Noise,
-    /// What becomes of octaves that are finer than the pixel.
-    pub filter: OctaveFilter,
-}
-
-/// Words of WGSL's `SurfaceOptions`.
-pub(super) const SURFACE_WORDS: usize = 8;
+/// Words of WGSL's `SourceOptions`.
+pub(super) const SOURCE_WORDS: usize = 20;
+/// Words of WGSL's `GeometricFilter`.
+pub(super) const CURVATURE_WORDS: usize = 4;
 /// Words of WGSL's `NoiseOptions`.
-pub(super) const NOISE_WORDS: usize = 12;
+const NOISE_WORDS: usize = 12;
 
-/// WGSL's `SurfaceOptions`, for textures of this size.
-pub(super) fn surface_words(
-    placement: &GpuPlacement,
-    texels: (u32, u32),
-    curvature: Option<GeometricFilter>,
-) -> [u32; SURFACE_WORDS] {
+/// WGSL's `SourceOptions`.
+pub(super) fn source_words(source: &GpuSource, sampling: &Sampling) -> [u32; SOURCE_WORDS] {
+    let placement = &source.placement;
     let height = placement.world_height_per_texel.unwrap_or(0.0);
-    let curvature = curvature.unwrap_or_default();
-    let mut words = [0; SURFACE_WORDS];
-    words[0] = ((height * f64::from(texels.0)) as f32).to_bits();
-    words[1] = ((height * f64::from(texels.1)) as f32).to_bits();
-    words[2] = u32::from(placement.world_height_per_texel.is_some());
-    words[3] = (placement.sharpness as f32).to_bits();
-    words[4] = curvature.pixel_variance.to_bits();
-    words[5] = curvature.largest_trace.to_bits();
+    let [width, rows] = <[u32; 2]>::from(source.texels).map(f64::from);
+    let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| {
+        let along = placement.box_from_world.matrix3.transpose() * axis;
+        [along.x, along.y, along.z, placement.box_from_world.translation.dot(axis)]
+    });
+    let mut words = [0; SOURCE_WORDS];
+    words[0] = sampling.value.to_bits();
+    words[1] = source.roughness_channel;
+    words[2] = f32::from(sampling.max_anisotropy).to_bits();
+    words[3] = source.strength.to_bits();
+    words[4] = ((height * width) as f32).to_bits();
+    words[5] = ((height * rows) as f32).to_bits();
+    words[6] = u32::from(placement.world_height_per_texel.is_some());
+    words[7] = (placement.sharpness as f32).to_bits();
+    for (word, value) in words[8..].iter_mut().zip([x, y, z].as_flattened()) {
+        *word = (*value as f32).to_bits();
+    }
     words
 }
 
-/// WGSL's `NoiseOptions`.
-pub(super) fn noise_words(noise: Option<GpuNoise>) -> [u32; NOISE_WORDS] {
+/// WGSL's `GeometricFilter`.
+pub(super) fn curvature_words(filter: Option<GeometricFilter>) -> [u32; CURVATURE_WORDS] {
+    let filter = filter.unwrap_or_default();
+    [filter.pixel_variance.to_bits(), filter.largest_trace.to_bits(), 0, 0]
+}
+
+/// What describes the texels or the noise of a source: WGSL's `Packing` or `NoiseOptions`.
+pub(super) fn content_words(source: &GpuSource) -> Vec<u32> {
+    source
+        .noise
+        .as_ref()
+        .map_or_else(|| source.packing.to_words().to_vec(), |noise| noise_words(noise).to_vec())
+}
+
+fn noise_words(detail: &NoiseDetail) -> [u32; NOISE_WORDS] {
     let mut words = [0; NOISE_WORDS];
-    if let Some(GpuNoise { noise, filter }) = noise {
-        words[..8].copy_from_slice(&noise.to_words());
-        words[8] = filter as u32;
-    }
+    words[..8].copy_from_slice(&detail.noise.to_words());
+    words[8] = detail.filter as u32;
+    words[9] = (detail.numeric_step() as f32).to_bits();
     words
 }

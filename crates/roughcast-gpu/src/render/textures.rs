@@ -2,7 +2,7 @@
 
 use roughcast::texture::Texture;
 use roughcast::{Image, SampleType, Samples};
-use roughcast_scene::{DetailError, MipmapError};
+use roughcast_scene::{DetailError, Level, MipmapError};
 
 use crate::{Gpu, GpuError};
 
@@ -61,12 +61,47 @@ pub(super) async fn upload(gpu: &Gpu, texture: &Texture) -> Result<wgpu::Texture
     Ok(on_gpu)
 }
 
+/// Uploads levels of four channels, as half or single floats.
+pub(super) async fn upload_levels(
+    gpu: &Gpu,
+    what: &'static str,
+    sample_type: SampleType,
+    levels: &[Level],
+) -> Result<wgpu::Texture, GpuError> {
+    let format = format(sample_type, 4);
+    gpu.require_filterable(format)?;
+    let side = |texels: usize| u32::try_from(texels).unwrap_or(u32::MAX);
+    let (width, height) = (side(levels[0].width()), side(levels[0].height()));
+    let descriptor = wgpu::TextureDescriptor {
+        label: Some(what),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: side(levels.len()),
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    };
+    let texture = gpu.create_texture(what, &descriptor).await?;
+    for (place, level) in levels.iter().enumerate() {
+        let size = (level.width(), level.height());
+        let texels = level.texels().as_flattened();
+        if sample_type == SampleType::F16 {
+            let halves: Vec<half::f16> = texels.iter().map(|value| half::f16::from_f32(*value)).collect();
+            write_texels(gpu, &texture, side(place), size, bytemuck::cast_slice(&halves));
+        } else {
+            write_texels(gpu, &texture, side(place), size, bytemuck::cast_slice(texels));
+        }
+    }
+    Ok(texture)
+}
+
 fn write_level(gpu: &Gpu, texture: &wgpu::Texture, mip_level: u32, image: &Image) {
     write_texels(gpu, texture, mip_level, (image.width(), image.height()), &texels(image));
 }
 
 /// Writes the texels of a level of `(width, height)` texels.
-pub(super) fn write_texels(
+fn write_texels(
     gpu: &Gpu,
     texture: &wgpu::Texture,
     mip_level: u32,

@@ -158,6 +158,13 @@ pub fn distribution_twins() -> Vec<Twin> {
             rust: |a, _, _| distribution_words(&distribution(a).transformed(matrix_of(&a[WORDS..]))),
         },
         Twin {
+            name: "scaled_distribution",
+            gives: Gives::Numbers,
+            call: "put_distribution(scaled_distribution(distribution(0u), f(28u)));",
+            arguments: |inputs| [any(inputs), vec![4.0 * inputs.unit() - 2.0]].concat(),
+            rust: |a, _, _| distribution_words(&distribution(a).scaled(a[WORDS])),
+        },
+        Twin {
             name: "moved_gaussian",
             gives: Gives::Numbers,
             call: "put_weighted(moved_gaussian(weighted(0u), f2(6u), f3(8u)));",

@@ -20,6 +20,8 @@ mod heights;
 mod inputs;
 #[cfg(feature = "render")]
 mod noise;
+mod noise_bumps;
+mod object_normal_levels;
 #[cfg(feature = "render")]
 mod object_normals;
 #[cfg(feature = "render")]
@@ -43,8 +45,8 @@ pub use height_texture::{HeightDerivative, height_texture};
 #[cfg(feature = "render")]
 pub use heights::HeightDetail;
 pub use inputs::{DetailError, TextureInputs, model_inputs, texture_inputs};
-#[cfg(feature = "render")]
-pub use noise::{NoiseDetail, Perturbation, VolumeDerivative};
+pub use noise_bumps::{NoiseDetail, Perturbation, VolumeDerivative};
+pub use object_normal_levels::object_normal_levels;
 #[cfg(feature = "render")]
 pub use object_normals::{ObjectNormalDetail, ObjectNormalMap};
 #[cfg(feature = "render")]

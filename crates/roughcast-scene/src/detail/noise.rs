@@ -1,73 +1,16 @@
 //! Procedural noise in world space as a source of bumps: neither tangents nor texture coordinates.
 
 use glam::DVec3;
-use roughcast::noise::{Noise, OctaveFilter};
 use roughcast::shading::ShadingOptions;
 use roughcast::surface_gradient::{
     displaced_normal, perlin_normal, perturbed_normal, surface_gradient, surface_gradient_of_volume,
 };
 use roughcast::{Distribution, Normal, Slope};
 
-use super::{Detail, DetailPoint};
+use super::{Detail, DetailPoint, NoiseDetail, Perturbation, VolumeDerivative};
 use crate::Side;
 
-roughcast::named_enum! {
-    /// How the gradient of a height function in space is found. Source: Mikkelsen 2010, sections 4 to 6.
-    #[non_exhaustive]
-    pub enum VolumeDerivative: "derivative of the noise" {
-        /// The formula of the derivative, as in Listing 3. The only one that filters octaves finer than a pixel.
-        Analytic = "analytic",
-        /// Central differences in space, as the paper does for turbulence.
-        Numeric = "numeric",
-        /// Differences of heights to one neighbour in the pixel's quad, as `dpdxFine`: Listing 1.
-        Fine = "fine",
-        /// Forward differences of heights on the screen, a pixel apart.
-        Forward = "forward",
-        /// Central differences of heights on the screen, at half a pixel on either side.
-        Central = "central",
-    }
-}
-
-roughcast::named_enum! {
-    /// How a height perturbs the normal.
-    #[non_exhaustive]
-    pub enum Perturbation: "perturbation" {
-        /// By the surface gradient (Eq. 4).
-        SurfaceGradient = "surface-gradient",
-        /// Perlin's older way, `n - g`: for comparison only.
-        Perlin = "perlin",
-        /// The normal of the displaced facet, `τ_s × τ_t`: for comparison only. It shows the edges of triangles.
-        Facets = "facets",
-    }
-}
-
-/// Noise in world space, whose heights are in the scene's unit of length.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NoiseDetail {
-    /// The noise.
-    pub noise: Noise,
-    /// What becomes of octaves that are finer than the pixel, with [`VolumeDerivative::Analytic`].
-    pub filter: OctaveFilter,
-    /// How the gradient is found.
-    pub derivative: VolumeDerivative,
-    /// How it perturbs the normal.
-    pub perturbation: Perturbation,
-}
-
-/// The step of numeric derivatives, as a fraction of a cell of the finest octave.
-const NUMERIC_STEP: f64 = 0.01;
-
 impl NoiseDetail {
-    /// Noise with its analytic surface gradient, whose fine octaves become roughness.
-    pub fn new(noise: Noise) -> Self {
-        Self {
-            noise,
-            filter: OctaveFilter::Fade,
-            derivative: VolumeDerivative::Analytic,
-            perturbation: Perturbation::SurfaceGradient,
-        }
-    }
-
     /// The changes of the height along two directions on the surface.
     fn differences(&self, at: &DetailPoint<'_>, [dx, dy]: [DVec3; 2]) -> [f64; 2] {
         let p = at.hit().position;
@@ -93,10 +36,7 @@ impl NoiseDetail {
     /// The gradient in space.
     fn gradient(&self, p: DVec3) -> DVec3 {
         match self.derivative {
-            VolumeDerivative::Numeric => {
-                let finest = self.noise.frequency * f64::from(self.noise.octaves.saturating_sub(1)).exp2();
-                self.noise.numeric_gradient(p, NUMERIC_STEP / finest)
-            }
+            VolumeDerivative::Numeric => self.noise.numeric_gradient(p, self.numeric_step()),
             _ => self.noise.sample(p).gradient,
         }
     }
@@ -156,8 +96,7 @@ impl Detail for NoiseDetail {
     fn distribution(&self, at: &DetailPoint<'_>, _options: &ShadingOptions) -> Distribution {
         let footprint = at.position_footprint();
         let hit = at.hit();
-        if (self.perturbation, self.derivative) != (Perturbation::SurfaceGradient, VolumeDerivative::Analytic)
-        {
+        if !self.filters_octaves() {
             return Distribution::of_slope(Self::slope_of_normal(at, self.normal(at, footprint)));
         }
         let axes = hit.frame.tangent_covectors();

@@ -5,8 +5,8 @@ use roughcast::shading::ShadingOptions;
 use roughcast::surface_gradient::surface_gradient_of_normal;
 use roughcast::{Covariance, Distribution, ImageView, Normal, NormalRange, Slope};
 
-use super::{Detail, DetailPoint};
-use crate::{Footprint, Level, Mipmap, MipmapError, Sampler, Side};
+use super::{Detail, DetailPoint, object_normal_levels};
+use crate::{Footprint, Mipmap, MipmapError, Sampler, Side};
 
 /// The unit normals of a map with their levels, and their second moments. They are linear, so that filters may average
 /// them; the slopes on a surface follow only where its own normal is known.
@@ -23,35 +23,8 @@ impl ObjectNormalMap {
     /// # Errors
     /// [`MipmapError::Channels`] if the image has fewer than three channels.
     pub fn of<'i>(image: impl Into<ImageView<'i>>, range: NormalRange) -> Result<Self, MipmapError> {
-        let image = image.into();
-        let (width, height, channels) = (image.width(), image.height(), image.channels());
-        if channels < 3 {
-            return Err(MipmapError::Channels { name: "object-space normals".to_owned(), channels });
-        }
-        let normal = |i: usize| {
-            let stored = DVec3::from([0, 1, 2].map(|c| f64::from(image.get(i % width, i / width, c))));
-            let unit = match range {
-                NormalRange::Unorm => stored * 2.0 - 1.0,
-                _ => stored,
-            };
-            if unit.is_finite() { unit.normalize_or_zero() } else { DVec3::ZERO }
-        };
-        let normals: Vec<DVec3> = (0..width * height).map(normal).collect();
-        let texture = |texel: &dyn Fn(&DVec3) -> DVec3| {
-            let texels = normals.iter().map(|n| texel(n).as_vec3().extend(1.0).into()).collect();
-            let mut levels = vec![Level::new(width, height, texels)?];
-            while let Some(next) = levels[levels.len() - 1].coarser() {
-                levels.push(next);
-            }
-            Mipmap::new(levels)
-        };
-        Ok(Self {
-            textures: [
-                texture(&|n| *n)?,
-                texture(&|n| *n * *n)?,
-                texture(&|n| DVec3::new(n.x * n.y, n.x * n.z, n.y * n.z))?,
-            ],
-        })
+        let [mean, squares, products] = object_normal_levels(image, range)?;
+        Ok(Self { textures: [Mipmap::new(mean)?, Mipmap::new(squares)?, Mipmap::new(products)?] })
     }
 
     /// The mean normal and the covariance of the normals under a footprint.

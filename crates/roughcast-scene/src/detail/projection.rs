@@ -8,7 +8,7 @@ use roughcast::shading::ShadingOptions;
 use roughcast::{Distribution, Normal, Slope, normal_from_slope};
 
 use super::{Detail, DetailPoint};
-use crate::{Hit, Sampler, UvPoint, UvSets};
+use crate::{Hit, Sampler, TRIPLANAR_SHARPNESS, UvPoint, UvSets};
 
 /// A source of bumps projected along the three axes of world space, and blended by the direction of the normal.
 ///
@@ -23,16 +23,13 @@ pub struct Triplanar<'a> {
     pub sharpness: f64,
 }
 
-/// The default of [`Triplanar::sharpness`].
-pub(super) const SHARPNESS: f64 = 4.0;
-
 /// Weight below which a projection is left out.
 const LEAST_WEIGHT: f64 = 1e-4;
 
 impl<'a> Triplanar<'a> {
     /// The source, projected with the default sharpness.
     pub fn new(detail: &'a dyn Detail) -> Self {
-        Self { detail, sharpness: SHARPNESS }
+        Self { detail, sharpness: TRIPLANAR_SHARPNESS }
     }
 
     /// The three projections of a point, with their weights.
@@ -95,7 +92,7 @@ impl Detail for Triplanar<'_> {
 
 /// A source of bumps inside a box, projected along its z axis: a decal. Outside of the box the surface is flat.
 ///
-/// The texture covers the unit square of the box once, x to the right and y up, or `repeats` times. Combine it with the
+/// The texture covers the square of the box once, x to the right and y up, whatever the scene's repeats. Combine it with the
 /// bumps below it by [`super::Combined`]. Its heights fade out near the front and the back of the box and where the surface
 /// turns away from the direction of projection.
 #[derive(Clone, Copy)]
@@ -111,21 +108,22 @@ const FADE: f64 = 0.1;
 
 impl Decal<'_> {
     /// The strength of the decal at a point, and its texture coordinates there. `None` outside.
-    fn projected(&self, hit: &Hit<'_>) -> Option<(f32, UvPoint)> {
+    fn projected(&self, at: &DetailPoint<'_>) -> Option<(f32, UvPoint)> {
+        let hit = at.hit();
         let local = self.box_from_world.transform_point3(hit.position);
         if local.abs().max_element() > 0.5 {
             return None;
         }
         let direction = |v: DVec3| {
             let v = self.box_from_world.transform_vector3(v);
-            DVec2::new(v.x, -v.y)
+            DVec2::new(v.x, -v.y) / at.repeats()
         };
         // The plane z = 0 of the box in world space: its normal is a row of the inverse transpose.
         let axis = self.box_from_world.matrix3.transpose().z_axis.normalize_or_zero();
         let facing = axis.dot(hit.frame.normal()).max(0.0);
         let depth = ((0.5 - local.z.abs()) / FADE).min(1.0);
         let point = UvPoint {
-            uv: DVec2::new(local.x + 0.5, 0.5 - local.y),
+            uv: DVec2::new(local.x + 0.5, 0.5 - local.y) / at.repeats(),
             ds: direction(hit.dpds),
             dt: direction(hit.dpdt),
         };
@@ -135,13 +133,13 @@ impl Decal<'_> {
 
 impl Detail for Decal<'_> {
     fn slope(&self, at: &DetailPoint<'_>) -> Slope {
-        let Some((strength, point)) = self.projected(at.hit()) else { return Slope::default() };
+        let Some((strength, point)) = self.projected(at) else { return Slope::default() };
         let hit = Hit { uv_sets: UvSets::of_points(std::slice::from_ref(&point)), ..*at.hit() };
         self.detail.slope(&at.with_hit(&hit)) * strength
     }
 
     fn distribution(&self, at: &DetailPoint<'_>, options: &ShadingOptions) -> Distribution {
-        let Some((strength, point)) = self.projected(at.hit()) else {
+        let Some((strength, point)) = self.projected(at) else {
             return Distribution::of_slope(Slope::default());
         };
         let hit = Hit { uv_sets: UvSets::of_points(std::slice::from_ref(&point)), ..*at.hit() };

@@ -11,3 +11,10 @@ const LEAST_HEIGHT: f32 = 1e-15;
 fn both_above(view: vec3f, light: vec3f) -> bool {
     return min(view.z, light.z) > LEAST_HEIGHT;
 }
+
+// The unit vector of `v`, or `other` if `v` is zero.
+fn unit_vector_or(v: vec3f, other: vec3f) -> vec3f {
+    let squared = dot(v, v);
+    // Smaller squares may be flushed to zero, whose inverse root is infinite.
+    return select(other, v * inverseSqrt(squared), squared > 1e-37);
+}

@@ -295,7 +295,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "surface-gradient",
         source: include_str!("../surface_gradient.wgsl"),
-        needs: &[],
+        needs: &["vector"],
         summary: "bump mapping without a parametrization of the surface",
         citation: "Mikkelsen, Bump Mapping Unparametrized Surfaces on the GPU, 2010",
         role: Role::Companion,

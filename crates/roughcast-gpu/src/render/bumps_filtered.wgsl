@@ -1,4 +1,0 @@
-// Shading uses the distribution of slopes under the pixel.
-fn bumps_at(at: DetailPoint) -> Distribution {
-    return combined_distribution(at);
-}

@@ -1,4 +1,0 @@
-// Shading uses the exact slope of the detail, as the ground truth samples it.
-fn bumps_at(at: DetailPoint) -> Distribution {
-    return distribution_of_slope(combined_slope(at));
-}

@@ -1,4 +1,0 @@
-// A fixed level of detail.
-fn height_level(uv_dx: vec2f, uv_dy: vec2f) -> f32 {
-    return clamp(sampling.detail, 0.0, f32(textureNumLevels(map0) - 1u));
-}

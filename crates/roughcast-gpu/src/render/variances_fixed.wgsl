@@ -1,4 +1,0 @@
-// The variances of interpolation at a fixed level.
-fn sampler_variances(axes: FootprintAxes) -> FilterVariances {
-    return level_variances(sampling.detail);
-}

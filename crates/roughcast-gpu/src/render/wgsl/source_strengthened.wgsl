@@ -1,0 +1,8 @@
+// A source of bumps whose heights are multiplied by a strength.
+fn source_slope(at: ScenePoint) -> vec2f {
+    return source_options.strength * placed_slope(source_point(at));
+}
+
+fn source_distribution(at: ScenePoint) -> Distribution {
+    return scaled_distribution(placed_distribution(source_point(at)), source_options.strength);
+}
