@@ -119,7 +119,8 @@ pub fn positive(text: &str) -> Result<f32, String> {
     }
 }
 
-fn finite(text: &str) -> Result<f32, String> {
+/// A number.
+pub fn finite(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
         Ok(number) if number.is_finite() => Ok(number),
         _ => Err("it must be a number".to_owned()),

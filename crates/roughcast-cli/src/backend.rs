@@ -12,9 +12,9 @@ use roughcast::shading::{Shading, ShadingOptions};
 use roughcast_scene::render::{Method, Truth};
 use roughcast_scene::{Picture, Scene};
 
-pub use bumps::{MapBumps, Projected, SceneBumps};
+pub use bumps::{MapBumps, PlacedMap, Projected, SceneBumps};
 #[cfg(feature = "gpu")]
-pub use gpu::{GpuBackend, GpuBumps, GpuMap};
+pub use gpu::{GpuBackend, GpuBumps, GpuMap, PlacedGpuMap};
 
 /// One way to render a scene. All pictures of one renderer have the same size.
 pub enum Backend {

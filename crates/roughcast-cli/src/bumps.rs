@@ -1,7 +1,6 @@
 //! Arguments for the bumps on a surface: a map's slopes, its heights, noise, and how they are placed.
 
 use clap::Args;
-use roughcast::Named;
 use roughcast::noise::{Noise, NoiseKind, OctaveFilter};
 use roughcast::shading::GeometricFilter;
 use roughcast_scene::{
@@ -9,7 +8,8 @@ use roughcast_scene::{
 };
 
 use crate::UsageError;
-use crate::args::{one_of, positive};
+use crate::added::AddedMap;
+use crate::args::{finite, one_of, positive};
 
 /// The heading under which the help lists these options.
 const BUMPS: &str = "Bumps";
@@ -94,28 +94,15 @@ impl NoiseChoice {
     }
 }
 
-/// The frame in which bumps are placed on a surface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FrameChoice {
-    /// The tangents of the mesh.
-    Mesh,
-    /// Derivatives on the screen.
-    Screen,
-    /// Three projections.
-    Triplanar,
-}
-
-impl Named for FrameChoice {
-    fn all() -> &'static [Self] {
-        &[Self::Mesh, Self::Screen, Self::Triplanar]
-    }
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Mesh => "mesh",
-            Self::Screen => "screen",
-            Self::Triplanar => "triplanar",
-        }
+roughcast::named_enum! {
+    /// The frame in which bumps are placed on a surface.
+    pub enum FrameChoice: "frame" {
+        /// The tangents of the mesh.
+        Mesh = "mesh",
+        /// Derivatives on the screen.
+        Screen = "screen",
+        /// Three projections.
+        Triplanar = "triplanar",
     }
 }
 
@@ -156,6 +143,17 @@ pub struct BumpArgs {
     #[arg(long, default_value = "surface-gradient", value_parser = one_of::<Perturbation>())]
     pub perturbation: Perturbation,
 
+    /// Factor of the map's heights: slopes grow with it, and the roughness that becomes of them with its square. Below zero, bumps
+    /// become dents [default: 1]
+    #[arg(long, value_name = "X", value_parser = finite, allow_negative_numbers = true)]
+    pub strength: Option<f32>,
+
+    /// Bumps of another map on top, whose heights are added: MAP[,strength=X][,uv-set=N][,frame=mesh|screen|triplanar]
+    /// [,world-height=X][,kind=normal|height][,green=up|down]; or with decal=X:Y:Z:SIZE[:AXIS] inside a cube about a point of the scene, from the side
+    /// AXIS (x, y, z, -x, -y or -z). May be given several times
+    #[arg(long = "add", value_name = "MAP[,SETTING...]", value_parser = AddedMap::parse)]
+    pub added: Vec<AddedMap>,
+
     /// Geometric specular antialiasing: the curvature of the surface under a pixel also becomes roughness
     #[arg(long)]
     pub geometric_aa: bool,
@@ -177,7 +175,7 @@ impl BumpArgs {
             }
             ([], true) if self.bumps.is_empty() => Ok(Some(Bump::Normal)),
             ([], true) => refuse("the map is not used: leave it out, or add --bump normal or --bump height"),
-            ([], false) if self.bumps.is_empty() => {
+            ([], false) if self.bumps.is_empty() && self.added.is_empty() => {
                 refuse("there is nothing to render: give a map, or --bump noise:fbm:8")
             }
             ([], false) => Ok(None),
@@ -190,8 +188,11 @@ impl BumpArgs {
         let has_noise = self.bumps.iter().any(|bump| matches!(bump, Bump::Noise(_)));
         let is_analytic = self.noise_derivative == VolumeDerivative::Analytic
             && self.perturbation == Perturbation::SurfaceGradient;
-        if !has_map && (self.world_height.is_some() || self.uv_set != 0 || self.frame != FrameChoice::Mesh) {
-            return refuse("--frame, --world-height and --uv-set place a map: give one, or leave them out");
+        let places = self.world_height.is_some() || self.uv_set != 0 || self.frame != FrameChoice::Mesh;
+        if !has_map && (places || self.strength.is_some()) {
+            return refuse(
+                "--frame, --world-height, --uv-set and --strength are those of a map: give one, or leave them out",
+            );
         }
         let has_defaults = is_analytic && self.octaves == OctaveFilter::Fade;
         if !has_noise && !has_defaults {
@@ -204,7 +205,6 @@ impl BumpArgs {
                 "--octaves filters noise with its formula and the surface gradient: leave out --noise-derivative and --perturbation",
             );
         }
-        let places = self.world_height.is_some() || self.uv_set != 0 || self.frame != FrameChoice::Mesh;
         if self.bumps.contains(&Bump::ObjectNormal) && places {
             return refuse(
                 "--frame, --world-height and --uv-set do not go with --bump object-normal: its normals are those of the mesh's own surface",
@@ -214,6 +214,12 @@ impl BumpArgs {
             return refuse("--frame triplanar uses no texture coordinates: leave out --uv-set");
         }
         self.of_map(has_map).map(drop)
+    }
+
+    /// The sets of texture coordinates that maps use, given whether there is a first one.
+    pub fn uv_sets(&self, has_map: bool) -> Vec<usize> {
+        let first = (has_map && self.frame != FrameChoice::Triplanar).then_some(self.uv_set);
+        first.into_iter().chain(self.added.iter().filter_map(AddedMap::uv_set)).collect()
     }
 
     /// The noise in a scene of this radius.
@@ -232,20 +238,6 @@ impl BumpArgs {
             perturbation: self.perturbation,
             ..NoiseDetail::new(choice.noise(radius))
         }))
-    }
-
-    /// The same for the GPU, which has the formula of the gradient alone.
-    #[cfg(feature = "gpu")]
-    pub fn gpu_noise(&self, radius: f64) -> Result<Option<(Noise, OctaveFilter)>, UsageError> {
-        let Some(noise) = self.noise(radius)? else { return Ok(None) };
-        if (noise.derivative, noise.perturbation)
-            != (VolumeDerivative::Analytic, Perturbation::SurfaceGradient)
-        {
-            let line = "--gpu has noise with its formula and the surface gradient: leave --gpu out for the other derivatives \
-                        and perturbations";
-            return Err(UsageError(line.to_owned()));
-        }
-        Ok(Some((noise.noise, noise.filter)))
     }
 
     /// How the map is placed, for a map that a texel of this size covers.

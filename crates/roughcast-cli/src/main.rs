@@ -3,6 +3,7 @@
 //! Results go to stdout, everything else to stderr. Exit codes: 0 done, 1 an input or a file failed, 2 the command
 //! line is invalid.
 
+mod added;
 mod albedo;
 mod args;
 mod backend;

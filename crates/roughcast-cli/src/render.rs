@@ -239,6 +239,10 @@ impl Args {
             let output = || self.output.display().to_string();
             AtomicFile::create(&self.output).map(drop).with_context(output)?;
         }
+        if let Some(added) = self.bumps.added.iter().find(|added| is_same_file(&self.output, &added.path)) {
+            let line = "it is a map of --add, which would be lost: give the output another name";
+            return Err(usage(&added.path, line));
+        }
         if self.gpu && cfg!(not(feature = "gpu")) {
             let line = "this build has no code for graphics cards: build it with `--features gpu`, or leave --gpu out";
             return Err(UsageError(line.to_owned()).into());
@@ -265,23 +269,23 @@ impl Args {
         };
         let material = self.shading_options.material(colour);
         let projected = self.bumps.frame == FrameChoice::Triplanar;
-        let coordinates = match subject {
-            _ if map.is_some() => TextureCoordinates::Needed,
-            Subject::Nothing => TextureCoordinates::Unneeded,
-            _ if projected => TextureCoordinates::Unneeded,
+        let sets = self.bumps.uv_sets(self.map.is_some());
+        let coordinates = match map {
+            None if sets.is_empty() => TextureCoordinates::Unneeded,
             _ => TextureCoordinates::Needed,
         };
+        let highest = sets.into_iter().max().unwrap_or(0);
         let texels = subject.texels();
         let mut scene = self.camera.scene(&self.scene, texels, self.size, material, coordinates)?;
         if let (Shape::Mesh(mesh), Some(path)) = (&*scene.shape, self.scene.scene.mesh_path()) {
             let sets = mesh.uv_set_count();
-            if coordinates == TextureCoordinates::Needed && self.bumps.uv_set >= sets {
+            if coordinates == TextureCoordinates::Needed && highest >= sets {
                 let line = format!(
                     "the mesh has {sets} sets of texture coordinates, counted from 0: use a lower --uv-set"
                 );
                 return Err(usage(path, &line));
             }
-        } else if self.bumps.uv_set > 0 {
+        } else if highest > 0 {
             let line = "only meshes have several sets of texture coordinates: leave out --uv-set";
             return Err(UsageError(line.to_owned()).into());
         }

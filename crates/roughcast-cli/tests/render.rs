@@ -278,7 +278,8 @@ fn bumps_need_what_they_are_made_of() {
     let map = map();
     let map = text(&map);
     let teapot = data("models/meshes/teapot_keijiro.obj");
-    let refused: [(&[&str], &str); 9] = [
+    let second = format!("{map},uv-set=3,green=down");
+    let refused: [(&[&str], &str); 12] = [
         (&[], "give a map"),
         (&["--bump", "normal"], "need a map"),
         (&[map, "--bump", "noise:fbm:4"], "the map is not used"),
@@ -286,8 +287,11 @@ fn bumps_need_what_they_are_made_of() {
         (&[map, "--bump", "normal", "--bump", "object-normal"], "the map once"),
         (&[map, "--octaves", "drop"], "--bump noise"),
         (&["--bump", "noise:fbm:4", "--octaves", "drop", "--perturbation", "perlin"], "--octaves"),
-        (&["--bump", "noise:fbm:4", "--world-height", "1"], "place a map"),
+        (&["--bump", "noise:fbm:4", "--world-height", "1"], "those of a map"),
         (&[map, "--scene", text(&teapot), "--uv-set", "7"], "--uv-set"),
+        (&["--bump", "noise:fbm:4", "--strength", "2"], "--strength"),
+        (&[map, "--scene", text(&teapot), "--add", &second], "--uv-set"),
+        (&[map, "--add", &format!("{map},decal=1:2:3")], "X:Y:Z:SIZE"),
     ];
     for (arguments, part) in refused {
         run([&["render", "-o", picture, "--green", "down"][..], arguments].concat()).expect_usage_error(part);
@@ -302,4 +306,66 @@ fn bumps_need_what_they_are_made_of() {
         run([&["render", "-o", picture][..], arguments, &size].concat()).expect_success();
         assert_eq!(names(folder.path()), ["picture.png"]);
     }
+}
+
+/// Mean difference of radiance of two pictures, relative to the mean of the first.
+fn apart(one: &[f32], other: &[f32]) -> f32 {
+    assert_eq!(one.len(), other.len());
+    let mean = one.iter().sum::<f32>() / one.len() as f32;
+    one.iter().zip(other).map(|(a, b)| (a - b).abs()).sum::<f32>() / one.len() as f32 / mean
+}
+
+/// A strength of zero: rounding alone.
+const SAME: f32 = 1e-5;
+/// The renderers at a fixed level: triangles for round shapes, texels in steps of 1/256.
+const BOTH: f32 = 2e-3;
+/// Another picture.
+const OTHER: f32 = 0.04;
+
+#[test]
+fn maps_add_to_each_other_on_both_renderers() {
+    let folder = scratch();
+    let map = map();
+    let map = text(&map);
+    let output = folder.path().join("picture.exr");
+    let common = ["--green", "down", "--scene", "torus", "--level", "1", "--filter", "trilinear"];
+    let from = |further: &[&str]| {
+        render(&output, &[&common, further].concat()).expect_success();
+        radiance(&output)
+    };
+    let added = |settings: &str| format!("{map},green=down{settings}");
+    let alone = from(&[]);
+    assert!(apart(&alone, &from(&["--add", &added(",strength=0")])) < SAME);
+    for settings in [",strength=-0.8", ",frame=triplanar,strength=0.5", ",decal=0:0.3:0.9:1.1,strength=2"] {
+        let added = added(settings);
+        let here = from(&["--add", &added, "--strength", "0.5"]);
+        assert!(apart(&alone, &here) > OTHER, "{settings}");
+        let there = from(&["--add", &added, "--strength", "0.5", "--gpu"]);
+        assert!(apart(&here, &there) < BOTH, "{settings}: {}", apart(&here, &there));
+    }
+    // Three maps, and noise derived on the screen, are more than the GPU binds at once; the CPU draws them.
+    let (one, two) = (added(""), added(",strength=0.3"));
+    let many = [
+        "--add",
+        &one,
+        "--add",
+        &two,
+        "--bump",
+        "normal",
+        "--bump",
+        "noise:fbm:3",
+        "--noise-derivative",
+        "fine",
+    ];
+    from(&many);
+    let picture = folder.path().join("refused.exr");
+    render(&picture, &[&common, &many[..], &["--gpu"]].concat()).expect_usage_error("up to 3 sources");
+    // The ground truth needs the maps themselves.
+    let baked = folder.path().join("baked.ktx2");
+    run(["bake", map, "-o", text(&baked), "--green", "down"]).expect_success();
+    from(&["--add", text(&baked)]);
+    let truth = ["--green", "down", "--filter", "truth:4", "--add"];
+    render(&output, &[&truth[..], &[&added("")]].concat()).expect_success();
+    render(&picture, &[&truth[..], &[text(&baked)]].concat()).expect_usage_error("contains averages");
+    assert!(!picture.exists());
 }

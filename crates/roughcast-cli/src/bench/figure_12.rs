@@ -8,8 +8,7 @@ use roughcast::shading::{Material, Shading};
 use roughcast::{BakeOptions, Image, SampleType, Samples, SourceOptions, Wrap, normal_from_slope};
 use roughcast_gpu::bake::{BakePath, GpuBake, GpuBaker, bake_bandwidth};
 use roughcast_gpu::render::{
-    DEPTH_FORMAT, DrawOptions, Drawing, Geometry, GpuDetail, RenderTarget, Renderer, ShaderKey, Views,
-    shader_source,
+    DEPTH_FORMAT, DrawOptions, Drawing, Geometry, GpuDetail, RenderTarget, Renderer, Views, shader_source,
 };
 use roughcast_gpu::wgpu;
 use roughcast_gpu::{Gpu, Span, Timestamps};

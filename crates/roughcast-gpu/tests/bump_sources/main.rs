@@ -104,8 +104,9 @@ fn noise_is_the_same_on_both() {
     }
 }
 
-/// The same for slopes of differences between pixels, of single-precision heights. Largest measured: 0.0M.
-const DIFFERENCES: f64 = 1e-2;
+/// The same for displaced facets, which are those of the triangles on the GPU and of the round shape on the CPU. Largest measured:
+/// 5.8e-3, on the sphere.
+const FACETS: f64 = 1e-2;
 
 #[test]
 fn noise_is_differentiated_and_perturbs_normals_alike() {
@@ -120,12 +121,13 @@ fn noise_is_differentiated_and_perturbs_normals_alike() {
                 let picture = by_gpu(&gpu, &scene, &there, &draw()).expect("a picture");
                 let same = compared(&by_cpu(&scene, Shading::Lean, &here), &picture);
                 let name = format!("{name}, {derivative}, {perturbation}");
-                eprintln!("MEAN {} {name}", same.mean);
-                assert!(same.mean < DIFFERENCES && same.covered > 1000, "{name}: {same:?}");
+                let tolerance = if perturbation == Perturbation::Facets { FACETS } else { SAME_BUMPS };
+                assert!(same.mean < tolerance && same.covered > 1000, "{name}: {same:?}");
                 picture
             });
             let [gradient, perlin, _] = &pictures.collect::<Vec<_>>()[..] else { panic!("three ways") };
-            assert!(compared(gradient, perlin).mean > OTHERS * DIFFERENCES, "{name}, {derivative} {}", compared(gradient, perlin).mean);
+            let other = compared(gradient, perlin).mean;
+            assert!(other > OTHERS * SAME_BUMPS, "{name}, {derivative}: {other}");
         }
     }
 }
