@@ -106,7 +106,7 @@ fn far_results_allowed(name: &str) -> f64 {
         "surface_gradient_of_neighbours" | "displaced_normal" | "blinn_normal" => 3e-4,
         "transformed_gaussian" | "distribution_sum" | "any_tangents" => 8e-5,
         "texture_gradients" | "slope_matrix" => 5e-5,
-        "transformed_distribution" | "scaled_distribution" => 2e-5,
+        "transformed_distribution" => 2e-5,
         // Means that nearly cancel.
         "weighted_covariance" => 2e-4,
         "whole_gaussian" => 1e-4,
