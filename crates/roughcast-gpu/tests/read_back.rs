@@ -8,6 +8,7 @@ use std::sync::Arc;
 use std::task::{Context, Poll, Wake};
 use std::thread::Thread;
 
+use common::compute::submit;
 use common::gpu;
 use roughcast_gpu::{Gpu, GpuError, read_back};
 
@@ -41,39 +42,13 @@ fn slow_work(gpu: &Gpu) -> wgpu::Buffer {
         usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
         mapped_at_creation: false,
     });
-    let module = gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: None,
-        source: wgpu::ShaderSource::Wgsl(
-            "@group(0) @binding(0) var<storage, read_write> values: array<u32>;
-             @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {
-                 var value = id.x;
-                 for (var i = 0u; i < 10000u; i++) { value = value * 1664525u + 1013904223u; }
-                 values[id.x] = value | 1u;
-             }"
-            .into(),
-        ),
-    });
-    let pipeline = gpu.device().create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: None,
-        layout: None,
-        module: &module,
-        entry_point: Some("main"),
-        compilation_options: Default::default(),
-        cache: None,
-    });
-    let group = gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
-        label: None,
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
-    });
-    let mut encoder = gpu.device().create_command_encoder(&Default::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.dispatch_workgroups(65_536 / 64, 1, 1);
-    }
-    gpu.queue().submit([encoder.finish()]);
+    let source = "@group(0) @binding(0) var<storage, read_write> values: array<u32>;
+        @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {
+            var value = id.x;
+            for (var i = 0u; i < 10000u; i++) { value = value * 1664525u + 1013904223u; }
+            values[id.x] = value | 1u;
+        }";
+    submit(gpu, source, &[&buffer], 65_536 / 64);
     buffer
 }
 

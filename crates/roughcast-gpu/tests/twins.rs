@@ -2,6 +2,7 @@
 
 mod common;
 
+use common::compute::submit;
 use common::gpu;
 use common::maps::Random;
 use glam::DVec3;
@@ -51,35 +52,7 @@ fn run_with(gpu: &Gpu, functions: &str, body: &str, inputs: &[[f32; 4]]) -> Vec<
     };
     let bytes: &[u8] = bytemuck::cast_slice(inputs);
     let (input, output, zero) = (buffer(bytes), buffer(&vec![0; bytes.len()]), buffer(&[0; 4]));
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: None,
-        source: wgpu::ShaderSource::Wgsl(source.into()),
-    });
-    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: None,
-        layout: None,
-        module: &module,
-        entry_point: None,
-        compilation_options: Default::default(),
-        cache: None,
-    });
-    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: None,
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: input.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 1, resource: output.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 2, resource: zero.as_entire_binding() },
-        ],
-    });
-    let mut encoder = device.create_command_encoder(&Default::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.dispatch_workgroups((inputs.len() / 64) as u32, 1, 1);
-    }
-    gpu.queue().submit([encoder.finish()]);
+    submit(gpu, &source, &[&input, &output, &zero], (inputs.len() / 64) as u32);
     let bytes = block_on(read_back::read_buffer(gpu, &output)).expect("read back");
     bytemuck::pod_collect_to_vec(&bytes)
 }

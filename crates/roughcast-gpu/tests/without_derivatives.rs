@@ -5,6 +5,7 @@ mod common;
 
 use std::sync::Arc;
 
+use common::compute::submit;
 use common::gpu;
 use glam::{DVec3, Vec3};
 use roughcast::noise::Noise;
@@ -31,18 +32,6 @@ fn run(gpu: &Gpu, points: &[Point], width: usize, noise: &Noise) -> Vec<[DVec3; 
     let library = wgsl::library(&["surface-gradient", "noise"]).expect("they exist");
     let code = include_str!("without_derivatives.wgsl");
     let source = format!("{library}\nconst WIDTH: i32 = {width};\n{code}");
-    let module = gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: None,
-        source: wgpu::ShaderSource::Wgsl(source.into()),
-    });
-    let pipeline = gpu.device().create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: None,
-        layout: None,
-        module: &module,
-        entry_point: Some("main"),
-        compilation_options: Default::default(),
-        cache: None,
-    });
     let words: Vec<f32> = points
         .iter()
         .flat_map(|point| {
@@ -57,24 +46,7 @@ fn run(gpu: &Gpu, points: &[Point], width: usize, noise: &Noise) -> Vec<[DVec3; 
     let input = buffer(bytemuck::cast_slice(&words), storage);
     let output = buffer(bytemuck::cast_slice(&vec![0.0_f32; 8 * points.len()]), storage);
     let uniform = buffer(bytemuck::cast_slice(&noise.to_words()), wgpu::BufferUsages::UNIFORM);
-    let entries = [&input, &output, &uniform];
-    let entries: Vec<_> = (0..)
-        .zip(entries)
-        .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
-        .collect();
-    let group = gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
-        label: None,
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &entries,
-    });
-    let mut encoder = gpu.device().create_command_encoder(&Default::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.dispatch_workgroups((points.len() as u32).div_ceil(64), 1, 1);
-    }
-    gpu.queue().submit([encoder.finish()]);
+    submit(gpu, &source, &[&input, &output, &uniform], (points.len() as u32).div_ceil(64));
     let bytes = pollster::block_on(read_buffer(gpu, &output)).expect("results");
     let values: Vec<f32> = bytemuck::pod_collect_to_vec(&bytes);
     let vector = |v: &[f32]| Vec3::new(v[0], v[1], v[2]).as_dvec3();

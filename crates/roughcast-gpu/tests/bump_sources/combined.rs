@@ -15,8 +15,8 @@ use roughcast_scene::{
 };
 
 use super::common::drawn::by_cpu;
-use super::common::gpu;
 use super::common::scenes::{maps, scene, scenes};
+use super::common::{gpu, gpu_of_the_web};
 use super::{OTHERS, PLACED, assert_same, by_gpu, compared, draw, noise, sampler};
 
 fn textures() -> (Vec<TextureArray>, BakedTextures) {
@@ -123,7 +123,8 @@ fn box_of(scene: &Scene) -> DAffine3 {
 #[test]
 fn a_decal_lies_over_the_bumps_below_it() {
     let (arrays, textures) = textures();
-    let gpu = gpu();
+    // Three sources fit into WebGPU's limits.
+    let gpu = gpu_of_the_web();
     let of_model = of_model(&gpu, &arrays);
     for (name, scene) in scenes(View::Mid) {
         let sized = Placement::default().with_world_height_per_texel(0.004 * scene.shape.bounds().radius);

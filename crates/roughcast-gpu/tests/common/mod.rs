@@ -3,6 +3,7 @@
 #![allow(dead_code)] // each test program uses a part
 
 pub mod compare;
+pub mod compute;
 pub mod drawn;
 pub mod maps;
 pub mod pictures;

@@ -9,6 +9,8 @@ use roughcast_gpu::Gpu;
 use roughcast_gpu::read_back::read_buffer;
 use wgpu::util::DeviceExt;
 
+use crate::common::compute::submit;
+
 /// Words of the packing and the options that precede the arguments of a case.
 const PACKING_WORDS: usize = 16;
 const OPTION_WORDS: usize = 8;
@@ -76,23 +78,6 @@ pub async fn run(gpu: &Gpu, library: &str, twin: &Twin, cases: &[Case]) -> Vec<V
     let words: Vec<u32> = cases.iter().flat_map(words).collect();
     let stride = words.len() / cases.len();
     let source = source(library, twin, [stride, outputs, cases.len()]);
-    let pipeline = gpu
-        .checked("a test's shader", |device| {
-            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(twin.name),
-                source: wgpu::ShaderSource::Wgsl(source.into()),
-            });
-            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(twin.name),
-                layout: None,
-                module: &module,
-                entry_point: Some("main"),
-                compilation_options: Default::default(),
-                cache: None,
-            })
-        })
-        .await
-        .unwrap_or_else(|error| panic!("{}: {error}", twin.name));
     let storage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
     let input = gpu.device().create_buffer_init(&wgpu::util::BufferInitDescriptor {
         label: None,
@@ -105,22 +90,7 @@ pub async fn run(gpu: &Gpu, library: &str, twin: &Twin, cases: &[Case]) -> Vec<V
         usage: storage,
         mapped_at_creation: false,
     });
-    let group = gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
-        label: None,
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: input.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 1, resource: output.as_entire_binding() },
-        ],
-    });
-    let mut encoder = gpu.device().create_command_encoder(&Default::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.dispatch_workgroups((cases.len() as u32).div_ceil(WORKGROUP), 1, 1);
-    }
-    gpu.queue().submit([encoder.finish()]);
+    submit(gpu, &source, &[&input, &output], (cases.len() as u32).div_ceil(WORKGROUP));
     let bytes = read_buffer(gpu, &output).await.expect("results");
     let values: Vec<f32> = bytemuck::pod_collect_to_vec(&bytes);
     values.chunks_exact(outputs).map(<[f32]>::to_vec).collect()
