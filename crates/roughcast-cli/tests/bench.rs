@@ -9,7 +9,16 @@ use serde_json::Value;
 const KEYS: [&str; 7] = ["adapter", "driver", "software", "size", "frames", "rows", "generation"];
 const ROW_KEYS: [&str; 6] = ["name", "alu", "texture", "milliseconds", "ratio", "generated_bytes"];
 const GENERATION_KEYS: [&str; 5] = ["side", "bytes", "bake_gb_per_s", "copy_gb_per_s", "part"];
-const NAMES: [&str; 5] = ["blinn-phong", "lean", "lean-generated-512", "lean-generated-2048", "clean"];
+const NAMES: [&str; 8] = [
+    "blinn-phong",
+    "lean",
+    "lean-generated-512",
+    "lean-generated-2048",
+    "clean",
+    "lean-without-tangents",
+    "lean-triplanar",
+    "lean-and-noise",
+];
 
 /// Small enough for a test.
 const QUICK: [&str; 6] = ["bench", "gpu", "--size", "64x48", "--frames", "3"];
@@ -55,8 +64,8 @@ fn the_report_has_every_method_with_its_cost() {
     }
     assert_eq!(number(&rows[0], "ratio"), 1.0);
     let column = |key: &str| rows.iter().map(|row| number(row, key) as u64).collect::<Vec<_>>();
-    assert_eq!(column("texture"), [1, 2, 2, 2, 1]);
-    assert_eq!(column("generated_bytes"), [0, 0, lean_bytes(512), lean_bytes(2048), 0]);
+    assert_eq!(column("texture"), [1, 2, 2, 2, 1, 2, 6, 2]);
+    assert_eq!(column("generated_bytes"), [0, 0, lean_bytes(512), lean_bytes(2048), 0, 0, 0, 0]);
     let alu = column("alu");
     assert!(alu[1] > alu[0] && alu[1] == alu[2] && alu[1] == alu[3] && alu[4] > 0, "{alu:?}");
     // In such a small picture, generating a large map takes nearly all of the time.

@@ -4,15 +4,19 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result};
 use glam::DVec2;
+use roughcast::noise::Noise;
 use roughcast::shading::{Material, Shading};
 use roughcast::{BakeOptions, Image, SampleType, Samples, SourceOptions, Wrap, normal_from_slope};
 use roughcast_gpu::bake::{BakePath, GpuBake, GpuBaker, bake_bandwidth};
 use roughcast_gpu::render::{
-    DEPTH_FORMAT, DrawOptions, Drawing, Geometry, GpuDetail, RenderTarget, Renderer, Views, shader_source,
+    DEPTH_FORMAT, DrawOptions, Drawing, Geometry, GpuDetail, GpuPlacement, RenderTarget, Renderer, Views,
+    shader_source,
 };
 use roughcast_gpu::wgpu;
 use roughcast_gpu::{Gpu, Span, Timestamps};
-use roughcast_scene::{Plane, Reconstruction, Scene, Shape, SlopeMap, View, pattern};
+use roughcast_scene::{
+    NoiseDetail, Placement, Plane, Reconstruction, Scene, Shape, SlopeMap, TangentSource, View, pattern,
+};
 
 use super::instructions::{Instructions, count};
 use crate::progress;
@@ -24,6 +28,20 @@ struct TimedMethod {
     /// Texels of the maps along each side.
     side: usize,
     maps: Maps,
+    bumps: Bumps,
+}
+
+/// The source of bumps, and how it is placed.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Bumps {
+    /// The maps, in the frame of the mesh.
+    Mesh,
+    /// The maps, without tangents.
+    Derivatives,
+    /// The maps, along three axes.
+    Triplanar,
+    /// The maps in the frame of the mesh, and six octaves of noise on top.
+    WithNoise,
 }
 
 /// When maps are made.
@@ -37,13 +55,38 @@ enum Maps {
 pub const SIDE: usize = 512;
 
 /// All methods; the others are compared with the first.
-const METHODS: [TimedMethod; 5] = [
-    TimedMethod { name: "blinn-phong", shading: Shading::BlinnPhong, side: SIDE, maps: Maps::Once },
-    TimedMethod { name: "lean", shading: Shading::Lean, side: SIDE, maps: Maps::Once },
-    TimedMethod { name: "lean-generated-512", shading: Shading::Lean, side: 512, maps: Maps::EveryFrame },
-    TimedMethod { name: "lean-generated-2048", shading: Shading::Lean, side: 2048, maps: Maps::EveryFrame },
-    TimedMethod { name: "clean", shading: Shading::Clean, side: SIDE, maps: Maps::Once },
+const METHODS: [TimedMethod; 8] = [
+    TimedMethod { name: "blinn-phong", shading: Shading::BlinnPhong, ..LEAN },
+    LEAN,
+    TimedMethod { name: "lean-generated-512", maps: Maps::EveryFrame, ..LEAN },
+    TimedMethod { name: "lean-generated-2048", side: 2048, maps: Maps::EveryFrame, ..LEAN },
+    TimedMethod { name: "clean", shading: Shading::Clean, ..LEAN },
+    TimedMethod { name: "lean-without-tangents", bumps: Bumps::Derivatives, ..LEAN },
+    TimedMethod { name: "lean-triplanar", bumps: Bumps::Triplanar, ..LEAN },
+    TimedMethod { name: "lean-and-noise", bumps: Bumps::WithNoise, ..LEAN },
 ];
+
+const LEAN: TimedMethod =
+    TimedMethod { name: "lean", shading: Shading::Lean, side: SIDE, maps: Maps::Once, bumps: Bumps::Mesh };
+
+impl Bumps {
+    /// The maps of a scene in their place.
+    fn place(self, maps: GpuDetail, scene: &Scene, side: usize) -> GpuDetail {
+        let texel = 1.0 / (side as f64 * scene.repeats);
+        let sized = Placement::default().with_world_height_per_texel(texel);
+        match self {
+            Self::Mesh => maps,
+            Self::Derivatives => {
+                maps.placed(Placement::default().with_tangent_source(TangentSource::Derivatives))
+            }
+            Self::Triplanar => maps.placed(GpuPlacement::from(sized).triplanar()),
+            // The finest octave is three pixels wide.
+            Self::WithNoise => maps.with_noise(NoiseDetail::new(
+                Noise::default().with_octaves(6).with_frequency(0.03 / texel).with_amplitude(5.0 * texel),
+            )),
+        }
+    }
+}
 
 /// The cost of one method.
 #[derive(Clone, Debug, PartialEq)]
@@ -156,6 +199,7 @@ impl PreparedMethod {
         let textures =
             GpuDetail::of_baked(&gpu, timed_method.shading, baker.textures(), &baker.info().await?)?;
         let scene = scene(timed_method.side, size);
+        let textures = timed_method.bumps.place(textures, &scene, timed_method.side);
         let geometry = Geometry::new(&gpu, &scene.shape, 1).await?;
         let mut drawing = renderer.prepare(&geometry, &textures, &DrawOptions::default()).await?;
         drawing.set_view(renderer, &scene, size).await?;
