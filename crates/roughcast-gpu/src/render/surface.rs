@@ -123,7 +123,7 @@ pub(super) fn surface_words(
     words[2] = u32::from(placement.world_height_per_texel.is_some());
     words[3] = (placement.sharpness as f32).to_bits();
     words[4] = curvature.pixel_variance.to_bits();
-    words[5] = curvature.largest_trace.to_bits();
+    words[5] = curvature.largest_variance.to_bits();
     words
 }
 

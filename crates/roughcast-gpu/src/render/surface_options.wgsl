@@ -4,7 +4,7 @@ struct SurfaceOptions {
     has_height: u32,        // 1 if bumps have such a height, 0 if their size is that of their texture
     sharpness: f32,         // of the blend of triplanar projections
     curvature_pixel_variance: f32,  // of geometric specular antialiasing
-    curvature_largest_trace: f32,
+    curvature_largest_variance: f32,
     padding: vec2f,
 }
 
