@@ -323,7 +323,7 @@ fn a_decal_displaces_the_surface_inside_its_box_alone() {
 #[test]
 fn curvature_widens_by_the_normals_under_the_pixel() {
     let nothing = Combined::new(Vec::new());
-    let curved = Curved { detail: &nothing, filter: GeometricFilter::default().with_largest_trace(1e9) };
+    let curved = Curved { detail: &nothing, filter: GeometricFilter::default().with_largest_variance(1e9) };
     for_each_pixel(&Shape::Plane(Plane::default()), 1.0, |at| {
         assert_eq!(curved.distribution(at, &options()).whole().covariance, Covariance::default());
     });

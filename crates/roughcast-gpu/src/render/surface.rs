@@ -144,7 +144,7 @@ pub(super) fn source_words(source: &GpuSource, sampling: &Sampling) -> [u32; SOU
 /// WGSL's `GeometricFilter`.
 pub(super) fn curvature_words(filter: Option<GeometricFilter>) -> [u32; CURVATURE_WORDS] {
     let filter = filter.unwrap_or_default();
-    [filter.pixel_variance.to_bits(), filter.largest_trace.to_bits(), 0, 0]
+    [filter.pixel_variance.to_bits(), filter.largest_variance.to_bits(), 0, 0]
 }
 
 /// What describes the texels or the noise of a source: WGSL's `Packing` or `NoiseOptions`.

@@ -228,7 +228,7 @@ fn curvature_widens_alike() {
             continue;
         }
         // The comparison can fail: a larger filter is another picture.
-        let wider = filter.with_pixel_variance(40.0).with_largest_trace(1.0);
+        let wider = filter.with_pixel_variance(40.0).with_largest_variance(1.0);
         let other = by_cpu(&scene, Shading::Lean, &Curved { detail: &nothing, filter: wider });
         assert!(compared(&other, &there).mean > OTHERS * SAME_SHAPES, "{name}");
     }

@@ -226,7 +226,7 @@ fn wrong_twins_are_detected() {
         ("surface_gradient_of_volume", "gradient - normal * dot(normal, gradient)", "gradient"),
         ("blinn_normal", "tilt / length(normal)", "tilt"),
         ("slope_matrix", "gradients[0] * -height_per_uv.x", "gradients[0] * height_per_uv.x"),
-        ("geometric_covariance", "filtering.largest_trace / trace", "filtering.largest_trace"),
+        ("geometric_covariance", "bent * ((limit - smaller) / apart)", "bent * (limit / apart)"),
         ("transformed_gaussian", "new_from_old * sigma * transpose(new_from_old)", "new_from_old * sigma"),
         (
             "distribution_sum",

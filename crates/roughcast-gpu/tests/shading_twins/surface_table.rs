@@ -278,7 +278,7 @@ fn texture_twins() -> Vec<Twin> {
                 all
             },
             rust: |a, _, _| {
-                let filter = GeometricFilter::default().with_pixel_variance(a[4]).with_largest_trace(a[5]);
+                let filter = GeometricFilter::default().with_pixel_variance(a[4]).with_largest_variance(a[5]);
                 covariance_words(geometric_covariance([a[0], a[1]], [a[2], a[3]], &filter))
             },
         },
