@@ -8,10 +8,12 @@ use clap::Args;
 use glam::DVec3;
 use roughcast::shading::{BaseFrame, FootprintModel, Form, Masking, Material, Repair, ShadingOptions};
 use roughcast::{Anisotropy, SampleType};
-use roughcast_io::mesh::load_mesh;
+use roughcast_io::mesh::{FileNormals, load_mesh_with_normals};
 use roughcast_pipeline::TextureOptions;
 use roughcast_scene::render::{MAX_PIXELS, MAX_SAMPLES};
-use roughcast_scene::{Camera, CameraError, Light, Plane, Scene, Shape, Sphere, Torus, View, default_light};
+use roughcast_scene::{
+    Camera, CameraError, Light, Mesh, Plane, Scene, Shape, Sphere, Torus, View, default_light,
+};
 
 use crate::args::{one_of, positive, specular_power};
 use crate::{UsageError, usage};
@@ -58,26 +60,11 @@ impl SceneChoice {
             _ => None,
         }
     }
+}
 
-    /// The shape; a mesh is loaded from its file, and must have texture coordinates if they are needed.
-    pub fn shape(&self, coordinates: TextureCoordinates) -> Result<Shape> {
-        Ok(match self {
-            Self::Plane => Shape::Plane(Plane::default()),
-            Self::Sphere => Shape::Sphere(Sphere),
-            Self::Torus => Shape::Torus(Torus::default()),
-            Self::Mesh(path) => {
-                let mesh = load_mesh(path).with_context(|| path.display().to_string())?;
-                if coordinates == TextureCoordinates::Needed && !mesh.has_texture_coordinates() {
-                    return Err(usage(
-                        path,
-                        "the mesh has no texture coordinates, which a map needs: use `render` with --frame triplanar, or unwrap the \
-                         mesh in a modelling program and export it with texture coordinates",
-                    ));
-                }
-                Shape::Mesh(Arc::new(mesh))
-            }
-        })
-    }
+/// A mesh from a file.
+pub fn mesh_of(path: &Path, normals: FileNormals) -> Result<Mesh> {
+    load_mesh_with_normals(path, normals).with_context(|| path.display().to_string())
 }
 
 /// Whether the surface is textured by its own coordinates.
@@ -182,9 +169,41 @@ pub struct SceneArgs {
     /// May be given more than once [default: one whose highlight is in the picture]
     #[arg(long = "light", value_name = "LIGHT", value_parser = light, allow_hyphen_values = true)]
     pub lights: Vec<Light>,
+
+    /// Normals of a mesh: those of the file (where it has none, glTF is flat and OBJ smooth), or computed ones: smooth, as
+    /// if the surface were round; flat, a facet for each triangle
+    #[arg(long, default_value = "file", value_parser = one_of::<FileNormals>())]
+    pub normals: FileNormals,
 }
 
 impl SceneArgs {
+    /// The shape; a mesh is loaded from its file, and must have texture coordinates if they are needed.
+    pub fn shape(&self, coordinates: TextureCoordinates) -> Result<Shape> {
+        if self.normals != FileNormals::File && self.scene.mesh_path().is_none() {
+            let line = format!(
+                "--normals is for meshes, and the normals of a {} are exact: leave it out",
+                self.scene.name()
+            );
+            return Err(UsageError(line).into());
+        }
+        Ok(match &self.scene {
+            SceneChoice::Plane => Shape::Plane(Plane::default()),
+            SceneChoice::Sphere => Shape::Sphere(Sphere),
+            SceneChoice::Torus => Shape::Torus(Torus::default()),
+            SceneChoice::Mesh(path) => {
+                let mesh = mesh_of(path, self.normals)?;
+                if coordinates == TextureCoordinates::Needed && !mesh.has_texture_coordinates() {
+                    return Err(usage(
+                        path,
+                        "the mesh has no texture coordinates, which a map needs: use `render` with --frame triplanar, or unwrap the \
+                         mesh in a modelling program and export it with texture coordinates",
+                    ));
+                }
+                Shape::Mesh(Arc::new(mesh))
+            }
+        })
+    }
+
     /// The scene of a standard view of the shape, for a map of `texels` and a picture of `size`.
     pub fn view(
         &self,
@@ -237,7 +256,7 @@ impl CameraArgs {
         material: Material,
         coordinates: TextureCoordinates,
     ) -> Result<Scene> {
-        let shape = Arc::new(scene.scene.shape(coordinates)?);
+        let shape = Arc::new(scene.shape(coordinates)?);
         let mut seen = match self.camera {
             CameraChoice::View(view) => {
                 if self.look_at.is_some() || self.up.is_some() {

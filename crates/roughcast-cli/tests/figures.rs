@@ -2,10 +2,10 @@
 
 mod common;
 
-use common::{names, run, scratch, text};
+use common::{bare_mesh, names, run, scratch, text};
 use serde_json::Value;
 
-const FIGURES: [&str; 11] = [
+const FIGURES: [&str; 12] = [
     "lean-2",
     "lean-4",
     "lean-5",
@@ -15,6 +15,7 @@ const FIGURES: [&str; 11] = [
     "mikkelsen-2",
     "mikkelsen-3",
     "mikkelsen-4",
+    "deforming",
     "octaves",
     "geometric-aa",
 ];
@@ -63,16 +64,30 @@ fn figures_hold_on_a_real_mesh_with_a_real_map() {
     let folder = scratch();
     let [mesh, map] = ["models/meshes/teapot_keijiro.obj", "materials/bricks_godot/texture_bricks_depth.jpg"]
         .map(roughcast_testdata::find);
-    let arguments = ["figures", "mikkelsen-4", "geometric-aa", "--invert-height", "-o", text(folder.path())];
+    let names = ["figures", "mikkelsen-4", "deforming", "geometric-aa"];
+    let arguments = [&names[..], &["--invert-height", "-o", text(folder.path())]].concat();
     let given = ["--mesh", text(&mesh), "--height-map", text(&map)];
     let outcome = run([&arguments[..], &given].concat()).expect_success();
-    assert_eq!(outcome.stdout.lines().filter(|line| line.contains(": holds: ")).count(), 2);
+    assert_eq!(outcome.stdout.lines().filter(|line| line.contains(": holds: ")).count(), 3);
+}
+
+#[test]
+fn figures_with_a_map_refuse_a_mesh_without_texture_coordinates() {
+    let folder = scratch();
+    let bare = bare_mesh(folder.path());
+    for name in ["mikkelsen-4", "deforming"] {
+        let arguments = ["figures", name, "--mesh", text(&bare), "-o", text(folder.path())];
+        let line = run(arguments).expect_refusal(2, &bare);
+        assert!(line.contains("texture coordinates"), "{line}");
+    }
 }
 
 #[test]
 fn unknown_figures_and_bad_folders_are_refused() {
     let folder = scratch();
     run(["figures", "lean-99", "-o", text(folder.path())]).expect_usage_error("lean-14");
+    run(["figures", "deforming", "--normals", "flat", "-o", text(folder.path())])
+        .expect_usage_error("--mesh");
     let file = folder.path().join("file");
     std::fs::write(&file, "").expect("a file");
     run(["figures", "lean-4", "-o", text(&file)]).expect_refusal(1, &file);

@@ -369,3 +369,32 @@ fn maps_add_to_each_other_on_both_renderers() {
     render(&picture, &[&truth[..], &[text(&baked)]].concat()).expect_usage_error("contains averages");
     assert!(!picture.exists());
 }
+
+#[test]
+fn normals_of_a_mesh_are_computed_as_asked() {
+    let folder = scratch();
+    // Smooth and flat differ on a cube, whose file has flat normals.
+    let cube = data("models/meshes/cube_bgfx.obj");
+    let pictures = ["file", "smooth", "flat"].map(|normals| {
+        let output = folder.path().join(format!("{normals}.exr"));
+        render(&output, &["--scene", text(&cube), "--normals", normals]).expect_success();
+        radiance(&output)
+    });
+    let [file, smooth, flat] = &pictures;
+    let away = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    let brightest = file.iter().copied().fold(0.0, f32::max);
+    // The normals of the file are rounded to four digits.
+    assert!(away(file, flat) < 1e-2 * brightest, "{} {brightest}", away(file, flat));
+    assert!(away(file, smooth) > 0.1 * brightest, "{} {brightest}", away(file, smooth));
+
+    let (picture, map) = (folder.path().join("picture.png"), map());
+    for scene in ["plane", "sphere", "torus"] {
+        for normals in ["smooth", "flat"] {
+            let arguments = ["render", text(&map), "-o", text(&picture), "--scene", scene, "--green", "down"];
+            run([&arguments[..], &["--normals", normals]].concat())
+                .expect_usage_error("--normals is for meshes");
+        }
+    }
+    render(&picture, &["--normals", "file"]).expect_success();
+    render(&picture, &["--normals", "round"]).expect_usage_error("smooth");
+}

@@ -93,7 +93,7 @@ pub use hit::{Footprint, Frame, Hit, Ray, Side};
 pub use isosurface::isosurface;
 pub use level::Level;
 pub use light::Light;
-pub use mesh::{MAX_TRIANGLES, MAX_VERTICES, Mesh, MeshFault};
+pub use mesh::{MAX_TRIANGLES, MAX_VERTICES, Mesh, MeshFault, NormalKind, NormalSource};
 #[cfg(feature = "render")]
 pub use mipmap::Mipmap;
 pub use picture::{Picture, PictureError, luminance};

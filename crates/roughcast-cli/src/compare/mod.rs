@@ -115,7 +115,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let subjects = [Subject::given(name, map, without_repeats(&args.views)), grooves, wool];
     let settings = Settings {
         scene: &args.scene,
-        shape: Arc::new(args.scene.scene.shape(TextureCoordinates::Needed)?),
+        shape: Arc::new(args.scene.shape(TextureCoordinates::Needed)?),
         shading: &args.shading,
         albedo: args.albedo,
         filters: without_repeats(&args.filters),

@@ -81,6 +81,9 @@ fn how_it_was_made(page: &mut Page, settings: &Settings<'_>, given: &Compared) {
             ),
         ),
     ];
+    if settings.scene.scene.mesh_path().is_some() {
+        rows.push(("normals of the mesh", settings.scene.normals.name().to_owned()));
+    }
     if settings.scene.lights.is_empty() {
         let each = given.comparisons.iter().map(|c| format!("{}: {}", c.view, lights(&c.lights)));
         rows.push(("light, placed for the view", each.collect::<Vec<_>>().join("; ")));

@@ -2,16 +2,16 @@
 
 use std::sync::Arc;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use glam::DVec3;
 use roughcast::shading::{GeometricFilter, Shading, ShadingOptions};
-use roughcast_io::mesh::load_mesh;
 use roughcast_scene::metrics::rmse;
 use roughcast_scene::render::{Truth, unwatched};
 use roughcast_scene::{Combined, Curved, Picture, Scene, Shape, TriangleMesh};
 use serde_json::{Map, json};
 
 use super::bumps::{panels, scene, shaded, shape_of};
+use super::given::mesh;
 use super::{Args, Figure, Table};
 
 const SIZE: (u32, u32) = (160, 160);
@@ -128,9 +128,7 @@ fn seen(scene: &Scene) -> Result<[Picture; 3]> {
 
 pub fn make(args: &Args) -> Result<Figure> {
     let mut shapes = vec![(BALL.to_owned(), rippled_ball()?)];
-    if let Some(path) = &args.mesh {
-        let mesh = load_mesh(path).with_context(|| path.display().to_string())?;
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    if let Some((mesh, name)) = mesh(args)? {
         shapes.push((name, Shape::Mesh(Arc::new(mesh))));
     }
     let (mut numbers, mut rows, mut pictures, mut holds) = (Map::new(), Vec::new(), Vec::new(), true);

@@ -2,13 +2,11 @@
 
 use std::sync::Arc;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use glam::DVec3;
 use roughcast::noise::{Noise, NoiseKind};
 use roughcast::shading::ShadingOptions;
-use roughcast::{Distribution, Gradient, HeightSense, Image, Samples, Slope, SourceOptions};
-use roughcast_io::mesh::load_mesh;
-use roughcast_pipeline::{MapOptions, read_map};
+use roughcast::{Distribution, Image, Samples, Slope, SourceOptions};
 use roughcast_scene::pattern::Pattern;
 use roughcast_scene::{
     Combined, Detail, DetailPoint, HeightDerivative, HeightDetail, HeightMap, NoiseDetail, Placement,
@@ -18,6 +16,7 @@ use roughcast_scene::{
 use serde_json::{Map, json};
 
 use super::bumps::{Angles, angles, exact_normal, panels, picture, scene, shaded_normal, shape_of};
+use super::given::{heights_or, textured_mesh};
 use super::{Args, Figure, Table};
 
 const SIZE: (u32, u32) = (360, 270);
@@ -45,35 +44,14 @@ struct Subject {
 impl Subject {
     /// The mesh and the map of the arguments, or a torus with random bumps.
     fn new(args: &Args) -> Result<Self> {
-        let (shape, mesh) = match &args.mesh {
-            Some(path) => {
-                let mesh = load_mesh(path).with_context(|| path.display().to_string())?;
-                (
-                    Shape::Mesh(Arc::new(mesh)),
-                    path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-                )
-            }
+        let (shape, mesh) = match textured_mesh(args)? {
+            Some((mesh, name)) => (Shape::Mesh(Arc::new(mesh)), name),
             None => (shape_of(unstretched_torus())?, "a torus".to_owned()),
         };
-        let (heights, source, map) = match &args.height_map {
-            Some(path) => {
-                let mut options = MapOptions::default();
-                options.kind = Some(roughcast::Kind::Height);
-                if args.invert_height {
-                    options.height_sense = HeightSense::WhiteDeep;
-                }
-                let map = read_map(path, &options).with_context(|| path.display().to_string())?;
-                (map.image, map.options, path.file_name().unwrap_or_default().to_string_lossy().into_owned())
-            }
-            None => {
-                let bumps = pattern::random_bumps(256, 0.4, 3);
-                let source = bumps.source_options();
-                (bumps.heights, source, "random bumps of 256x256".to_owned())
-            }
-        };
-        // Central differences are the slopes of the heights themselves: Sobel smooths across.
-        let source = source.with_gradient(Gradient::Central);
-        Ok(Self { shape, heights, source, name: format!("{map} on {mesh}") })
+        let heights =
+            heights_or(args, || (pattern::random_bumps(256, 0.4, 3), "random bumps of 256x256".to_owned()))?;
+        let name = format!("{} on {mesh}", heights.name);
+        Ok(Self { shape, heights: heights.image, source: heights.source, name })
     }
 
     /// The scene in which a pixel spans this many texels.

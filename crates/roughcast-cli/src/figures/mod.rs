@@ -3,6 +3,9 @@
 
 mod bumps;
 mod curvature;
+mod deformation;
+mod deforming;
+mod given;
 mod lean_13;
 mod lean_14;
 mod lean_2;
@@ -23,6 +26,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, anyhow};
 use clap::ValueHint;
 use roughcast::Named;
+use roughcast_io::mesh::FileNormals;
 use roughcast_io::picture::{Srgb8Picture, write_png};
 use roughcast_io::{AtomicFile, AtomicSet};
 use serde_json::{Map, Value, json};
@@ -47,6 +51,7 @@ Figures:
   mikkelsen-2  Perlin's older perturbation turns normals inward
   mikkelsen-3  derivatives on the screen and in space agree where pixels are dense
   mikkelsen-4  heights on the screen against normal mapping, and under magnification
+  deforming  a mesh that bends: tangents of the rest pose, derivatives, new tangents
   octaves  octaves of noise finer than a pixel, which become roughness
   geometric-aa  geometric specular antialiasing")]
 pub struct Args {
@@ -58,11 +63,15 @@ pub struct Args {
     #[arg(short, long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     output: PathBuf,
 
-    /// The mesh of mikkelsen-4 (.obj, .gltf, .glb), with texture coordinates, and of geometric-aa [default: shapes of its own]
+    /// The mesh of mikkelsen-4 and deforming (.obj, .gltf, .glb), with texture coordinates, and of geometric-aa [default: shapes of its own]
     #[arg(long, value_name = "MESH", value_hint = ValueHint::FilePath)]
     mesh: Option<PathBuf>,
 
-    /// The height map of mikkelsen-4 [default: random bumps]
+    /// Normals of that mesh: those of the file, or computed ones, smooth or flat
+    #[arg(long, default_value = "file", value_parser = one_of::<FileNormals>(), requires = "mesh")]
+    normals: FileNormals,
+
+    /// The height map of mikkelsen-4 and deforming [default: patterns of its own]
     #[arg(long, value_name = "MAP", value_hint = ValueHint::FilePath)]
     height_map: Option<PathBuf>,
 
@@ -83,6 +92,7 @@ enum Name {
     Mikkelsen2,
     Mikkelsen3,
     Mikkelsen4,
+    Deforming,
     Octaves,
     GeometricAa,
 }
@@ -99,6 +109,7 @@ impl Named for Name {
             Self::Mikkelsen2,
             Self::Mikkelsen3,
             Self::Mikkelsen4,
+            Self::Deforming,
             Self::Octaves,
             Self::GeometricAa,
         ]
@@ -115,6 +126,7 @@ impl Named for Name {
             Self::Mikkelsen2 => "mikkelsen-2",
             Self::Mikkelsen3 => "mikkelsen-3",
             Self::Mikkelsen4 => "mikkelsen-4",
+            Self::Deforming => "deforming",
             Self::Octaves => "octaves",
             Self::GeometricAa => "geometric-aa",
         }
@@ -133,6 +145,7 @@ impl Name {
             Self::Mikkelsen2 => mikkelsen_2::make(),
             Self::Mikkelsen3 => mikkelsen_3::make(),
             Self::Mikkelsen4 => mikkelsen_4::make(args),
+            Self::Deforming => deforming::make(args),
             Self::Octaves => octaves::make(),
             Self::GeometricAa => curvature::make(args),
         }

@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::{DMat3, DMat4, Mat4, Vec3, Vec4};
 use gltf::mesh::Mode;
 use gltf::{Accessor, Document, Node, Primitive, Semantic};
-use roughcast_scene::{MAX_TRIANGLES, MAX_VERTICES, MeshFault, TriangleMesh};
+use roughcast_scene::{MAX_TRIANGLES, MAX_VERTICES, MeshFault, NormalKind, TriangleMesh};
 
 use super::accessor::{Buffers, malformed};
 use super::gltf_material::materials;
@@ -21,7 +21,11 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<MeshFile, MeshFileFaul
     let document = document(json)?;
     let mut scene = Scene {
         buffers: Buffers::new(folder, chunk),
-        file: MeshFile { materials: materials(document.as_json()), ..MeshFile::default() },
+        file: MeshFile {
+            materials: materials(document.as_json()),
+            missing_normals: NormalKind::Flat,
+            ..MeshFile::default()
+        },
         vertices: 0,
         triangles: 0,
     };

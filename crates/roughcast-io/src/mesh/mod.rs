@@ -25,7 +25,7 @@ mod uri;
 use std::io::Read;
 use std::path::Path;
 
-use roughcast_scene::{Mesh, MeshFault, TriangleMesh};
+use roughcast_scene::{Mesh, MeshFault, NormalKind, NormalSource, TriangleMesh};
 
 pub use error::{MeshFileError, MeshFileFault};
 pub use material::{AlphaMode, MeshImage, MeshMaterial, MeshTexture};
@@ -35,6 +35,21 @@ pub const MAX_FILE_BYTES: usize = 1 << 29;
 /// Maximum number of sets of texture coordinates read for a primitive: they may share one buffer, so the file size does
 /// not bound them.
 pub const MAX_FILE_UV_SETS: usize = 8;
+
+roughcast::named_enum! {
+    /// Which normals of a mesh file are used.
+    #[derive(Default)]
+    #[non_exhaustive]
+    pub enum FileNormals: "normals of a mesh" {
+        /// Those in the file. Where there are none, what its format prescribes: see [`MeshFile::missing_normals`].
+        #[default]
+        File = "file",
+        /// Smooth ones, computed instead of those in the file: [`NormalKind::Smooth`].
+        Smooth = "smooth",
+        /// Flat ones, computed instead of those in the file: [`NormalKind::Flat`].
+        Flat = "flat",
+    }
+}
 
 /// The contents of a mesh file.
 #[derive(Debug, Default)]
@@ -46,6 +61,10 @@ pub struct MeshFile {
     pub materials: Vec<MeshMaterial>,
     /// Sets of texture coordinates after the first that the file declares but that cannot be used.
     pub skipped_uv_sets: Vec<SkippedUvSet>,
+    /// The normals of primitives that have none in the file. Flat for glTF, which prescribes it (glTF 2.0, section
+    /// 3.7.2.1). Smooth for OBJ: scans and classic models come without normals and are meant to look round, and the
+    /// file's smoothing groups (`s`) are not read.
+    pub missing_normals: NormalKind,
 }
 
 /// A part of a mesh file: triangles that share a material.
@@ -74,12 +93,28 @@ pub struct SkippedUvSet {
 }
 
 impl MeshFile {
-    /// Merges all primitives into one mesh and computes missing normals and tangents; see [`Mesh::new`].
+    /// Merges all primitives into one mesh and computes missing normals and tangents:
+    /// [`MeshFile::into_mesh_with_normals`] with those of the file.
     ///
     /// # Errors
     /// The fault in the numbers of the file, which the reader does not check.
     pub fn into_mesh(self) -> Result<Mesh, MeshFault> {
-        Mesh::new(self.primitives.into_iter().map(|primitive| primitive.triangles).collect())
+        self.into_mesh_with_normals(FileNormals::File)
+    }
+
+    /// Merges all primitives into one mesh with these normals, and computes missing tangents; see
+    /// [`Mesh::with_normals`].
+    ///
+    /// # Errors
+    /// The fault in the numbers of the file, which the reader does not check.
+    pub fn into_mesh_with_normals(self, normals: FileNormals) -> Result<Mesh, MeshFault> {
+        let source = match normals {
+            FileNormals::File => NormalSource::GivenOr(self.missing_normals),
+            FileNormals::Smooth => NormalSource::Computed(NormalKind::Smooth),
+            FileNormals::Flat => NormalSource::Computed(NormalKind::Flat),
+        };
+        let parts = self.primitives.into_iter().map(|primitive| primitive.triangles).collect();
+        Mesh::with_normals(parts, source)
     }
 }
 
@@ -103,8 +138,16 @@ pub fn read_mesh(path: impl AsRef<Path>) -> Result<MeshFile, MeshFileError> {
 /// # Errors
 /// [`MeshFileError`], one line with the path.
 pub fn load_mesh(path: impl AsRef<Path>) -> Result<Mesh, MeshFileError> {
+    load_mesh_with_normals(path, FileNormals::File)
+}
+
+/// Reads a mesh file as one mesh with these normals: [`read_mesh`] and [`MeshFile::into_mesh_with_normals`].
+///
+/// # Errors
+/// [`MeshFileError`], one line with the path.
+pub fn load_mesh_with_normals(path: impl AsRef<Path>, normals: FileNormals) -> Result<Mesh, MeshFileError> {
     let path = path.as_ref();
-    let mesh = contents(path).and_then(|file| Ok(file.into_mesh()?));
+    let mesh = contents(path).and_then(|file| Ok(file.into_mesh_with_normals(normals)?));
     mesh.map_err(|fault| MeshFileError { path: path.to_owned(), fault })
 }
 

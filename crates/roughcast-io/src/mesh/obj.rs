@@ -6,7 +6,7 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::io::{Cursor, Read};
 
-use roughcast_scene::{MAX_TRIANGLES, MAX_VERTICES, TriangleMesh};
+use roughcast_scene::{MAX_TRIANGLES, MAX_VERTICES, NormalKind, TriangleMesh};
 
 use super::{MeshFile, MeshFileFault, MeshMaterial, Primitive};
 
@@ -29,7 +29,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<MeshFile, MeshFileFault> {
     let primitives = models.into_iter().map(primitive).filter(|p| !p.triangles.indices.is_empty()).collect();
     let materials =
         names.into_iter().map(|name| MeshMaterial { name: Some(name), ..MeshMaterial::default() }).collect();
-    Ok(MeshFile { primitives, materials, skipped_uv_sets: Vec::new() })
+    Ok(MeshFile { primitives, materials, missing_normals: NormalKind::Smooth, ..MeshFile::default() })
 }
 
 /// The names of all materials used by faces, in the order of first use.

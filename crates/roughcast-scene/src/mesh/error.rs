@@ -41,6 +41,29 @@ pub enum MeshFault {
         /// The first invalid vertex, counted from zero.
         vertex: usize,
     },
+    /// A pose for [`super::Mesh::deformed`] does not have one entry for each vertex of the mesh.
+    #[error(
+        "{count} {what} for a mesh of {vertices} vertices: give one for each vertex of its triangles(), which may be \
+         more than in the file"
+    )]
+    PoseCount {
+        /// Positions or normals.
+        what: &'static str,
+        /// Their number.
+        count: usize,
+        /// Number of vertices of the mesh.
+        vertices: usize,
+    },
+    /// NaN or infinity in a pose for [`super::Mesh::deformed`].
+    #[error(
+        "vertex {vertex} of the pose has {what} that are not finite numbers: check the deformation there"
+    )]
+    PoseNotFinite {
+        /// Positions or normals.
+        what: &'static str,
+        /// The first invalid vertex, counted from zero.
+        vertex: usize,
+    },
     /// The mesh is too small or too large for single-float arithmetic.
     #[error(
         "the mesh has a radius of {radius:e}, {middle:e} from the origin: rescale it to a radius of \

@@ -6,11 +6,14 @@ mod error;
 mod intersect;
 mod merge;
 mod normals;
+mod pose;
+mod split;
 mod tangents;
 
 use glam::{DVec3, DVec4, Vec3, Vec4};
 
 pub use error::MeshFault;
+pub use normals::{NormalKind, NormalSource};
 
 use crate::shape::facing;
 use crate::uv_sets::TrianglePoint;
@@ -48,22 +51,37 @@ impl std::fmt::Debug for Mesh {
 }
 
 impl Mesh {
-    /// Creates a mesh from one or more parts.
+    /// Creates a mesh from one or more parts; where they have no normals, it gets [`NormalKind::Smooth`] ones. See
+    /// [`Mesh::with_normals`].
     ///
-    /// Each part needs positions and indices; its other arrays may be empty. Missing normals are computed as the
-    /// area-weighted mean over all triangles that meet at a position; missing tangents are computed by MikkTSpace. A
-    /// triangle that is clockwise as seen from the side its normals point to is reversed. Duplicates and triangles
+    /// # Errors
+    /// Those of [`Mesh::with_normals`].
+    pub fn new(parts: Vec<TriangleMesh>) -> Result<Self, MeshFault> {
+        Self::with_normals(parts, NormalSource::default())
+    }
+
+    /// Creates a mesh from one or more parts, with normals from this source.
+    ///
+    /// Each part needs positions and indices; its other arrays may be empty. A normal or tangent of zero is a missing
+    /// one. Missing tangents are computed by MikkTSpace from the first set of texture coordinates. Vertices are split
+    /// where triangles disagree about a computed normal or tangent; the copies follow the given vertices, which keep
+    /// their order. With [`NormalKind::Flat`], tangents of vertices without normals are ignored, as glTF requires.
+    ///
+    /// A triangle that is clockwise as seen from the side its normals point to is reversed. Duplicates and triangles
     /// without an area are dropped. The mesh has only the sets of texture coordinates that all parts have: none if one
     /// part has none.
     ///
     /// # Errors
     /// [`MeshFault`] if there are no triangles or too many, or if the numbers are not those of a mesh.
-    pub fn new(parts: Vec<TriangleMesh>) -> Result<Self, MeshFault> {
+    pub fn with_normals(parts: Vec<TriangleMesh>, source: NormalSource) -> Result<Self, MeshFault> {
         let uv_set_count = parts.iter().map(merge::uv_set_count).min().unwrap_or(0);
         let mut triangles = merge::merge(parts)?;
         let bounds = merge::bounds(&triangles)?;
         normals::turn_towards_normals(&mut triangles);
-        normals::complete(&mut triangles);
+        if let NormalSource::Computed(_) = source {
+            normals::clear(&mut triangles);
+        }
+        normals::complete(&mut triangles, source.kind());
         tangents::complete(&mut triangles);
         let finder = Triangles::new(&triangles, bounds);
         Ok(Self { triangles, uv_set_count, bounds, finder })
@@ -109,7 +127,8 @@ impl Mesh {
         let k = corners(mesh, triangle);
         let [p0, p1, p2] = k.map(|i| position(mesh, i));
         let (e1, e2) = (p1 - p0, p2 - p0);
-        let geometric_normal = e1.cross(e2).normalize();
+        // A pose may flatten a triangle; its texture then has no gradients, but no number may be NaN.
+        let geometric_normal = e1.cross(e2).normalize_or(DVec3::Y);
         let blend = |[a, b, c]: [DVec3; 3]| a * weights.x + b * weights.y + c * weights.z;
         let normals = k.map(|i| Vec3::from(mesh.normals[i]).as_dvec3());
         let interpolated = blend(normals);

@@ -3,19 +3,18 @@
 //!
 //! MikkTSpace's bitangent is along growing v. Ours is along falling v, so we pass (u, 1 - v).
 
-use std::collections::HashMap;
-
 use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
 use glam::{Vec3, Vec4};
 
 use super::corners;
+use super::split::{assign, is_missing};
 use crate::TriangleMesh;
 
 /// Makes all tangents unit and orthogonal to their normals. Triangles with a vertex that has no tangent get new
 /// tangents; vertices are split if triangles disagree.
 pub(super) fn complete(mesh: &mut TriangleMesh) {
     let faces: Vec<usize> = (0..mesh.indices.len() / 3)
-        .filter(|&triangle| corners(mesh, triangle).iter().any(|&i| mesh.tangents[i][..3] == [0.0; 3]))
+        .filter(|&triangle| corners(mesh, triangle).iter().any(|&i| is_missing(&mesh.tangents[i])))
         .collect();
     if !faces.is_empty() {
         let mut generated = Generated { tangents: vec![[0.0; 4]; 3 * faces.len()], faces, mesh };
@@ -23,8 +22,14 @@ pub(super) fn complete(mesh: &mut TriangleMesh) {
         // used.
         let _ = generate_tangents(&mut generated);
         let Generated { tangents, faces, .. } = generated;
-        split_vertices(mesh, &faces, &tangents);
+        let places = faces.iter().flat_map(|face| 3 * face..3 * face + 3);
+        assign(mesh, places.zip(tangents), |mesh| &mut mesh.tangents);
     }
+    orthonormalise(mesh);
+}
+
+/// Makes all tangents unit and orthogonal to their normals; arbitrary where they are zero or along the normal.
+pub(super) fn orthonormalise(mesh: &mut TriangleMesh) {
     for (tangent, normal) in mesh.tangents.iter_mut().zip(&mesh.normals) {
         *tangent = orthonormal(*tangent, *normal);
     }
@@ -72,33 +77,7 @@ impl Geometry for Generated<'_> {
     }
 }
 
-/// Assigns tangents to the corners of `faces`. A vertex that gets several tangents is split.
-fn split_vertices(mesh: &mut TriangleMesh, faces: &[usize], tangents: &[[f32; 4]]) {
-    let mut vertices = HashMap::new();
-    let mut taken = vec![false; mesh.positions.len()];
-    for (face, &triangle) in faces.iter().enumerate() {
-        for corner in 0..3 {
-            let place = 3 * triangle + corner;
-            let (old, tangent) = (mesh.indices[place] as usize, tangents[3 * face + corner]);
-            let new = *vertices.entry((old, tangent.map(f32::to_bits))).or_insert_with(|| {
-                // The first tangent keeps the vertex, unless the vertex has a tangent from the file, which other
-                // triangles may use.
-                if !std::mem::replace(&mut taken[old], true) && mesh.tangents[old][..3] == [0.0; 3] {
-                    mesh.tangents[old] = tangent;
-                    return old as u32;
-                }
-                mesh.positions.push(mesh.positions[old]);
-                mesh.normals.push(mesh.normals[old]);
-                mesh.uv_sets.iter_mut().for_each(|set| set.push(set[old]));
-                mesh.tangents.push(tangent);
-                mesh.positions.len() as u32 - 1
-            });
-            mesh.indices[place] = new;
-        }
-    }
-}
-
-/// The tangent made unit and orthogonal to the normal, with a handedness of one or minus one; arbitrary if it is zero.
+/// The tangent made unit and orthogonal to the normal, with a handedness of one or minus one.
 fn orthonormal(tangent: [f32; 4], normal: [f32; 3]) -> [f32; 4] {
     let (tangent, normal) = (Vec4::from(tangent), Vec3::from(normal));
     let along = tangent.truncate().reject_from_normalized(normal);
