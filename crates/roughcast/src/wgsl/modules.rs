@@ -325,6 +325,22 @@ pub const MODULES: &[Module] = &[
         role: Role::Companion,
     },
     Module {
+        name: "layers",
+        source: include_str!("../layers.wgsl"),
+        needs: &["distribution"],
+        summary: "layers of bumps, mixed, added or masked per pixel",
+        citation: "Olano & Baker, LEAN Mapping, 2010, 3.5",
+        role: Role::Companion,
+    },
+    Module {
+        name: "normal-blends",
+        source: include_str!("../layers/normal_blends.wgsl"),
+        needs: &[],
+        summary: "the blends of two normals in common use, for comparison",
+        citation: "Barre-Brisebois & Hill, Blending in Detail, 2012",
+        role: Role::Companion,
+    },
+    Module {
         name: "detail",
         source: include_str!("../detail.wgsl"),
         needs: &["distribution"],
