@@ -12,9 +12,9 @@ use crate::inputs::{Inputs, distribution_words, gaussian_words, weighted_words};
 use crate::table::{covariance, covariance_words, facet_words, ggx_words, one, slope, v3};
 
 /// Words of a distribution.
-const WORDS: usize = 4 + 6 * MAX_GAUSSIANS;
+pub const WORDS: usize = 4 + 6 * MAX_GAUSSIANS;
 
-fn weighted(a: &[f32]) -> WeightedGaussian {
+pub fn weighted(a: &[f32]) -> WeightedGaussian {
     WeightedGaussian { weight: a[5], mean: slope(a), covariance: covariance(&a[2..]) }
 }
 
@@ -23,7 +23,7 @@ fn whole(a: f32) -> usize {
     (a + 0.5) as usize
 }
 
-fn distribution(a: &[f32]) -> Distribution {
+pub fn distribution(a: &[f32]) -> Distribution {
     let mut parts: Vec<_> = (0..MAX_GAUSSIANS).map(|place| weighted(&a[4 + 6 * place..])).collect();
     parts.retain(|part| part.weight > 0.0);
     let mixture = Distribution::mixture(&parts).expect("one to four");

@@ -104,7 +104,8 @@ fn halved<const N: usize>(
     ((columns.len(), rows.len()), next)
 }
 
-/// Every level of layers mixed with their mixing textures, with constant weights: [`mixed`] at every texel.
+/// Every level of layers mixed with their mixing textures, with constant weights: [`mixed`] at every texel. Rounding may leave
+/// moments whose covariance is not valid; [`Moments::covariance`] repairs it.
 ///
 /// # Errors
 /// [`LayerError`] as [`mixed`], and if the textures differ in size: a mixing texture belongs to the texels of both layers.
@@ -165,9 +166,10 @@ fn moment_level(
     height: usize,
     texel: impl Fn(usize) -> Result<Distribution, LayerError>,
 ) -> Result<MomentLevel, LayerError> {
+    // Not repaired: clamping the mixed term of a nearly singular covariance would multiply the rounding of its variances.
     let moments = |texel: Distribution| {
         let whole = texel.whole();
-        Moments::from_mean_and_covariance(whole.mean, whole.covariance.positive_semidefinite())
+        Moments::from_mean_and_covariance(whole.mean, whole.covariance)
     };
     let moments = (0..width * height).map(|i| texel(i).map(moments)).collect::<Result<Vec<_>, _>>()?;
     Ok(MomentLevel::new(width, height, moments).expect("as many as texels"))
