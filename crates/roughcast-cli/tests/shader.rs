@@ -118,6 +118,9 @@ fn every_export_starts_with_source_conventions_and_calls() {
                 "surface-gradient" => "rc_perturbed_normal(",
                 "geometric" => "rc_geometric_covariance(",
                 "noise" => "rc_noise_distribution(",
+                "layers" => "rc_weighted_layer(",
+                "waves" => "rc_wave_distribution(",
+                "normal-blends" => "rc_blend_reoriented(",
                 _ => "_lobe(",
             };
             assert!(code_of(&text).contains(function), "{name}, {language}");

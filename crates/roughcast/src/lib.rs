@@ -19,6 +19,7 @@
 //! 5. **Shading.** A [`texture::TexelReader`] converts filtered texels to a [`Distribution`] of slopes, and the models
 //!    in [`shading`] shade with it. [`wgsl`] contains the same functions for GPUs.
 //! 6. **Procedural bumps.** [`noise`] gives the [`Distribution`] of gradient noise under a footprint, without textures.
+//!    [`waves`] does the same for waves of water.
 //! 7. **Layers.** [`layers`] mixes, adds and masks several maps, before they are filtered or after.
 //!
 //! # Out of scope
@@ -120,6 +121,7 @@ pub mod surface_gradient;
 mod survey;
 pub mod texture;
 mod vectorised;
+pub mod waves;
 pub mod wgsl;
 
 #[cfg(feature = "serde")]

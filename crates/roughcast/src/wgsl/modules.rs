@@ -341,6 +341,14 @@ pub const MODULES: &[Module] = &[
         role: Role::Companion,
     },
     Module {
+        name: "waves",
+        source: include_str!("../waves.wgsl"),
+        needs: &["distribution"],
+        summary: "travelling waves of water, and the distribution of their slopes under a footprint",
+        citation: "Gerstner, 1802; Tessendorf, Simulating Ocean Water, 2001",
+        role: Role::Companion,
+    },
+    Module {
         name: "detail",
         source: include_str!("../detail.wgsl"),
         needs: &["distribution"],
