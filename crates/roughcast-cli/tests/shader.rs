@@ -120,6 +120,7 @@ fn every_export_starts_with_source_conventions_and_calls() {
                 "noise" => "rc_noise_distribution(",
                 "layers" => "rc_weighted_layer(",
                 "waves" => "rc_wave_distribution(",
+                "gabor-noise" => "rc_gabor_sample(",
                 "normal-blends" => "rc_blend_reoriented(",
                 _ => "_lobe(",
             };

@@ -61,6 +61,12 @@ const BUMPS: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "gabor-noise",
+        &[
+            "  gradient of the height of ripples in x and y, and the height in z: height = gabor_sample(noise, position)",
+        ],
+    ),
+    (
         "layers",
         &[
             "  layers a and b with weights ta and tb, whose distributions do not include the base roughness:",

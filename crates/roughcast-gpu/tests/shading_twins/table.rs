@@ -11,6 +11,7 @@ use crate::layers_table::layer_twins;
 use crate::noise_table::noise_twins;
 use crate::surface_table::bump_twins;
 use crate::texel_table::texel_twins;
+use crate::wave_table::wave_twins;
 
 pub fn v3(a: &[f32]) -> [f32; 3] {
     [a[0], a[1], a[2]]
@@ -269,6 +270,7 @@ pub fn twins() -> Vec<Twin> {
         lobe_twins(),
         noise_twins(),
         layer_twins(),
+        wave_twins(),
     ]
     .into_iter()
     .flatten()

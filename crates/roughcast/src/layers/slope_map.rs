@@ -31,6 +31,40 @@ impl SlopeMap {
         Ok(Self { width, height, slopes })
     }
 
+    /// A map of `height` rows of `width` slopes at the texel centres, from a function of the texture coordinates: u to the right
+    /// and v down, from 0 to 1.
+    ///
+    /// ```
+    /// use glam::DVec2;
+    /// use roughcast::Slope;
+    /// use roughcast::layers::SlopeMap;
+    /// use roughcast::waves::{EARTH_GRAVITY, Wave};
+    ///
+    /// // A wave two seconds later, in a tile of ten metres that repeats.
+    /// let wave = Wave::tiling([4, 1], 10.0, 0.1).at(2.0, EARTH_GRAVITY);
+    /// let map = SlopeMap::from_fn(64, 64, |[u, v]| {
+    ///     let slope = wave.slope(DVec2::new(u, -v) * 10.0);
+    ///     Slope { x: slope.x as f32, y: slope.y as f32 }
+    /// })?;
+    /// assert_eq!(map.slopes().len(), 64 * 64);
+    /// # Ok::<(), roughcast::texture::ShapeFault>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`ShapeFault::MomentCount`] if there are no texels.
+    pub fn from_fn(
+        width: usize,
+        height: usize,
+        slope: impl Fn([f64; 2]) -> Slope + Sync + Send,
+    ) -> Result<Self, ShapeFault> {
+        let row = |y: usize| {
+            let v = (y as f64 + 0.5) / height as f64;
+            (0..width).map(|x| slope([(x as f64 + 0.5) / width as f64, v])).collect::<Vec<_>>()
+        };
+        let slopes = parallel::map((0..height).collect(), row);
+        Self::new(width, height, slopes.concat())
+    }
+
     /// The slopes of a normal or height map, and the repairs that were made. The automatic maximum slope is
     /// [`MaxSlope::OF_ANY_MAP`](crate::MaxSlope::OF_ANY_MAP).
     ///

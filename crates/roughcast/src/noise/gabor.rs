@@ -7,8 +7,9 @@ use glam::DVec2;
 use super::gradient::{NOISE_REACH, noise_hash};
 use crate::setters::setters;
 
-/// Side of a cell of impulses, times the bandwidth: the radius at which a kernel has fallen to 1/20, where it ends.
-const CELL: f64 = 0.976_519_8;
+/// Side of a cell of impulses, times the bandwidth: the radius at which a kernel has fallen to 1/20, where it ends. The root of
+/// `ln(20) / π`.
+const CELL: f64 = 0.976_509_702_477_184_5;
 
 /// The largest number of impulses in a cell. More than this are as good as never drawn with [`MAX_IMPULSES`].
 const MOST_IN_CELL: u32 = 64;

@@ -349,6 +349,14 @@ pub const MODULES: &[Module] = &[
         role: Role::Companion,
     },
     Module {
+        name: "gabor-noise",
+        source: include_str!("../noise/gabor.wgsl"),
+        needs: &["noise"],
+        summary: "Gabor noise: random ripples of one frequency and direction",
+        citation: "Lagae et al., Procedural Noise using Sparse Gabor Convolution, 2009",
+        role: Role::Companion,
+    },
+    Module {
         name: "detail",
         source: include_str!("../detail.wgsl"),
         needs: &["distribution"],

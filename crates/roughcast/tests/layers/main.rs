@@ -7,6 +7,7 @@ mod blends;
 mod figure_10;
 mod masks;
 mod mixes;
+mod moving;
 mod refusals;
 mod support;
 mod weights;
