@@ -118,6 +118,10 @@ fn every_export_starts_with_source_conventions_and_calls() {
                 "surface-gradient" => "rc_perturbed_normal(",
                 "geometric" => "rc_geometric_covariance(",
                 "noise" => "rc_noise_distribution(",
+                "layers" => "rc_correlated_layers(",
+                "waves" => "rc_wave_distribution(",
+                "gabor-noise" => "rc_gabor_sample(",
+                "normal-blends" => "rc_blend_reoriented(",
                 _ => "_lobe(",
             };
             assert!(code_of(&text).contains(function), "{name}, {language}");

@@ -77,6 +77,9 @@ impl TryFrom<Parts> for Distribution {
     }
 }
 
+/// A filtered normal shorter than this counts as this long: its direction means nothing.
+const LEAST_LENGTH: f32 = 1e-4;
+
 impl Distribution {
     /// A single slope without unresolved bumps.
     pub fn of_slope(slope: Slope) -> Self {
@@ -189,20 +192,21 @@ impl Distribution {
     }
 
     /// The distribution of slopes that are this many times as steep, as of bumps of another height. Covariances grow with
-    /// its square, and with them Toksvig's variance `(1 - |n|) / |n|` of the filtered normal: bumps without any height leave a
-    /// unit normal.
+    /// its square, and so does the logarithm of the filtered normal's length: the length of a sum of independent bumps is the
+    /// product of theirs, and bumps without height leave a unit normal.
     #[must_use]
     pub fn scaled(self, factor: f32) -> Self {
-        let length = self.normal.length().min(1.0);
-        let scaled = self.transformed([[factor, 0.0], [0.0, factor]]);
-        let spread = length + factor * factor * (1.0 - length);
-        let (now, wanted) = (scaled.normal.length(), if spread > 0.0 { length / spread } else { 1.0 });
-        if now == 0.0 {
-            return scaled;
-        }
-        let Normal { x, y, z } = scaled.normal;
-        let scale = wanted / now;
-        scaled.with_normal(Normal { x: x * scale, y: y * scale, z: z * scale })
+        self.transformed([[factor, 0.0], [0.0, factor]]).with_power_of_length(factor * factor)
+    }
+
+    /// The distribution with a power of the length of its filtered normal, which falls as variances grow: 0 leaves a unit normal, 2
+    /// the normal of two independent sources of the same bumps.
+    #[must_use]
+    pub fn with_power_of_length(self, power: f32) -> Self {
+        let Normal { x, y, z } = self.normal;
+        let length = self.normal.length().max(LEAST_LENGTH);
+        let scale = length.powf(power) / length;
+        self.with_normal(Normal { x: x * scale, y: y * scale, z: z * scale })
     }
 
     /// The distribution with this covariance added to every Gaussian: that of other, independent bumps of mean zero.
@@ -312,10 +316,10 @@ mod tests {
         assert_eq!(bumps.scaled(0.0).normal(), Normal { x: 0.0, y: 0.0, z: 1.0 });
         assert_eq!(bumps.scaled(0.0).whole().covariance, Covariance::default());
         assert!((bumps.scaled(1.0).normal().length() - 0.9).abs() < 1e-6);
-        // Toksvig's variance, 1/9, grows fourfold; dents shorten as bumps do.
+        // As four independent sources of the same bumps; dents shorten as bumps do.
         for factor in [2.0, -2.0] {
             let length = bumps.scaled(factor).normal().length();
-            assert!((length - 1.0 / (1.0 + 4.0 / 9.0)).abs() < 1e-6, "{length}");
+            assert!((length - 0.9_f32.powi(4)).abs() < 1e-6, "{length}");
         }
     }
 

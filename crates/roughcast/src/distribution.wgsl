@@ -3,6 +3,9 @@
 // Minimum z of a filtered normal.
 const LEAST_NORMAL_Z: f32 = 0.001953125;
 
+// A filtered normal shorter than this counts as this long: its direction means nothing.
+const LEAST_NORMAL_LENGTH: f32 = 1e-4;
+
 const MAPS_WITHOUT_BASE: u32 = 0u;  // the base roughness is added at shading
 const MAPS_WITH_BASE: u32 = 1u;     // the maps include it
 
@@ -96,16 +99,24 @@ fn transformed_distribution(distribution: Distribution, new_from_old: mat2x2f) -
     );
 }
 
+// The distribution with a power of the length of its filtered normal.
+fn with_power_of_length(distribution: Distribution, power: f32) -> Distribution {
+    let size = max(length(distribution.normal), LEAST_NORMAL_LENGTH);
+    return Distribution(
+        distribution.normal * (pow(size, power) / size),
+        distribution.base,
+        distribution.first,
+        distribution.second,
+        distribution.third,
+        distribution.fourth,
+    );
+}
+
 // The distribution of slopes that are this many times as steep, as of bumps of another height. Covariances grow with its
-// square, and with them Toksvig's variance (1 - |n|) / |n| of the filtered normal.
+// square, and so does the logarithm of the length of the filtered normal.
 fn scaled_distribution(distribution: Distribution, factor: f32) -> Distribution {
-    var scaled = transformed_distribution(distribution, mat2x2f(factor, 0.0, 0.0, factor));
-    let squared = dot(scaled.normal, scaled.normal);
-    let before = min(length(distribution.normal), 1.0);
-    let spread = before + factor * factor * (1.0 - before);
-    let after = select(1.0, before / spread, spread > 0.0);
-    scaled.normal *= select(0.0, after * inverseSqrt(squared), squared > 1e-37);
-    return scaled;
+    let scaled = transformed_distribution(distribution, mat2x2f(factor, 0.0, 0.0, factor));
+    return with_power_of_length(scaled, factor * factor);
 }
 
 // A Gaussian moved by a slope and widened by a covariance (xx, yy, xy); a place that holds none stays empty.

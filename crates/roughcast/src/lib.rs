@@ -19,6 +19,8 @@
 //! 5. **Shading.** A [`texture::TexelReader`] converts filtered texels to a [`Distribution`] of slopes, and the models
 //!    in [`shading`] shade with it. [`wgsl`] contains the same functions for GPUs.
 //! 6. **Procedural bumps.** [`noise`] gives the [`Distribution`] of gradient noise under a footprint, without textures.
+//!    [`waves`] does the same for waves of water.
+//! 7. **Layers.** [`layers`] mixes, adds and masks several maps, before they are filtered or after.
 //!
 //! # Out of scope
 //!
@@ -41,15 +43,16 @@
 //!
 //! # Compatibility
 //!
-//! - *Options* ([`SourceOptions`], [`BakeOptions`], [`PbrOptions`], [`shading::ShadingOptions`], [`noise::Noise`])
-//!   are `#[non_exhaustive]`: start from `default()` and change fields with the `with_…` methods. A minor version may add
+//! - *Options* ([`SourceOptions`], [`BakeOptions`], [`PbrOptions`], [`shading::ShadingOptions`], [`noise::Noise`],
+//!   [`layers::LayerTransform`]) are `#[non_exhaustive]`: start from `default()` and change fields with the `with_…` methods. A minor version may add
 //!   a field, whose default changes no byte.
 //! - *Metadata* ([`texture::TextureInfo`]) is a plain struct with public fields. End its initialisers with
 //!   `..TextureInfo::new(…)`, even if they name all fields, because a minor version may add one.
 //! - *Reports* are `#[non_exhaustive]`: callers read them and never construct them.
 //! - *Enums* that may grow (layouts, parts, models, errors) are `#[non_exhaustive]`. Enums that every map reader or
 //!   sampler must handle are exhaustive: [`SampleType`], [`Wrap`], [`Gradient`], [`MaxSlope`], [`Kind`], [`Green`],
-//!   [`Red`], [`NormalRange`], [`HeightSense`], [`noise::NoiseKind`] and [`noise::OctaveFilter`].
+//!   [`Red`], [`NormalRange`], [`HeightSense`], [`noise::NoiseKind`], [`noise::OctaveFilter`] and
+//!   [`layers::RepeatedBumps`].
 //! - *Values* ([`Slope`], [`Moments`], [`Covariance`]) have exactly the components that they have in the papers.
 //!
 //! # Features
@@ -98,6 +101,7 @@ mod convention;
 pub mod detect;
 mod distribution;
 mod image;
+pub mod layers;
 mod levels;
 mod moments;
 mod named;
@@ -117,6 +121,7 @@ pub mod surface_gradient;
 mod survey;
 pub mod texture;
 mod vectorised;
+pub mod waves;
 pub mod wgsl;
 
 #[cfg(feature = "serde")]

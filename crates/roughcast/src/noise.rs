@@ -7,10 +7,13 @@
 //! [`Noise::distribution`] is the band-limited form: octaves that are small compared with the footprint of a pixel fade
 //! out of the mean slope, and the variance of their slopes becomes covariance. It is ours; `filtered.rs` derives it.
 //!
-//! Noise is defined in space, so a surface needs no texture coordinates. The twins in WGSL are in `noise.wgsl`.
+//! [`GaborNoise`] is noise of one frequency and direction in a plane, such as ripples, to make maps of.
+//!
+//! Noise is defined in space, so a surface needs no texture coordinates, and Gabor noise in a plane. The twins in WGSL are in `noise.wgsl`.
 
 mod fade;
 mod filtered;
+mod gabor;
 mod gradient;
 #[cfg(test)]
 mod tests;
@@ -21,6 +24,7 @@ use crate::named::named_enum;
 use crate::setters::setters;
 pub use fade::noise_fade;
 pub use filtered::{NoiseSlopes, OctaveFilter};
+pub use gabor::{GaborError, GaborNoise, GaborSample, MAX_IMPULSES};
 pub use gradient::{LARGEST_NOISE, NOISE_REACH, NOISE_SLOPE_VARIANCE, NoiseSample, gradient_noise};
 
 /// The largest number of octaves. The last has cells of 2^-23 of those of the first, as fine as a single float of the

@@ -28,7 +28,7 @@ const FOOTPRINT: &[&str] = &[
     "  or, without it, ratio = whole_footprint();",
 ];
 
-/// How to call the modules of bumps that need no tangents, in a fragment shader.
+/// How to call the modules of bumps that need no tangents or mix others, in a fragment shader.
 const BUMPS: &[(&str, &[&str])] = &[
     (
         "surface-gradient",
@@ -52,6 +52,32 @@ const BUMPS: &[(&str, &[&str])] = &[
             "  bumps of noise under the pixel, along two perpendicular unit tangents:",
             "    slopes = noise_distribution(noise, position, tangent, bitangent, dpdx(position), dpdy(position), filter);",
         ],
+    ),
+    (
+        "waves",
+        &[
+            "  a wave under the pixel; means and covariances of several waves add:",
+            "    slopes = wave_distribution(wave, position, dpdx(position), dpdy(position));",
+        ],
+    ),
+    (
+        "gabor-noise",
+        &[
+            "  gradient of the height of ripples in x and y, and the height in z: height = gabor_sample(noise, position)",
+        ],
+    ),
+    (
+        "layers",
+        &[
+            "  layers a and b with weights ta and tb, whose distributions do not include the base roughness:",
+            "    mixed = distribution_sum(scaled_distribution(a, ta), scaled_distribution(b, tb));",
+            "  and with the cross terms of their mixing texture, as raw second moments:",
+            "    pair = cross_covariance(raw, a.first.mean, b.first.mean);  mixed = correlated_layers(mixed, ta * tb * pair);",
+        ],
+    ),
+    (
+        "normal-blends",
+        &["  a detail normal on a base normal, without roughness: normal = blend_reoriented(base, detail)"],
     ),
 ];
 

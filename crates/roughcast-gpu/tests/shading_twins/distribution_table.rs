@@ -12,9 +12,9 @@ use crate::inputs::{Inputs, distribution_words, gaussian_words, weighted_words};
 use crate::table::{covariance, covariance_words, facet_words, ggx_words, one, slope, v3};
 
 /// Words of a distribution.
-const WORDS: usize = 4 + 6 * MAX_GAUSSIANS;
+pub const WORDS: usize = 4 + 6 * MAX_GAUSSIANS;
 
-fn weighted(a: &[f32]) -> WeightedGaussian {
+pub fn weighted(a: &[f32]) -> WeightedGaussian {
     WeightedGaussian { weight: a[5], mean: slope(a), covariance: covariance(&a[2..]) }
 }
 
@@ -23,7 +23,7 @@ fn whole(a: f32) -> usize {
     (a + 0.5) as usize
 }
 
-fn distribution(a: &[f32]) -> Distribution {
+pub fn distribution(a: &[f32]) -> Distribution {
     let mut parts: Vec<_> = (0..MAX_GAUSSIANS).map(|place| weighted(&a[4 + 6 * place..])).collect();
     parts.retain(|part| part.weight > 0.0);
     let mixture = Distribution::mixture(&parts).expect("one to four");
@@ -156,6 +156,13 @@ pub fn distribution_twins() -> Vec<Twin> {
             call: "put_distribution(transformed_distribution(distribution(0u), mat2x2f(f2(28u), f2(30u))));",
             arguments: |inputs| [any(inputs), matrix(inputs)].concat(),
             rust: |a, _, _| distribution_words(&distribution(a).transformed(matrix_of(&a[WORDS..]))),
+        },
+        Twin {
+            name: "with_power_of_length",
+            gives: Gives::Numbers,
+            call: "put_distribution(with_power_of_length(distribution(0u), f(28u)));",
+            arguments: |inputs| [any(inputs), vec![2.0 * inputs.unit()]].concat(),
+            rust: |a, _, _| distribution_words(&distribution(a).with_power_of_length(a[WORDS])),
         },
         Twin {
             name: "scaled_distribution",

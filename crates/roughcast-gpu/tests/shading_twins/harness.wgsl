@@ -182,3 +182,8 @@ fn put_mixture(surface: MixtureSurface) {
 fn noise(i: u32) -> Noise {
     return Noise(f(i), f(i + 1u), u32(f(i + 2u) + 0.5), u32(f(i + 3u) + 0.5), u32(f(i + 4u) + 0.5), 0u, vec2u(0u));
 }
+
+// Six numbers and two whole numbers.
+fn gabor(i: u32) -> GaborNoise {
+    return GaborNoise(f(i), f(i + 1u), f(i + 2u), f(i + 3u), f(i + 4u), f(i + 5u), u32(f(i + 6u) + 0.5), u32(f(i + 7u) + 0.5));
+}

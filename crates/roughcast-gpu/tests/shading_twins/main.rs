@@ -7,10 +7,12 @@ mod distribution_table;
 mod footprint_table;
 mod harness;
 mod inputs;
+mod layers_table;
 mod noise_table;
 mod surface_table;
 mod table;
 mod texel_table;
+mod wave_table;
 
 use std::collections::BTreeSet;
 
@@ -245,6 +247,26 @@ fn wrong_twins_are_detected() {
         ("noise_octave", "sign(value.w) * value", "abs(value)"),
         ("noise_kept", "max(footprint.centre - swing, vec2f(0.0))", "vec2f(footprint.centre)"),
         ("noise_distribution", "c.y * g.x - c.x * g.y", "c.x * g.y - c.y * g.x"),
+        ("wave_slope", "return -wave.z", "return wave.z"),
+        ("wave_distribution", "0.5 * (1.0 + squared)", "0.5"),
+        ("gerstner_part", "roundness * sin(angle) * length(wave.xy)", "roundness * sin(angle)"),
+        ("gabor_cell_hash", "((cell % side) + side) % side", "cell % side"),
+        ("gabor_impulse_count", "gabor_hash(hash + count)", "hash + count"),
+        ("gabor_kernel", "2.0 * GABOR_EXPONENT", "GABOR_EXPONENT"),
+        ("gabor_sample", "noise.cells * heights.xy", "heights.xy"),
+        ("cross_moments", "a.x * b.y + b.x * a.y", "a.x * b.y"),
+        ("cross_covariance", "fma(-2.0 * mean_a, mean_b, raw.xy)", "fma(-mean_a, mean_b, raw.xy)"),
+        ("scaled_distribution", "with_power_of_length(scaled, factor * factor)", "scaled"),
+        ("correlated_layers", "max((sigma.x + sigma.y) / before, 0.0)", "1.0"),
+        ("without_base", "layer.base == MAPS_WITH_BASE", "layer.base != MAPS_WITH_BASE"),
+        ("masked_gaussian", "second_moments / mask", "second_moments"),
+        ("masked_layers", "masks.y / area", "masks.y"),
+        ("blend_reoriented", "vec3f(-detail.xy, detail.z)", "detail"),
+        (
+            "blend_whiteout",
+            "vec3f(base.xy + detail.xy, base.z * detail.z)",
+            "vec3f(base.xy + detail.xy, base.z)",
+        ),
     ];
     for (name, from, to) in mistakes {
         assert_eq!(right.matches(from).count(), 1, "{from}");

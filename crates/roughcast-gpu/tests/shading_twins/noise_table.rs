@@ -8,7 +8,7 @@ use crate::inputs::Inputs;
 use crate::table::one;
 
 /// A whole number that the tolerance computation may have perturbed.
-fn whole(a: f32) -> i64 {
+pub fn whole(a: f32) -> i64 {
     (f64::from(a) + 0.5).floor() as i64
 }
 
@@ -53,7 +53,7 @@ fn noise(a: &[f32]) -> Noise {
 }
 
 /// The last step of MurmurHash3.
-fn mixed(key: u32) -> u32 {
+pub fn mixed(key: u32) -> u32 {
     let key = (key ^ key >> 16).wrapping_mul(0x85eb_ca6b);
     let key = (key ^ key >> 13).wrapping_mul(0xc2b2_ae35);
     key ^ key >> 16

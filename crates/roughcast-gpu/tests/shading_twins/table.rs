@@ -7,9 +7,11 @@ use crate::distribution_table::{distribution_twins, model_twins};
 use crate::footprint_table::{footprint_twins, masking_twins};
 use crate::harness::{Gives, Twin};
 use crate::inputs::{Inputs, gaussian_words};
+use crate::layers_table::layer_twins;
 use crate::noise_table::noise_twins;
 use crate::surface_table::bump_twins;
 use crate::texel_table::texel_twins;
+use crate::wave_table::wave_twins;
 
 pub fn v3(a: &[f32]) -> [f32; 3] {
     [a[0], a[1], a[2]]
@@ -267,6 +269,8 @@ pub fn twins() -> Vec<Twin> {
         bump_twins(),
         lobe_twins(),
         noise_twins(),
+        layer_twins(),
+        wave_twins(),
     ]
     .into_iter()
     .flatten()

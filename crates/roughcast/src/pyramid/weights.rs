@@ -64,12 +64,17 @@ fn wrapped(index: isize, size: usize, wrap: Wrap) -> usize {
 /// coverage. The weights of every texel sum to 1, so a constant stays constant, and every finer texel counts `to /
 /// from` in total, so means are preserved, whatever the size, the filter and the wrap mode.
 pub(crate) fn halving(from: usize, filter: PyramidFilter, wrap: Wrap) -> Vec<Taps> {
-    let to = (from / 2).max(1);
-    let ratio = from as f64 / to as f64;
-    (0..to)
-        .map(|j| kernel_weights(j, ratio, from, filter, wrap))
+    halving_in_doubles(from, filter, wrap)
+        .into_iter()
         .map(|line| Taps { taps: line.into_iter().map(|(i, w)| (i, w as f32)).collect() })
         .collect()
+}
+
+/// The same weights before they are rounded: for each texel of the coarser line, the finer texels and their weights.
+pub(crate) fn halving_in_doubles(from: usize, filter: PyramidFilter, wrap: Wrap) -> Vec<Vec<(usize, f64)>> {
+    let to = (from / 2).max(1);
+    let ratio = from as f64 / to as f64;
+    (0..to).map(|j| kernel_weights(j, ratio, from, filter, wrap)).collect()
 }
 
 fn kernel_weights(j: usize, ratio: f64, from: usize, filter: PyramidFilter, wrap: Wrap) -> Vec<(usize, f64)> {

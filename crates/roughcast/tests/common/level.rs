@@ -157,7 +157,8 @@ pub fn decoded(arrays: &[TextureArray]) -> Vec<Level> {
     levels.iter().map(from_decoded).collect()
 }
 
-fn from_decoded(level: &MomentLevel) -> Level {
+/// A level of the library in f64.
+pub fn from_decoded(level: &MomentLevel) -> Level {
     let texels = level
         .moments()
         .iter()
