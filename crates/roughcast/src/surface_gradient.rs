@@ -198,6 +198,17 @@ pub fn slope_matrix(
     if matrix.iter().flatten().all(|entry| entry.is_finite()) { matrix } else { [[0.0; 2]; 2] }
 }
 
+/// The change of the position to where the ray of an adjacent pixel meets the tangent plane: σ_s or σ_t where there are no
+/// derivative instructions, such as in a deferred pass, a compute shader or a ray tracer.
+///
+/// `normal` is that of the tangent plane, of any length: the face's for the derivatives that a pixel shader has on a triangle, or the
+/// shading normal after a bump, when more bumps follow. The ray starts at `origin`; the length of `direction` does not
+/// matter. Zero if the ray does not meet the plane.
+pub fn position_derivative(position: DVec3, normal: DVec3, origin: DVec3, direction: DVec3) -> DVec3 {
+    let distance = normal.dot(position - origin) / normal.dot(direction);
+    finite_or_flat((origin - position) + direction * distance)
+}
+
 /// Two unit vectors perpendicular to a unit normal and to each other.
 ///
 /// Source: Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6 (1), 2017.

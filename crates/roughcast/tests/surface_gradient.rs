@@ -315,6 +315,23 @@ fn the_face_and_its_displacement_point_to_the_given_side() {
 }
 
 #[test]
+fn rays_of_adjacent_pixels_give_the_derivatives_of_a_plane_and_of_its_surface_gradient() {
+    let mut numbers = Numbers(12);
+    for _ in 0..1000 {
+        let (p, n) = (numbers.vector(), numbers.vector().normalize());
+        let [s, t] = any_tangents(n).map(|axis| axis * 0.1 * (1.5 + numbers.next()));
+        let origin = p + n * (2.0 + numbers.next()) + s - t * 3.0;
+        // Whatever the lengths of the ray's direction and of the normal.
+        let sigma = |offset: DVec3| position_derivative(p, n * 3.0, origin, (p + offset - origin) * 0.7);
+        assert!((sigma(s) - s).length() < ROUNDING && (sigma(t) - t).length() < ROUNDING);
+        let gradient = surface_gradient(sigma(s), sigma(t), n, 0.3, -0.2);
+        assert!((gradient - surface_gradient(s, t, n, 0.3, -0.2)).length() < 100.0 * ROUNDING);
+    }
+    assert_eq!(position_derivative(DVec3::X, DVec3::Z, DVec3::Z, DVec3::X), DVec3::ZERO);
+    assert_eq!(position_derivative(DVec3::X, DVec3::Z, DVec3::Z, DVec3::NAN), DVec3::ZERO);
+}
+
+#[test]
 fn the_scale_free_frame_ignores_the_size_of_the_texture_and_keeps_its_shape() {
     let basis = surface_basis(DVec3::X, DVec3::new(0.4, 1.0, 0.0), DVec3::Z);
     let frame = |scale: f64| {

@@ -99,6 +99,17 @@ fn neighbours(inputs: &mut Inputs) -> Vec<f32> {
     all
 }
 
+/// A position with a normal, and a ray that meets the plane near the position at no less than a few degrees.
+fn plane_and_ray(inputs: &mut Inputs) -> Vec<f32> {
+    let (p, n) = (normal(inputs), normal(inputs));
+    let [tangent, bitangent] = any_tangents(vector(&n).normalize());
+    let mut number = || f64::from(inputs.between(-1.0, 1.0));
+    let offset = 0.1 * (tangent * number() + bitangent * number());
+    let towards = vector(&n) * (2.0 + number()) + tangent * number() + bitangent * number();
+    let ray = both([vector(&p) + towards, offset - towards]);
+    [&p[..], &n, &ray].concat()
+}
+
 fn frame(inputs: &mut Inputs) -> Vec<f32> {
     both(any_tangents(vector(&normal(inputs)).normalize()))
 }
@@ -192,6 +203,15 @@ fn normal_twins() -> Vec<Twin> {
             rust: |a, _, _| {
                 let (s, t, n) = (vector(a), vector(&a[3..]), vector(&a[6..]));
                 words(displaced_normal(s, t, n, f64::from(a[9]), f64::from(a[10])))
+            },
+        },
+        Twin {
+            name: "position_derivative",
+            gives: Gives::Numbers,
+            call: "put3(position_derivative(f3(0u), f3(3u), f3(6u), f3(9u)));",
+            arguments: plane_and_ray,
+            rust: |a, _, _| {
+                words(position_derivative(vector(a), vector(&a[3..]), vector(&a[6..]), vector(&a[9..])))
             },
         },
         Twin {
