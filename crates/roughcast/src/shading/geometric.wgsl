@@ -16,7 +16,7 @@ fn geometric_covariance(normal_dx: vec2f, normal_dy: vec2f, filtering: Geometric
     if larger <= limit {
         return bent;
     }
-    // False for what is not finite.
+    // The comparison is false for NaN too.
     if !(larger < 1e15) {
         return vec3f(0.0);
     }
