@@ -13,27 +13,26 @@ const WAVE_LEAST_EXPONENT: f32 = -80.0;
 // The least part of the length of the water that Gerstner's waves leave of it: a slope of 512 times theirs.
 const WAVE_LEAST_PINCH: f32 = 0.001953125;
 
-// The phase at a position, within half a turn of zero, where a GPU's sine is accurate.
-fn wave_angle(wave: vec4f, p: vec2f) -> f32 {
-    let turns = (dot(wave.xy, p) + wave.w) / WAVE_TURN;
-    return WAVE_TURN * (turns - floor(turns + 0.5));
+// The phase at a position, in turns.
+fn wave_turns(wave: vec4f, p: vec2f) -> f32 {
+    return (dot(wave.xy, p) + wave.w) / WAVE_TURN;
 }
 
 // The height at a position.
 fn wave_height(wave: vec4f, p: vec2f) -> f32 {
-    return wave.z * sin(wave_angle(wave, p));
+    return wave.z * sine_of_turns(wave_turns(wave, p));
 }
 
 // The slope at a position: minus the gradient of the height.
 fn wave_slope(wave: vec4f, p: vec2f) -> vec2f {
-    return -wave.z * cos(wave_angle(wave, p)) * wave.xy;
+    return -wave.z * cosine_of_turns(wave_turns(wave, p)) * wave.xy;
 }
 
 // Mean and covariance of the slopes under the footprint of a pixel, given the changes of p to the adjacent pixels.
 fn wave_distribution(wave: vec4f, p: vec2f, p_dx: vec2f, p_dy: vec2f) -> WeightedGaussian {
     let across = vec2f(dot(wave.xy, p_dx), dot(wave.xy, p_dy));
     let kept = exp(max(-0.5 * WAVE_PIXEL_VARIANCE * dot(across, across), WAVE_LEAST_EXPONENT));
-    let cosine = cos(wave_angle(wave, p));
+    let cosine = cosine_of_turns(wave_turns(wave, p));
     let steepness = wave.z * wave.xy;
     // What the footprint hides, as a product without cancellation.
     let squared = kept * kept;
@@ -46,8 +45,8 @@ fn wave_distribution(wave: vec4f, p: vec2f, p_dx: vec2f, p_dy: vec2f) -> Weighte
 // The part of one of Gerstner's waves in the normal of the water that rests at p: a slope, and in z what the surface is
 // shortened by. `roundness` is 1 for water that moves in circles, 0 for plain sines.
 fn gerstner_part(wave: vec4f, p: vec2f, roundness: f32) -> vec3f {
-    let angle = wave_angle(wave, p);
-    return wave.z * vec3f(-cos(angle) * wave.xy, roundness * sin(angle) * length(wave.xy));
+    let turns = wave_turns(wave, p);
+    return wave.z * vec3f(-cosine_of_turns(turns) * wave.xy, roundness * sine_of_turns(turns) * length(wave.xy));
 }
 
 // The slope of Gerstner's waves, from the sum of their parts.

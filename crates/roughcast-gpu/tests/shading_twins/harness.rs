@@ -49,8 +49,6 @@ pub enum Gives {
     Noise,
     /// The four words of a footprint of noise, whose direction is a small difference if it is nearly round.
     Footprint,
-    /// Sines of angles within half a turn, times numbers of the size of one.
-    Sines,
     /// The eight words of a facet of GGX, whose tangent is a small difference of vectors.
     Ggx,
 }
@@ -131,9 +129,6 @@ const CANCELLED_ULPS: f32 = 4.0;
 /// the factor of a difference of up to 3.
 const NOISE_ULPS: f32 = 16.0;
 
-/// The error of a GPU's sine and cosine within half a turn (Vulkan), twice: that of the direction of a kernel changes its phase.
-const SINE: f32 = 1.0 / 1024.0;
-
 /// Relative error allowed in addition: a GPU's `exp` is off by 3 + 2 |x| units (Vulkan), here with |x| <= 87, and its
 /// `log` near 1 by 2^-21, which an exponent of at most 430 (beyond it nothing is left where `log` is used) amplifies to
 /// 1e-4.
@@ -181,7 +176,6 @@ fn cancellation(gives: Gives, wanted: &[f32]) -> Vec<f32> {
         }
         // The part of the derivatives along the shorter axis.
         Gives::Axes => left[4..6].fill(unit * wanted[0].sqrt() / wanted[1]),
-        Gives::Sines => left.fill(SINE),
         Gives::Noise => left.fill(NOISE_ULPS * f32::EPSILON),
         Gives::Footprint => {
             left[..2].fill(unit * wanted[2] / wanted[3].max(unit * wanted[2]));

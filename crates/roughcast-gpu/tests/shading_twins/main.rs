@@ -133,6 +133,17 @@ fn far_results_allowed(name: &str) -> f64 {
         "noise_kept" => 0.04,
         // Nearly round footprints have no longer axis.
         "noise_footprint" => 5e-4,
+        // Sines near their zeros, and what large footprints leave of waves, or small ones hide.
+        "sine_of_turns" | "wave_turns" => 0.001,
+        "cosine_of_turns" | "wave_height" => 0.002,
+        "wave_slope" | "gerstner_part" => 0.006,
+        "wave_distribution" => 0.3,
+        // Kernels near their ends.
+        "gabor_kernel" | "gabor_sample" => 0.02,
+        // Means and products that nearly cancel, and normals with a component near zero.
+        "cross_moments" | "blend_partial_derivatives" => 3e-4,
+        "blend_reoriented" => 1e-4,
+        "masked_layers" => 3e-5,
         _ => 0.0,
     }
 }
@@ -247,9 +258,14 @@ fn wrong_twins_are_detected() {
         ("noise_octave", "sign(value.w) * value", "abs(value)"),
         ("noise_kept", "max(footprint.centre - swing, vec2f(0.0))", "vec2f(footprint.centre)"),
         ("noise_distribution", "c.y * g.x - c.x * g.y", "c.x * g.y - c.y * g.x"),
+        ("sine_of_turns", "-1.0 / 5040.0 + s *", "s *"),
         ("wave_slope", "return -wave.z", "return wave.z"),
         ("wave_distribution", "0.5 * (1.0 + squared)", "0.5"),
-        ("gerstner_part", "roundness * sin(angle) * length(wave.xy)", "roundness * sin(angle)"),
+        (
+            "gerstner_part",
+            "roundness * sine_of_turns(turns) * length(wave.xy)",
+            "roundness * sine_of_turns(turns)",
+        ),
         ("gabor_cell_hash", "((cell % side) + side) % side", "cell % side"),
         ("gabor_impulse_count", "gabor_hash(hash + count)", "hash + count"),
         ("gabor_kernel", "2.0 * GABOR_EXPONENT", "GABOR_EXPONENT"),

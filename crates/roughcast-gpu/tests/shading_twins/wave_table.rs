@@ -32,12 +32,6 @@ fn wave_and_position(inputs: &mut Inputs) -> Vec<f32> {
     [&vector[..], &[height, inputs.between(0.0, 6.28)], &position].concat()
 }
 
-/// The angle within half a turn of zero.
-fn angle(a: &[f32]) -> f64 {
-    let angle = pair(a).dot(pair(&a[4..])) + f64::from(a[3]);
-    angle - TAU * (angle / TAU + 0.5).floor()
-}
-
 pub fn wave_twins() -> Vec<Twin> {
     [sine_twins(), hash_twins(), gabor_twins()].into_iter().flatten().collect()
 }
@@ -45,37 +39,43 @@ pub fn wave_twins() -> Vec<Twin> {
 fn sine_twins() -> Vec<Twin> {
     vec![
         Twin {
-            name: "wave_angle",
+            name: "sine_of_turns",
             gives: Gives::Noise,
-            call: "put(wave_angle(f4(0u), f2(4u)));",
-            arguments: |inputs| {
-                loop {
-                    // Angles of half a turn have either sign.
-                    let words = wave_and_position(inputs);
-                    if angle(&words).abs() < 3.141 {
-                        return words;
-                    }
-                }
-            },
-            rust: |a, _, _| one(angle(a) as f32),
+            call: "put(sine_of_turns(f(0u)));",
+            arguments: |inputs| vec![inputs.between(-8.0, 8.0)],
+            rust: |a, _, _| one((TAU * f64::from(a[0])).sin() as f32),
+        },
+        Twin {
+            name: "cosine_of_turns",
+            gives: Gives::Noise,
+            call: "put(cosine_of_turns(f(0u)));",
+            arguments: |inputs| vec![inputs.between(-8.0, 8.0)],
+            rust: |a, _, _| one((TAU * f64::from(a[0])).cos() as f32),
+        },
+        Twin {
+            name: "wave_turns",
+            gives: Gives::Noise,
+            call: "put(wave_turns(f4(0u), f2(4u)));",
+            arguments: wave_and_position,
+            rust: |a, _, _| one(((pair(a).dot(pair(&a[4..])) + f64::from(a[3])) / TAU) as f32),
         },
         Twin {
             name: "wave_height",
-            gives: Gives::Sines,
+            gives: Gives::Noise,
             call: "put(wave_height(f4(0u), f2(4u)));",
             arguments: wave_and_position,
             rust: |a, _, _| one(wave(a).height(pair(&a[4..])) as f32),
         },
         Twin {
             name: "wave_slope",
-            gives: Gives::Sines,
+            gives: Gives::Noise,
             call: "put2(wave_slope(f4(0u), f2(4u)));",
             arguments: wave_and_position,
             rust: |a, _, _| singles(&wave(a).slope(pair(&a[4..])).to_array()),
         },
         Twin {
             name: "wave_distribution",
-            gives: Gives::Sines,
+            gives: Gives::Noise,
             call: "let s = wave_distribution(f4(0u), f2(4u), f2(6u), f2(8u)); put2(s.mean); put2(s.variance); put(s.covariance);",
             arguments: |inputs| {
                 let [ax, ay, bx, by] = inputs.footprint();
@@ -90,7 +90,7 @@ fn sine_twins() -> Vec<Twin> {
         },
         Twin {
             name: "gerstner_part",
-            gives: Gives::Sines,
+            gives: Gives::Noise,
             call: "put3(gerstner_part(f4(0u), f2(4u), f(6u)));",
             arguments: |inputs| [wave_and_position(inputs), vec![inputs.unit()]].concat(),
             rust: |a, _, _| {
@@ -142,7 +142,7 @@ fn gabor(a: &[f32]) -> GaborNoise {
 
 /// A whole number of this many bits, which a single float holds, as a hash.
 fn short_hash(inputs: &mut Inputs) -> f32 {
-    inputs.below(1 << 20) as f32
+    inputs.below(1 << 16) as f32
 }
 
 fn unit_of(hash: u32) -> f64 {
@@ -202,7 +202,7 @@ fn gabor_twins() -> Vec<Twin> {
     vec![
         Twin {
             name: "gabor_kernel",
-            gives: Gives::Sines,
+            gives: Gives::Noise,
             call: "put3(gabor_kernel(gabor(0u), gabor_hash(u32(f(8u) + 0.5)), u32(f(9u) + 0.5), f2(10u)) / 8.0);",
             arguments: |inputs| {
                 let place = [short_hash(inputs), inputs.below(8) as f32];
@@ -228,7 +228,7 @@ fn gabor_twins() -> Vec<Twin> {
         },
         Twin {
             name: "gabor_sample",
-            gives: Gives::Sines,
+            gives: Gives::Noise,
             call: "put3(gabor_sample(gabor(0u), f2(8u)));",
             arguments: |inputs| {
                 let p = [inputs.between(-4.0, 4.0), inputs.between(-4.0, 4.0)];

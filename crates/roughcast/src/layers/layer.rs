@@ -7,13 +7,14 @@ use crate::options::SourceOptions;
 /// A map of bumps with its place on the surface and its weight.
 ///
 /// ```
-/// use roughcast::layers::{Layer, LayerTransform};
-/// use roughcast::{Image, SampleType};
+/// use roughcast::layers::{Layer, LayerTransform, Layers};
+/// use roughcast::{Image, Samples};
 ///
-/// let map = Image::zeros(64, 64, 3, SampleType::F32);
+/// let flat = Image::new(64, 64, 3, Samples::U8([128, 128, 255].repeat(64 * 64)))?;
 /// let drifting = LayerTransform::default().with_repeats([4.0, 4.0]).with_velocity([0.1, 0.0]);
-/// let layer = Layer::of(&map).transform(drifting).weight(0.5);
-/// assert_eq!(layer.weight_at_most(), 0.5);
+/// let layers = vec![Layer::of(&flat).weight(0.5), Layer::of(&flat).transform(drifting).weight(0.5)];
+/// assert_eq!(Layers::new(layers).at(2.5).joint()?.width(), 64);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Layer<'a> {
@@ -59,10 +60,5 @@ impl<'a> Layer<'a> {
     #[must_use]
     pub fn mask(self, mask: impl Into<Option<ImageView<'a>>>) -> Self {
         Self { mask: mask.into(), ..self }
-    }
-
-    /// The weight, without the mask.
-    pub fn weight_at_most(&self) -> f32 {
-        self.weight
     }
 }

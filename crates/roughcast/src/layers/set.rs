@@ -89,13 +89,25 @@ impl<'a> Layers<'a> {
     /// # Errors
     /// [`LayerError`] if there are no layers, one cannot be read, or the weights of a texel do not sum to one.
     pub fn joint(&self) -> Result<SlopeMap, LayerError> {
+        self.heights_combined(LayerMethod::Joint)
+    }
+
+    /// The same for [`LayerMethod::Add`]: the slopes of all heights added, with the weights as factors.
+    ///
+    /// # Errors
+    /// [`LayerError`] if there are no layers, one cannot be read, or a weight is not finite.
+    pub fn sum(&self) -> Result<SlopeMap, LayerError> {
+        self.heights_combined(LayerMethod::Add)
+    }
+
+    fn heights_combined(&self, method: LayerMethod) -> Result<SlopeMap, LayerError> {
         self.check()?;
         let constant = self.layers.iter().all(|layer| layer.mask.is_none());
         let wanted = if constant { Wanted::Slopes } else { Wanted::SlopesAndHeights };
         let (width, height) = self.size;
         let weights = self.weights();
         for texel in 0..width * height {
-            check_weights(LayerMethod::Joint, weights.iter().map(|weights| f64::from(weights[texel])))?;
+            check_weights(method, weights.iter().map(|weights| f64::from(weights[texel])))?;
         }
         let mut sums = vec![[0.0_f64; 2]; width * height];
         for (index, (layer, weights)) in self.layers.iter().zip(&weights).enumerate() {

@@ -60,13 +60,11 @@ fn gabor_kernel(noise: GaborNoise, hash: u32, index: u32, at: vec2f) -> vec3f {
     if squared >= 1.0 {
         return vec3f(0.0);
     }
-    let turn = noise.direction + noise.spread * (2.0 * gabor_uniform(words.w) - 1.0);
-    let across = vec2f(cos(turn), sin(turn));
+    let turn = (noise.direction + noise.spread * (2.0 * gabor_uniform(words.w) - 1.0)) / GABOR_TURN;
+    let across = vec2f(cosine_of_turns(turn), sine_of_turns(turn));
     let envelope = (2.0 * gabor_uniform(words.z) - 1.0) * exp(-GABOR_EXPONENT * squared);
     let phase = noise.cycles * dot(x, across);
-    // Within half a turn of zero, where a GPU's sine is accurate.
-    let angle = GABOR_TURN * (phase - floor(phase + 0.5));
-    let wave = vec2f(cos(angle), sin(angle));
+    let wave = vec2f(cosine_of_turns(phase), sine_of_turns(phase));
     let gradient = 2.0 * GABOR_EXPONENT * wave.x * x + GABOR_TURN * noise.cycles * wave.y * across;
     return envelope * vec3f(-gradient, wave.x);
 }

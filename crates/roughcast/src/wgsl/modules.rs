@@ -341,9 +341,17 @@ pub const MODULES: &[Module] = &[
         role: Role::Companion,
     },
     Module {
+        name: "sine",
+        source: include_str!("../sine.wgsl"),
+        needs: &[],
+        summary: "sines that all graphics cards compute alike",
+        citation: "",
+        role: Role::Part,
+    },
+    Module {
         name: "waves",
         source: include_str!("../waves.wgsl"),
-        needs: &["distribution"],
+        needs: &["sine", "distribution"],
         summary: "travelling waves of water, and the distribution of their slopes under a footprint",
         citation: "Gerstner, 1802; Tessendorf, Simulating Ocean Water, 2001",
         role: Role::Companion,
@@ -351,7 +359,7 @@ pub const MODULES: &[Module] = &[
     Module {
         name: "gabor-noise",
         source: include_str!("../noise/gabor.wgsl"),
-        needs: &["noise"],
+        needs: &["sine", "noise"],
         summary: "Gabor noise: random ripples of one frequency and direction",
         citation: "Lagae et al., Procedural Noise using Sparse Gabor Convolution, 2009",
         role: Role::Companion,

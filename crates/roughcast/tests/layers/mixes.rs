@@ -332,6 +332,18 @@ fn added_layers_are_the_sum_of_independent_bumps() {
     assert!(wanted[1] > 3.0, "{wanted:?}");
 }
 
+/// Heights that are added when one map is made, with factors of any sum.
+#[test]
+fn one_map_of_added_heights_is_the_filtered_sum() {
+    for maps in cases() {
+        let factors: Vec<f32> = (0..maps.maps.len()).map(|i| 1.5 - i as f32).collect();
+        let largest =
+            largest_moment(&maps.slopes()) * f64::from(factors.iter().map(|t| t.abs()).sum::<f32>());
+        let sum = Layers::new(maps.layers(&factors)).sum().expect("valid").moments(BOX, Wrap::Repeat);
+        expect(compare(&sum, &oracle(&maps, &factors, BOX, Wrap::Repeat), largest), &maps.name);
+    }
+}
+
 /// A shader folds layers and pairs one by one.
 #[test]
 fn layers_may_be_folded_one_by_one() {
