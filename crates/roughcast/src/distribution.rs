@@ -188,9 +188,9 @@ impl Distribution {
         self
     }
 
-    /// The distribution of slopes that are this many times as steep, as of bumps of another height. Covariances grow with
-    /// its square, and with them Toksvig's variance `(1 - |n|) / |n|` of the filtered normal: bumps without any height leave a
-    /// unit normal.
+    /// The distribution of slopes that are this many times as steep, as of bumps of another height. Covariances grow
+    /// with its square, and with them Toksvig's variance `(1 - |n|) / |n|` of the filtered normal: bumps without any
+    /// height leave a unit normal.
     #[must_use]
     pub fn scaled(self, factor: f32) -> Self {
         let length = self.normal.length().min(1.0);
@@ -214,9 +214,9 @@ impl Distribution {
         self
     }
 
-    /// The distribution of the sum of two independent slopes: of bumps on top of others. Means and covariances add. Of two
-    /// distributions with several Gaussians, the one with fewer, or else `other`, is taken as a whole. The covariances contain the base
-    /// roughness if one of the two did.
+    /// The distribution of the sum of two independent slopes: of bumps on top of others. Means and covariances add. Of
+    /// two distributions with several Gaussians, the one with fewer, or else `other`, is taken as a whole. The
+    /// covariances contain the base roughness if one of the two did.
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
         if self.count < other.count {
@@ -311,11 +311,11 @@ mod tests {
         let bumps = Distribution::gaussian(Slope { x: 0.1, y: -0.2 }, covariance).with_normal(shortened);
         assert_eq!(bumps.scaled(0.0).normal(), Normal { x: 0.0, y: 0.0, z: 1.0 });
         assert_eq!(bumps.scaled(0.0).whole().covariance, Covariance::default());
-        assert!((bumps.scaled(1.0).normal().length() - 0.9).abs() < 1e-6);
+        assert!((bumps.scaled(1.0).normal().length() - 0.9).abs() < ROUNDING);
         // Toksvig's variance, 1/9, grows fourfold; dents shorten as bumps do.
         for factor in [2.0, -2.0] {
             let length = bumps.scaled(factor).normal().length();
-            assert!((length - 1.0 / (1.0 + 4.0 / 9.0)).abs() < 1e-6, "{length}");
+            assert!((length - 1.0 / (1.0 + 4.0 / 9.0)).abs() < ROUNDING, "{length}");
         }
     }
 
