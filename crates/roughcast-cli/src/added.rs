@@ -12,8 +12,9 @@ use roughcast_io::Limits;
 use roughcast_pipeline::{Map, MapOptions, TextureOptions, bake_for};
 use roughcast_scene::{Placement, TangentSource};
 
+use crate::args::{finite, positive};
 use crate::bumps::FrameChoice;
-use crate::{findings, refusals, textures};
+use crate::{findings, refusals, textures, usage};
 
 /// A map on top of others, with its own place and strength.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,11 +47,35 @@ pub struct DecalBox {
 }
 
 /// What `--add` takes, for messages.
-const WANTED: &str = "it must be MAP[,strength=X][,uv-set=N][,frame=mesh|screen|triplanar][,decal=X:Y:Z:SIZE[:AXIS]]\
-                      [,world-height=X][,kind=normal|height][,green=up|down]";
+const WANTED: &str = "it must be MAP[,SETTING=VALUE...], with the settings strength, uv-set, frame, decal, world-height, kind \
+                      and green";
 
 /// The names of the settings after the path.
 const SETTINGS: [&str; 7] = ["strength", "uv-set", "frame", "decal", "world-height", "kind", "green"];
+
+/// The settings that decide where a map lies.
+#[derive(Default)]
+struct PlaceSettings {
+    frame: Option<FrameChoice>,
+    uv_set: Option<usize>,
+    decal: Option<DecalBox>,
+}
+
+impl PlaceSettings {
+    fn place(self) -> Result<Place, String> {
+        match (self.decal, self.frame, self.uv_set) {
+            (Some(decal), None, None) => Ok(Place::Box(decal)),
+            (Some(_), ..) => Err("a decal is placed by its box: leave out frame and uv-set".to_owned()),
+            (None, Some(FrameChoice::Triplanar), Some(_)) => {
+                Err("frame=triplanar uses no texture coordinates: leave out uv-set".to_owned())
+            }
+            (None, Some(frame), set) => Ok(Place::Frame(frame, set.unwrap_or(0))),
+            // The tangents of a mesh are those of its first set.
+            (None, None, Some(set)) if set > 0 => Ok(Place::Frame(FrameChoice::Screen, set)),
+            (None, None, _) => Ok(Place::Frame(FrameChoice::Mesh, 0)),
+        }
+    }
+}
 
 impl AddedMap {
     pub fn parse(text: &str) -> Result<Self, String> {
@@ -69,44 +94,35 @@ impl AddedMap {
             kind: None,
             green: None,
         };
-        let (mut frame, mut uv_set, mut decal) = (None, None, None);
+        let (mut place, mut given) = (PlaceSettings::default(), Vec::new());
         for setting in settings.split(',').skip(1) {
             let (name, value) = setting.split_once('=').ok_or(WANTED)?;
-            let wrong = |words: &str| format!("{name}={value}: {words}");
-            let number = || match value.parse::<f64>() {
-                Ok(number) if number.is_finite() => Ok(number),
-                _ => Err(wrong("it must be a number")),
-            };
-            match name {
-                "strength" => map.strength = number()? as f32,
-                "uv-set" => {
-                    let set: usize =
-                        value.parse().map_err(|_| wrong("it must be a whole number, from 0 on"))?;
-                    uv_set = Some(set);
-                }
-                "frame" => frame = Some(named::<FrameChoice>(value).map_err(|e| wrong(&e))?),
-                "decal" => decal = Some(value.parse::<DecalBox>().map_err(|e| wrong(&e))?),
-                "world-height" if number()? > 0.0 => map.world_height = Some(number()?),
-                "world-height" => return Err(wrong("it must be a number above zero")),
-                "kind" => map.kind = Some(named(value).map_err(|e| wrong(&e))?),
-                "green" => map.green = Some(named(value).map_err(|e| wrong(&e))?),
-                _ => return Err(WANTED.to_owned()),
+            if given.contains(&name) {
+                return Err(format!("{name} is given twice"));
             }
+            given.push(name);
+            map.set(&mut place, name, value).map_err(|words| format!("{name}={value}: {words}"))?;
         }
-        map.place = match (decal, frame, uv_set) {
-            (Some(decal), None, None) => Place::Box(decal),
-            (Some(_), ..) => {
-                return Err("a decal is placed by its box: leave out frame and uv-set".to_owned());
-            }
-            (None, Some(FrameChoice::Triplanar), Some(_)) => {
-                return Err("frame=triplanar uses no texture coordinates: leave out uv-set".to_owned());
-            }
-            (None, Some(frame), set) => Place::Frame(frame, set.unwrap_or(0)),
-            // The tangents of a mesh are those of its first set.
-            (None, None, Some(set)) if set > 0 => Place::Frame(FrameChoice::Screen, set),
-            (None, None, _) => Place::Frame(FrameChoice::Mesh, 0),
-        };
+        map.place = place.place()?;
         Ok(map)
+    }
+
+    /// Applies a setting, or says what is wrong with it.
+    fn set(&mut self, place: &mut PlaceSettings, name: &str, value: &str) -> Result<(), String> {
+        match name {
+            "strength" => self.strength = finite(value)?,
+            "uv-set" => {
+                let set = value.parse().map_err(|_| "it must be a whole number, 0 or above")?;
+                place.uv_set = Some(set);
+            }
+            "frame" => place.frame = Some(named(value)?),
+            "decal" => place.decal = Some(value.parse()?),
+            "world-height" => self.world_height = Some(positive(value)?.into()),
+            "kind" => self.kind = Some(named(value)?),
+            "green" => self.green = Some(named(value)?),
+            _ => return Err(format!("there is no such setting, only {}", SETTINGS.join(", "))),
+        }
+        Ok(())
     }
 
     /// The set of texture coordinates that it uses, if it uses any.
@@ -115,6 +131,10 @@ impl AddedMap {
             Place::Frame(FrameChoice::Triplanar, _) | Place::Box(_) => None,
             Place::Frame(_, set) => Some(set),
         }
+    }
+
+    pub fn is_decal(&self) -> bool {
+        matches!(self.place, Place::Box(_))
     }
 
     /// How the map is placed, given its width in texels, in a scene whose textures repeat this often per unit of length.
@@ -134,7 +154,21 @@ impl AddedMap {
 
     /// Reads the map, or the file that `bake` wrote.
     pub fn load(&self, limits: &Limits) -> Result<AddedContent> {
+        // A misspelt setting is taken for a part of the path.
+        if self.path.to_string_lossy().contains(',') && !self.path.exists() {
+            let line = format!(
+                "there is no such file; the settings that may follow one are {}",
+                SETTINGS.join(", ")
+            );
+            return Err(usage(&self.path, &line));
+        }
         if textures::is_baked(&self.path, limits) {
+            if self.kind.is_some() || self.green.is_some() {
+                return Err(usage(
+                    &self.path,
+                    "kind and green are for maps, and `bake` wrote this file: leave them out",
+                ));
+            }
             return Ok(AddedContent::Baked(textures::read_with_parts(&self.path, limits)?));
         }
         let mut options = MapOptions::default();
@@ -156,11 +190,11 @@ pub enum AddedContent {
 }
 
 impl AddedContent {
-    /// Width of level 0.
-    pub fn width(&self) -> usize {
+    /// Width and height of level 0.
+    pub fn size(&self) -> (usize, usize) {
         match self {
-            Self::Map(map) => map.image.width(),
-            Self::Baked(arrays) => arrays[0].size().0,
+            Self::Map(map) => (map.image.width(), map.image.height()),
+            Self::Baked(arrays) => arrays[0].size(),
         }
     }
 
@@ -199,7 +233,8 @@ impl FromStr for DecalBox {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wanted = "it must be X:Y:Z:SIZE[:AXIS], the centre of a cube, its side, and where the map faces: x, y, z, -x, -y or -z";
+        let wanted = "it must be X:Y:Z:SIZE[:AXIS], the centre of a cube, its side, and where the map faces: x, y, z, -x, -y \
+                      or -z";
         let mut parts = text.split(':');
         let mut number = || match parts.next().map(str::parse::<f64>) {
             Some(Ok(number)) if number.is_finite() => Ok(number),
@@ -216,7 +251,9 @@ impl FromStr for DecalBox {
             Some("-z") => DVec3::NEG_Z,
             Some(_) => return Err(wanted.to_owned()),
         };
-        if size <= 0.0 || parts.next().is_some() {
+        // The reciprocal of the side, with which positions are multiplied, must be a finite single float.
+        let is_a_size = size > 0.0 && (size.recip() as f32).is_finite();
+        if !is_a_size || parts.next().is_some() {
             return Err(wanted.to_owned());
         }
         Ok(Self { centre, size, towards })
@@ -246,11 +283,14 @@ mod tests {
             "",
             ",strength=1",
             "a.png,strength=x",
+            "a.png,strength=1e39",
+            "a.png,strength=1,strength=2",
             "a.png,uv-set=-1",
             "a.png,frame=world",
             "a.png,strength=1,colour=red",
             "a.png,decal=1:2:3",
             "a.png,decal=1:2:3:0",
+            "a.png,decal=1:2:3:1e-40",
             "a.png,decal=1:2:3:1:w",
             "a.png,decal=1:2:3:1,uv-set=1",
             "a.png,frame=triplanar,uv-set=1",

@@ -153,8 +153,8 @@ pub struct SourceArgs {
     #[arg(long, value_name = "NAME[,NAME...]", value_delimiter = ',')]
     pub channels: Vec<String>,
 
-    /// Layer or part of an EXR to read, by name: ViewLayer.Normal, N; image of a TIFF, by number [default: the unambiguous one;
-    /// for a TIFF the first]
+    /// Layer or part of an EXR to read, by name: ViewLayer.Normal, N; image of a TIFF, by number [default: the
+    /// unambiguous one; for a TIFF the first]
     #[arg(long, value_name = "NAME")]
     pub layer: Option<String>,
 
@@ -171,18 +171,19 @@ pub struct SourceArgs {
     #[arg(long, value_name = "X", value_parser = finite, allow_negative_numbers = true)]
     pub normal_scale: Option<f32>,
 
-    /// How a normal's components are stored: unorm, 0 to 1, where 0.5 is zero, as in pictures; or signed, -1 to 1 [default: from
-    /// the file's format; for floats, from the pixels]
+    /// How a normal's components are stored: unorm, 0 to 1, where 0.5 is zero, as in pictures; or signed, -1 to 1
+    /// [default: from the file's format; for floats, from the pixels]
     #[arg(long, value_parser = one_of::<NormalRange>())]
     pub range: Option<NormalRange>,
 
     /// Channels that contain the normal: xyz; xy or yx, the first two (z is computed); ag, x in alpha and y in green
-    /// ("DXT5nm", BC3n, RXGB); or ra, x in red, y in alpha (KTX's normal mode) [default: decided from the file and its pixels]
+    /// ("DXT5nm", BC3n, RXGB); or ra, x in red, y in alpha (KTX's normal mode) [default: decided from the file and its
+    /// pixels]
     #[arg(long, value_name = "CHANNELS", value_parser = one_of::<NormalChannels>())]
     pub normal_channels: Option<NormalChannels>,
 
-    /// Height of a value of 1 (white), as a fraction of the map's width: 0.02 is 20 texels on a map 1000 texels wide. For heights in metres
-    /// 1 / (width in pixels x metres per pixel) [default: 0.02]
+    /// Height of a value of 1 (white), as a fraction of the map's width: 0.02 is 20 texels on a map 1000 texels wide.
+    /// For heights in metres 1 / (width in pixels x metres per pixel) [default: 0.02]
     #[arg(long, value_name = "X", value_parser = finite, allow_negative_numbers = true)]
     pub height_scale: Option<f32>,
 
@@ -198,8 +199,8 @@ pub struct SourceArgs {
     #[arg(long, default_value = "repeat", value_parser = one_of::<Wrap>())]
     pub wrap: Wrap,
 
-    /// Maximum slope (tangent of the angle; 1 is 45 degrees); steeper texels are clamped to it and counted. auto: 128, or less for
-    /// 8 and 16 bits if the steepest 0.1 % of the texels cost much precision
+    /// Maximum slope (tangent of the angle; 1 is 45 degrees); steeper texels are clamped to it and counted. auto: 128,
+    /// or less for 8 and 16 bits if the steepest 0.1 % of the texels cost much precision
     #[arg(long, value_name = "auto|X", default_value = "auto", value_parser = max_slope)]
     pub max_slope: MaxSlope,
 

@@ -62,7 +62,7 @@ impl Bump {
         };
         match parts.next() {
             None => Ok(bump),
-            Some(more) => Err(format!("there is nothing to follow: leave out ':{more}'")),
+            Some(more) => Err(format!("nothing may follow: leave out ':{more}'")),
         }
     }
 }
@@ -110,19 +110,20 @@ roughcast::named_enum! {
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = BUMPS)]
 pub struct BumpArgs {
-    /// A source of bumps: normal, the slopes of the map, filtered by the model; height[:fine|forward|central|bicubic], the heights of
-    /// the map, differentiated on the screen (Mikkelsen); object-normal, normals in the axes of the mesh; or noise:KIND:OCTAVES[:FREQUENCY[:AMPLITUDE]], KIND being fbm or turbulence,
-    /// frequency in cells per unit of length. May be given twice, to add noise to a map [default: normal]
+    /// A source of bumps: normal, the slopes of the map, filtered by the model; height[:fine|forward|central|bicubic], the
+    /// heights of the map, differentiated on the screen (Mikkelsen); object-normal, normals in the axes of the mesh; or
+    /// noise:KIND:OCTAVES[:FREQUENCY[:AMPLITUDE]], without a map: KIND is fbm or turbulence, FREQUENCY the cells per unit of
+    /// length. Give it twice to add noise to a map [default: normal]
     #[arg(long = "bump", value_name = "BUMP", value_parser = Bump::parse)]
     pub bumps: Vec<Bump>,
 
-    /// The frame of the map's slopes: mesh, its tangents; screen, derivatives of position and texture coordinates, without tangents;
-    /// or triplanar, projected along the three axes, without texture coordinates
+    /// The frame of the map's slopes: mesh, its tangents; screen, derivatives of position and texture coordinates, without
+    /// tangents; or triplanar, projected along the three axes, without texture coordinates
     #[arg(long, default_value = "mesh", value_parser = one_of::<FrameChoice>())]
     pub frame: FrameChoice,
 
-    /// Height of one texel of height, in units of the scene: bumps then have a size, and stretching the map makes them flatter
-    /// [default: the map's slopes are kept; with triplanar, the size of a texel]
+    /// Height of one texel of height, in units of the scene: bumps then have a size, and stretching the map makes them
+    /// flatter [default: the map's slopes are kept; with triplanar, the size of a texel]
     #[arg(long, value_name = "X", value_parser = positive)]
     pub world_height: Option<f32>,
 
@@ -130,7 +131,8 @@ pub struct BumpArgs {
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub uv_set: usize,
 
-    /// What becomes of octaves of noise that are finer than the pixel: fade, into roughness; drop, they are lost; keep, they alias
+    /// What becomes of octaves of noise that are finer than the pixel: fade turns them into roughness; drop loses them; keep
+    /// leaves them, so that they alias
     #[arg(long, default_value = "fade", value_parser = one_of::<OctaveFilter>())]
     pub octaves: OctaveFilter,
 
@@ -138,19 +140,20 @@ pub struct BumpArgs {
     #[arg(long, default_value = "analytic", value_parser = one_of::<VolumeDerivative>())]
     pub noise_derivative: VolumeDerivative,
 
-    /// How noise perturbs the normal: surface-gradient; for comparison perlin, the older way, or facets, which shows the edges of
-    /// triangles
+    /// How noise perturbs the normal: surface-gradient; or, for comparison, perlin, the older way, or facets, which shows the
+    /// edges of triangles
     #[arg(long, default_value = "surface-gradient", value_parser = one_of::<Perturbation>())]
     pub perturbation: Perturbation,
 
-    /// Factor of the map's heights: slopes grow with it, and the roughness that becomes of them with its square. Below zero, bumps
-    /// become dents [default: 1]
+    /// Factor of the map's heights: 0.5 makes bumps half as steep, and -1 turns them into dents [default: 1]
     #[arg(long, value_name = "X", value_parser = finite, allow_negative_numbers = true)]
     pub strength: Option<f32>,
 
-    /// Bumps of another map on top, whose heights are added: MAP[,strength=X][,uv-set=N][,frame=mesh|screen|triplanar]
-    /// [,world-height=X][,kind=normal|height][,green=up|down]; or with decal=X:Y:Z:SIZE[:AXIS] inside a cube about a point of the scene, from the side
-    /// AXIS (x, y, z, -x, -y or -z). May be given several times
+    /// Another map on top: its heights are added. Settings follow its name, separated by commas: strength=X, as --strength;
+    /// frame=mesh|screen|triplanar, world-height=X and uv-set=N, as the options of these names; decal=X:Y:Z:SIZE[:AXIS],
+    /// projected once through the cube with this centre and side, from x, y, z (default), -x, -y or -z;
+    /// kind=normal|height and green=up|down, what the file contains. Example: --add rust.png,frame=triplanar,strength=0.5.
+    /// May be given several times
     #[arg(long = "add", value_name = "MAP[,SETTING...]", value_parser = AddedMap::parse)]
     pub added: Vec<AddedMap>,
 
@@ -185,15 +188,31 @@ impl BumpArgs {
     /// Refuses options that would have no effect.
     pub fn check(&self, has_map: bool) -> Result<(), UsageError> {
         let refuse = |line: &str| Err(UsageError(line.to_owned()));
-        let has_noise = self.bumps.iter().any(|bump| matches!(bump, Bump::Noise(_)));
-        let is_analytic = self.noise_derivative == VolumeDerivative::Analytic
-            && self.perturbation == Perturbation::SurfaceGradient;
         let places = self.world_height.is_some() || self.uv_set != 0 || self.frame != FrameChoice::Mesh;
         if !has_map && (places || self.strength.is_some()) {
             return refuse(
                 "--frame, --world-height, --uv-set and --strength are those of a map: give one, or leave them out",
             );
         }
+        self.check_noise()?;
+        if self.bumps.contains(&Bump::ObjectNormal) && places {
+            return refuse(
+                "--frame, --world-height and --uv-set do not go with --bump object-normal: its normals are those of the mesh's \
+                 own surface",
+            );
+        }
+        if self.frame == FrameChoice::Triplanar && self.uv_set != 0 {
+            return refuse("--frame triplanar uses no texture coordinates: leave out --uv-set");
+        }
+        self.of_map(has_map).map(drop)
+    }
+
+    /// Refuses options of noise that would have no effect.
+    fn check_noise(&self) -> Result<(), UsageError> {
+        let refuse = |line: &str| Err(UsageError(line.to_owned()));
+        let has_noise = self.bumps.iter().any(|bump| matches!(bump, Bump::Noise(_)));
+        let is_analytic = self.noise_derivative == VolumeDerivative::Analytic
+            && self.perturbation == Perturbation::SurfaceGradient;
         let has_defaults = is_analytic && self.octaves == OctaveFilter::Fade;
         if !has_noise && !has_defaults {
             return refuse(
@@ -202,18 +221,18 @@ impl BumpArgs {
         }
         if !is_analytic && self.octaves != OctaveFilter::Fade {
             return refuse(
-                "--octaves filters noise with its formula and the surface gradient: leave out --noise-derivative and --perturbation",
+                "--octaves filters noise with its formula and the surface gradient: leave out --noise-derivative and \
+                 --perturbation",
             );
         }
-        if self.bumps.contains(&Bump::ObjectNormal) && places {
+        let in_space =
+            matches!(self.noise_derivative, VolumeDerivative::Analytic | VolumeDerivative::Numeric);
+        if self.perturbation == Perturbation::Perlin && !in_space {
             return refuse(
-                "--frame, --world-height and --uv-set do not go with --bump object-normal: its normals are those of the mesh's own surface",
+                "--perturbation perlin needs the gradient in space: use --noise-derivative analytic or numeric",
             );
         }
-        if self.frame == FrameChoice::Triplanar && self.uv_set != 0 {
-            return refuse("--frame triplanar uses no texture coordinates: leave out --uv-set");
-        }
-        self.of_map(has_map).map(drop)
+        Ok(())
     }
 
     /// The sets of texture coordinates that maps use, given whether there is a first one.

@@ -16,8 +16,9 @@ use roughcast_io::texture_files::is_same_file;
 use roughcast_io::{AtomicFile, AtomicSet};
 use roughcast_pipeline::Map;
 use roughcast_scene::render::MAX_SAMPLES;
-use roughcast_scene::{Filter, Picture, Scene, Shape, View, repeats_per_length};
+use roughcast_scene::{AlbedoMap, Filter, Picture, Scene, Shape, View, repeats_per_length};
 
+use crate::added::{AddedContent, AddedMap, Place};
 use crate::albedo::{Albedo, AlbedoChoice};
 use crate::args::{SourceArgs, one_of, positive};
 use crate::backend::Backend;
@@ -79,8 +80,8 @@ pub struct Args {
     #[command(flatten)]
     shading_options: ShadingArgs,
 
-    /// Diffuse colour, linear, as one number or R,G,B; or a picture of it, which lies on the scene as the map does (8- and 16-bit
-    /// files are sRGB, floats linear)
+    /// Diffuse colour, linear, as one number or R,G,B; or a picture of it, which lies on the scene as the map does (8-
+    /// and 16-bit files are sRGB, floats linear)
     #[arg(long, value_name = "COLOUR|FILE", default_value = "0.1", value_parser = AlbedoChoice::parse, help_heading = SHADING)]
     albedo: AlbedoChoice,
 
@@ -98,8 +99,8 @@ pub struct Args {
     #[arg(long, value_name = "RADIANCE", value_parser = positive)]
     white: Option<f32>,
 
-    /// How PNG shows bright radiance: linear clamps it to white; neutral leaves up to 80 % of white unchanged, and lets what is
-    /// brighter approach white
+    /// How PNG shows bright radiance: linear clamps it to white; neutral leaves up to 80 % of white unchanged, and lets
+    /// what is brighter approach white
     #[arg(long, default_value = "linear", value_parser = one_of::<Tone>())]
     tone: Tone,
 
@@ -199,8 +200,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     args.check()?;
     let albedo = args.albedo.load(&args.source.limits())?;
     let subject = args.subject()?;
-    let scene = args.scene_of(&subject, albedo)?;
-    let mut backend = args.backend(&subject, &scene)?;
+    let added = args.added()?;
+    let scene = args.scene_of(&subject, &added, albedo)?;
+    let mut backend = args.backend(&subject, &added, &scene)?;
     match args.frames {
         None => {
             let format = PictureFormat::of(&args.output)?;
@@ -262,31 +264,33 @@ impl Args {
 
     /// The scene, with its diffuse colour. Projected maps repeat per unit of length, others over the scene's texture
     /// coordinates.
-    fn scene_of(&self, subject: &Subject, albedo: Albedo) -> Result<Scene> {
+    fn scene_of(&self, subject: &Subject, added: &[Added<'_>], albedo: Albedo) -> Result<Scene> {
         let (colour, map) = match albedo {
             Albedo::Colour(colour) => (colour, None),
             Albedo::Map(map) => ([1.0; 3], Some(map)),
         };
         let material = self.shading_options.material(colour);
-        let projected = self.bumps.frame == FrameChoice::Triplanar;
+        let projected = self.repeats_per_length();
         let sets = self.bumps.uv_sets(self.map.is_some());
         let coordinates = match map {
             None if sets.is_empty() => TextureCoordinates::Unneeded,
             _ => TextureCoordinates::Needed,
         };
         let highest = sets.into_iter().max().unwrap_or(0);
-        let texels = subject.texels();
+        let texels = texels_of(subject, added, map.as_deref());
         let mut scene = self.camera.scene(&self.scene, texels, self.size, material, coordinates)?;
         if let (Shape::Mesh(mesh), Some(path)) = (&*scene.shape, self.scene.scene.mesh_path()) {
             let sets = mesh.uv_set_count();
             if coordinates == TextureCoordinates::Needed && highest >= sets {
                 let line = format!(
-                    "the mesh has {sets} sets of texture coordinates, counted from 0: use a lower --uv-set"
+                    "the mesh has no set {highest} of texture coordinates, and its last one is {}: use a lower --uv-set, or \
+                     uv-set of --add",
+                    sets.saturating_sub(1)
                 );
                 return Err(usage(path, &line));
             }
         } else if highest > 0 {
-            let line = "only meshes have several sets of texture coordinates: leave out --uv-set";
+            let line = "only meshes have several sets of texture coordinates: leave out --uv-set, and uv-set of --add";
             return Err(UsageError(line.to_owned()).into());
         }
         if map.is_some() && (projected || self.bumps.uv_set > 0) {
@@ -310,6 +314,20 @@ impl Args {
     /// The exposure of a picture. All frames use the first one's, since they would flicker otherwise.
     fn exposure_of(&self, first: &Picture) -> f32 {
         self.white.map_or_else(|| exposure_of(first), |white| 1.0 / white)
+    }
+
+    /// Whether maps repeat per unit of length: if the first one is projected along three axes.
+    fn repeats_per_length(&self) -> bool {
+        match (&self.map, self.bumps.added.iter().find(|added| !added.is_decal())) {
+            (None, Some(first)) => first.place == Place::Frame(FrameChoice::Triplanar, 0),
+            _ => self.bumps.frame == FrameChoice::Triplanar,
+        }
+    }
+
+    /// The maps of `--add`.
+    fn added(&self) -> Result<Vec<Added<'_>>> {
+        let load = |map| Ok((map, AddedMap::load(map, &self.source.limits())?));
+        self.bumps.added.iter().map(load).collect()
     }
 
     /// What lies on the shape.
@@ -366,14 +384,25 @@ enum Subject {
 }
 
 impl Subject {
-    /// Width and height of level 0.
-    fn texels(&self) -> (usize, usize) {
+    /// Width and height of level 0, if there is a map.
+    fn texels(&self) -> Option<(usize, usize)> {
         match self {
-            Subject::Nothing => (1, 1),
-            Subject::Map(map) => (map.image.width(), map.image.height()),
-            Subject::Baked(arrays) => arrays[0].size(),
+            Subject::Nothing => None,
+            Subject::Map(map) => Some((map.image.width(), map.image.height())),
+            Subject::Baked(arrays) => Some(arrays[0].size()),
         }
     }
+}
+
+/// A map of `--add` with what its file contains.
+type Added<'a> = (&'a AddedMap, AddedContent);
+
+/// Width and height in texels of the picture that decides how often all of them repeat: the map, or else the first one of
+/// `--add` that is no decal, or else the diffuse colours.
+fn texels_of(subject: &Subject, added: &[Added<'_>], albedo: Option<&AlbedoMap>) -> (usize, usize) {
+    let of_added = || added.iter().find(|(map, _)| !map.is_decal()).map(|(_, content)| content.size());
+    let of_albedo = || albedo.map(|map| (map.levels()[0].width(), map.levels()[0].height()));
+    subject.texels().or_else(of_added).or_else(of_albedo).unwrap_or((1, 1))
 }
 
 /// Writes all frames, or none.

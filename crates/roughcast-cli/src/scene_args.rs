@@ -165,8 +165,8 @@ pub struct SceneArgs {
     #[arg(long, value_name = "SCENE", default_value = "plane", value_parser = SceneChoice::parse)]
     pub scene: SceneChoice,
 
-    /// A light: the direction towards it as X,Y,Z, or point:X,Y,Z; followed by its colour as ,R,G,B (irradiance; pi is white).
-    /// May be given more than once [default: one whose highlight is in the picture]
+    /// A light: the direction towards it as X,Y,Z, or point:X,Y,Z; followed by its colour as ,R,G,B (irradiance; pi is
+    /// white). May be given more than once [default: one whose highlight is in the picture]
     #[arg(long = "light", value_name = "LIGHT", value_parser = light, allow_hyphen_values = true)]
     pub lights: Vec<Light>,
 
@@ -324,8 +324,8 @@ pub struct ShadingArgs {
     #[arg(long, default_value = "physical", value_parser = one_of::<Form>())]
     pub form: Form,
 
-    /// Which slopes shadow and mask in the physical form: those of the base roughness, as in bump mapping, or those of base and bumps,
-    /// as in displaced geometry
+    /// Which slopes shadow and mask in the physical form: those of the base roughness, as in bump mapping, or those of
+    /// base and bumps, as in displaced geometry
     #[arg(long, default_value = "base", value_parser = one_of::<Masking>())]
     pub masking: Masking,
 
@@ -334,7 +334,8 @@ pub struct ShadingArgs {
     #[arg(long, default_value = "corrected", value_parser = one_of::<FootprintModel>())]
     pub footprint: FootprintModel,
 
-    /// The base roughness in the plane of the surface: round, as in LEAN, or the lobe of the tilted facet as seen in that plane
+    /// The base roughness in the plane of the surface: round, as in LEAN, or the lobe of the tilted facet as seen in
+    /// that plane
     #[arg(long = "base-lobe", value_name = "BASE", default_value = "plane", value_parser = one_of::<BaseFrame>())]
     pub base_frame: BaseFrame,
 

@@ -28,8 +28,9 @@ use prefix::Prefix;
 
 /// Export the shading models as shader code, or list them.
 ///
-/// The code has no entry points and no resources (SPIR-V, which has no libraries, has one fragment shader per model). Names have a
-/// prefix, and in GLSL, HLSL and Metal's language each module has an include guard. Each export starts with its source, its conventions and how to call it; docs/shaders.md has examples for every language.
+/// The code has no entry points and no resources (SPIR-V, which has no libraries, has one fragment shader per model).
+/// Names have a prefix, and in GLSL, HLSL and Metal's language each module has an include guard. Each export starts
+/// with its source, its conventions and how to call it; docs/shaders.md has examples for every language.
 #[derive(clap::Args)]
 pub struct Args {
     /// What to export, or all; without a name, lists the exports

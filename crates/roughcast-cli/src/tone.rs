@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn values_that_are_no_light_are_black() {
+    fn negative_and_nan_radiance_is_black() {
         for tone in Tone::ALL {
             assert_eq!(tone.shown([f32::NAN; 3]), [0.0; 3]);
             assert_eq!(tone.shown([-1.0, f32::NEG_INFINITY, -0.0]), [0.0; 3]);

@@ -105,7 +105,7 @@ fn the_graphics_card_and_the_truth_show_the_colours_of_the_map() {
 }
 
 #[test]
-fn files_that_are_no_colours_are_refused_in_one_line() {
+fn files_without_colours_are_refused_in_one_line() {
     let folder = scratch();
     let at = |name: &str| folder.path().join(name);
     let output = at("picture.png");

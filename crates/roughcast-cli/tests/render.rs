@@ -271,7 +271,7 @@ fn the_camera_may_look_straight_down_and_up_turns_the_picture() {
 }
 
 #[test]
-fn bumps_need_what_they_are_made_of() {
+fn bumps_with_missing_or_unused_inputs_are_refused() {
     let folder = scratch();
     let picture = folder.path().join("picture.png");
     let picture = text(&picture);
@@ -279,7 +279,10 @@ fn bumps_need_what_they_are_made_of() {
     let map = text(&map);
     let teapot = data("models/meshes/teapot_keijiro.obj");
     let second = format!("{map},uv-set=3,green=down");
-    let refused: [(&[&str], &str); 12] = [
+    let grey = data("heights/jme_mountains512.png");
+    let misspelt = format!("{map},strenght=2");
+    let on_screen = ["--perturbation", "perlin", "--noise-derivative", "central"];
+    let refused: [(&[&str], &str); 15] = [
         (&[], "give a map"),
         (&["--bump", "normal"], "need a map"),
         (&[map, "--bump", "noise:fbm:4"], "the map is not used"),
@@ -292,6 +295,9 @@ fn bumps_need_what_they_are_made_of() {
         (&["--bump", "noise:fbm:4", "--strength", "2"], "--strength"),
         (&[map, "--scene", text(&teapot), "--add", &second], "--uv-set"),
         (&[map, "--add", &format!("{map},decal=1:2:3")], "X:Y:Z:SIZE"),
+        (&[map, "--add", &misspelt], "strenght=2: there is no such file; the settings"),
+        (&[text(&grey), "--bump", "object-normal", "--kind", "normal"], "three channels"),
+        (&[&["--bump", "noise:fbm:4"][..], &on_screen].concat(), "--noise-derivative analytic or numeric"),
     ];
     for (arguments, part) in refused {
         run([&["render", "-o", picture, "--green", "down"][..], arguments].concat()).expect_usage_error(part);

@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn channels_that_are_no_colour_are_refused_by_name() {
+    fn channels_other_than_colours_are_refused_by_name() {
         for (names, valid) in [
             ("Y", true),
             ("Y A", true),
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_are_no_colours_are_refused() {
+    fn data_other_than_colours_are_refused() {
         let refused = |info: &FileInfo, sample_type| check(info, sample_type).is_err();
         let with_range = |range| FileInfo { range, ..info() };
         assert!(!refused(&info(), SampleType::U16));

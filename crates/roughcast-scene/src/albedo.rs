@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_that_no_surface_has_are_refused_with_their_place() {
+    fn invalid_colours_are_refused_with_their_place() {
         for wrong in [-0.1, f32::NAN, f32::INFINITY, 1e5] {
             let colours = [[0.5; 3], [0.5; 3], [0.5; 3], [0.0, wrong, 0.0]];
             let error = AlbedoMap::new(2, 2, &colours).expect_err("it is no colour");

@@ -102,7 +102,7 @@ mod tests {
     use crate::Mesh;
 
     #[test]
-    fn it_is_closed_counter_clockwise_and_on_the_level() {
+    fn the_mesh_is_closed_counter_clockwise_and_on_the_level() {
         let mesh = isosurface(8);
         assert_eq!(mesh.indices.len(), 3 * 20 * 64);
         let mut volume = 0.0;

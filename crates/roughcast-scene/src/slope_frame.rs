@@ -61,8 +61,8 @@ impl SlopeFrame {
     ///
     /// With a world height, slopes are those of the displaced surface. Without one, bumps have no size, and the
     /// [`TangentSource`] decides: the frame of the hit itself, where the matrix is the identity and stretching of the
-    /// texture has no effect, or the gradients of the texture coordinates. Seen from behind, a bump is a dent, whose slopes in
-    /// the reversed frame are the same numbers.
+    /// texture has no effect, or the gradients of the texture coordinates. Seen from behind, a bump is a dent, whose
+    /// slopes in the reversed frame are the same numbers.
     ///
     /// Always finite. All slopes become zero if the surface's own parametrization has no area (a pole), if the
     /// shading normal lies in the surface, if the texture coordinates are missing or constant, and

@@ -255,7 +255,8 @@ fn a_triplanar_projection_is_that_of_the_axis_where_the_surface_faces_it() {
             continue;
         }
         let at = DetailPoint::new(&hit, 1.0);
-        // Its coordinates start at the corner, projections at the origin: half a unit apart, which is a whole number of texels.
+        // Its coordinates start at the corner, projections at the origin: half a unit apart, which is a whole number of
+        // texels.
         let shifted = hit.uv(0) - 0.5;
         let points = [roughcast_scene::UvPoint { uv: shifted, ..hit.uv_sets.get(0) }];
         let moved = Hit { uv_sets: UvSets::of_points(&points), ..hit };

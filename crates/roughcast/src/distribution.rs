@@ -218,9 +218,9 @@ impl Distribution {
         self
     }
 
-    /// The distribution of the sum of two independent slopes: of bumps on top of others. Means and covariances add. Of two
-    /// distributions with several Gaussians, the one with fewer, or else `other`, is taken as a whole. The covariances contain the base
-    /// roughness if one of the two did.
+    /// The distribution of the sum of two independent slopes: of bumps on top of others. Means and covariances add. Of
+    /// two distributions with several Gaussians, the one with fewer, or else `other`, is taken as a whole. The
+    /// covariances contain the base roughness if one of the two did.
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
         if self.count < other.count {
@@ -315,11 +315,11 @@ mod tests {
         let bumps = Distribution::gaussian(Slope { x: 0.1, y: -0.2 }, covariance).with_normal(shortened);
         assert_eq!(bumps.scaled(0.0).normal(), Normal { x: 0.0, y: 0.0, z: 1.0 });
         assert_eq!(bumps.scaled(0.0).whole().covariance, Covariance::default());
-        assert!((bumps.scaled(1.0).normal().length() - 0.9).abs() < 1e-6);
+        assert!((bumps.scaled(1.0).normal().length() - 0.9).abs() < ROUNDING);
         // As four independent sources of the same bumps; dents shorten as bumps do.
         for factor in [2.0, -2.0] {
             let length = bumps.scaled(factor).normal().length();
-            assert!((length - 0.9_f32.powi(4)).abs() < 1e-6, "{length}");
+            assert!((length - 0.9_f32.powi(4)).abs() < ROUNDING, "{length}");
         }
     }
 

@@ -57,7 +57,8 @@ fn weighted_mean(gaussian: WeightedGaussian) -> vec2f {
     return gaussian.weight * gaussian.mean;
 }
 
-// A Gaussian's part of the covariance (xx, yy, xy) of the whole, whose mean is given: that within it and that between the two means.
+// A Gaussian's part of the covariance (xx, yy, xy) of the whole, whose mean is given: that within it and that between
+// the two means.
 fn weighted_covariance(gaussian: WeightedGaussian, mean: vec2f) -> vec3f {
     let d = gaussian.mean - mean;
     return gaussian.weight * (vec3f(gaussian.variance, gaussian.covariance) + d.xyx * d.xyy);

@@ -31,6 +31,10 @@ pub use gradient::{LARGEST_NOISE, NOISE_REACH, NOISE_SLOPE_VARIANCE, NoiseSample
 /// size of one.
 pub const MAX_OCTAVES: u32 = 24;
 
+/// The largest frequency, amplitude and product of both: the squares of slopes are then finite single floats, with which
+/// models and GPUs calculate.
+pub const LARGEST_NOISE_FACTOR: f64 = 1e15;
+
 named_enum! {
     /// What is summed over the octaves.
     ///
@@ -74,9 +78,10 @@ pub struct Noise {
     pub kind: NoiseKind,
     /// Number of octaves, 1 to [`MAX_OCTAVES`].
     pub octaves: u32,
-    /// Cells of the first octave per unit of length, above 0.
+    /// Cells of the first octave per unit of length, from the reciprocal of [`LARGEST_NOISE_FACTOR`] to that number.
     pub frequency: f64,
-    /// Factor of the noise of the first octave, in units of length; negative values turn the bumps over.
+    /// Factor of the noise of the first octave, in units of length; negative values turn the bumps over. Neither it nor its
+    /// product with the frequency exceeds [`LARGEST_NOISE_FACTOR`].
     pub amplitude: f64,
     /// Chooses one of 2^32 noises. Octave i has the seed `seed + i`, modulo 2^32.
     pub seed: u32,
@@ -108,16 +113,18 @@ pub enum NoiseError {
         /// The number given.
         got: u32,
     },
-    /// A frequency that is not a positive number.
-    #[error("the frequency of noise must be finite and above 0, not {got}")]
+    /// A frequency that is too small or too large.
+    #[error("the frequency of noise must be from {:e} to {LARGEST_NOISE_FACTOR:e}, not {got}", LARGEST_NOISE_FACTOR.recip())]
     Frequency {
         /// The number given.
         got: f64,
     },
-    /// An amplitude that is not a number.
-    #[error("the amplitude of noise must be finite, not {got}")]
+    /// An amplitude that is too large.
+    #[error(
+        "the amplitude of noise, and the amplitude times the frequency, must be at most {LARGEST_NOISE_FACTOR:e}, not {got}"
+    )]
     Amplitude {
-        /// The number given.
+        /// The one that is too large.
         got: f64,
     },
 }
@@ -131,13 +138,15 @@ impl Noise {
         if !(1..=MAX_OCTAVES).contains(&self.octaves) {
             return Err(NoiseError::Octaves { got: self.octaves });
         }
-        if !(self.frequency.is_finite() && self.frequency > 0.0) {
+        if !(LARGEST_NOISE_FACTOR.recip()..=LARGEST_NOISE_FACTOR).contains(&self.frequency) {
             return Err(NoiseError::Frequency { got: self.frequency });
         }
-        if !self.amplitude.is_finite() {
-            return Err(NoiseError::Amplitude { got: self.amplitude });
+        // NaN is in no range.
+        let is_allowed = |factor: &f64| (0.0..=LARGEST_NOISE_FACTOR).contains(&factor.abs());
+        match [self.amplitude, self.steepness()].into_iter().find(|factor| !is_allowed(factor)) {
+            Some(got) => Err(NoiseError::Amplitude { got }),
+            None => Ok(()),
         }
-        Ok(())
     }
 
     /// The height at a position, in units of length, and its gradient. An octave in which the position is not within
@@ -266,7 +275,7 @@ mod unit_tests {
     }
 
     #[test]
-    fn heights_that_are_not_finite_are_flat() {
+    fn positions_that_are_not_finite_are_flat() {
         for kind in NoiseKind::ALL {
             let noise = Noise::default().with_kind(*kind);
             assert_eq!(noise.sample(DVec3::new(0.1, f64::NAN, 0.2)), NoiseSample::FLAT);
@@ -277,19 +286,24 @@ mod unit_tests {
     }
 
     #[test]
-    fn bad_numbers_are_refused() {
+    fn numbers_out_of_range_are_refused() {
         let noise = Noise::default();
         assert_eq!(noise.check(), Ok(()));
         assert_eq!(noise.with_octaves(MAX_OCTAVES).with_amplitude(-1.0).check(), Ok(()));
         for got in [0, MAX_OCTAVES + 1] {
             assert_eq!(noise.with_octaves(got).check(), Err(NoiseError::Octaves { got }));
         }
-        for got in [0.0, -1.0, f64::INFINITY] {
+        for got in [0.0, -1.0, 1e-16, 1e16, f64::INFINITY] {
             assert_eq!(noise.with_frequency(got).check(), Err(NoiseError::Frequency { got }));
         }
         assert!(noise.with_frequency(f64::NAN).check().is_err());
-        let error = noise.with_amplitude(f64::NEG_INFINITY).check().expect_err("not finite");
-        assert_eq!(error.to_string(), "the amplitude of noise must be finite, not -inf");
+        assert!(noise.with_amplitude(f64::NAN).check().is_err());
+        assert_eq!(noise.with_amplitude(1e16).check(), Err(NoiseError::Amplitude { got: 1e16 }));
+        let too_steep = noise.with_amplitude(1e9).with_frequency(1e9);
+        assert_eq!(too_steep.check(), Err(NoiseError::Amplitude { got: 1e18 }));
+        assert_eq!(too_steep.with_amplitude(1e6).check(), Ok(()));
+        let error = noise.with_frequency(0.0).check().expect_err("zero");
+        assert_eq!(error.to_string(), "the frequency of noise must be from 1e-15 to 1e15, not 0");
         let error = noise.with_octaves(25).check().expect_err("too many");
         assert_eq!(error.to_string(), "noise has 1 to 24 octaves, not 25");
     }

@@ -134,8 +134,8 @@ pub fn displaced_normal(
     height_t: f64,
 ) -> DVec3 {
     let (tau_s, tau_t) = (sigma_s + normal * height_s, sigma_t + normal * height_t);
-    let displaced = tau_s.cross(tau_t).normalize_or(normal);
-    if sigma_s.cross(sigma_t).dot(normal) < 0.0 { -displaced } else { displaced }
+    let side = if sigma_s.cross(sigma_t).dot(normal) < 0.0 { -1.0 } else { 1.0 };
+    side * tau_s.cross(tau_t).normalize_or(side * normal)
 }
 
 /// The unit normal of the facet, for surfaces without vertex normals (section 4). It points to the side that `towards`

@@ -279,7 +279,7 @@ fn neighbours_give_the_gradient_of_a_plane_and_outliers_can_be_left_out() {
 }
 
 #[test]
-fn degenerate_surfaces_and_heights_that_are_no_numbers_are_flat() {
+fn degenerate_surfaces_and_heights_that_are_not_finite_are_flat() {
     let (s, t, n) = (DVec3::X, DVec3::new(0.3, 2.0, 0.0), DVec3::Z);
     let flat = |gradient: DVec3| assert_eq!(perturbed_normal(n, gradient), n);
     flat(surface_gradient(s, s * 2.0, n, 1.0, 1.0));
@@ -294,6 +294,7 @@ fn degenerate_surfaces_and_heights_that_are_no_numbers_are_flat() {
         flat(surface_gradient_of_neighbours(n, [s, t, -s, -t], [odd, 0.0, 0.0, 0.0], [1.0; 4]));
         assert_eq!(perlin_normal(n, DVec3::X * odd), n);
         assert_eq!(displaced_normal(s, t, n, odd, 0.0), n);
+        assert_eq!(displaced_normal(t, s, n, odd, 0.0), n, "mirrored");
         assert_eq!(blinn_normal(s, t, odd, 0.0), DVec3::ZERO);
     }
     assert_eq!(face_normal(s, s, n), n);

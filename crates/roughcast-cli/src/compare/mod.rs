@@ -31,8 +31,8 @@ use subject::Subject;
 
 /// Compare all shading models with supersampled ground truth, in near, mid, far and grazing views.
 ///
-/// Writes index.html, which needs no other file: pictures, errors, tables, flicker; and results.json. Besides MAP it renders two
-/// maps that LEAN cannot represent: sharp V grooves and a woven cloth.
+/// Writes index.html, which needs no other file: pictures, errors, tables, flicker; and results.json. Besides MAP it
+/// renders two maps that LEAN cannot represent: sharp V grooves and a woven cloth.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:

@@ -59,7 +59,8 @@ fn moved(scene: &Scene, position: u32, count: u32) -> Scene {
     moved
 }
 
-/// The energy of a picture's highlights: in all pixels, and in those that the mesh covers entirely, here and in another picture.
+/// The energy of a picture's highlights: in all pixels, and in those that the mesh covers entirely, here and in another
+/// picture.
 fn energies(picture: &Picture, other: &Picture) -> [f64; 2] {
     // Weights of samples may add up to a little less than one.
     const COVERED: f32 = 1.0 - 1e-5;

@@ -87,8 +87,8 @@ impl Deformation {
     }
 }
 
-/// An open pipe about the y axis that stands on the origin. Its texture coordinates are lengths in units of its circumference, so that the texture
-/// is not stretched.
+/// An open pipe about the y axis that stands on the origin. Its texture coordinates are lengths in units of its
+/// circumference, so that the texture is not stretched.
 #[derive(Clone, Copy)]
 pub struct Pipe;
 

@@ -63,7 +63,8 @@ pub struct Args {
     #[arg(short, long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     output: PathBuf,
 
-    /// The mesh of mikkelsen-4 and deforming (.obj, .gltf, .glb), with texture coordinates, and of geometric-aa [default: shapes of its own]
+    /// The mesh of mikkelsen-4 and deforming (.obj, .gltf, .glb), with texture coordinates, and of geometric-aa
+    /// [default: shapes of its own]
     #[arg(long, value_name = "MESH", value_hint = ValueHint::FilePath)]
     mesh: Option<PathBuf>,
 

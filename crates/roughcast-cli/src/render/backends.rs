@@ -14,7 +14,7 @@ use roughcast_scene::{
     Sampler, Scene, SlopeDetail, SlopeMap,
 };
 
-use super::{Args, FilterChoice, Subject};
+use super::{Added, Args, FilterChoice, Subject};
 use crate::added::{AddedContent, AddedMap, Place};
 use crate::backend::{
     Backend, GroundTruthBackend, MapBumps, MethodBackend, PlacedMap, Projected, SceneBumps,
@@ -26,17 +26,13 @@ use crate::usage;
 
 impl Args {
     /// The renderer, with the bumps that it needs.
-    pub(super) fn backend(&self, subject: &Subject, scene: &Scene) -> Result<Backend> {
+    pub(super) fn backend(&self, subject: &Subject, added: &[Added<'_>], scene: &Scene) -> Result<Backend> {
         let shading = self.model(subject)?;
         let bump = self.bumps.of_map(self.map.is_some())?;
-        let mut added = Vec::with_capacity(self.bumps.added.len());
-        for map in &self.bumps.added {
-            added.push((map, map.load(&self.source.limits())?));
-        }
         let noise = self.bumps.noise(scene.shape.bounds().radius)?;
         #[cfg(feature = "gpu")]
         if self.gpu {
-            return self.gpu_backend(subject, scene, shading, bump, (&added, noise));
+            return self.gpu_backend(subject, scene, shading, bump, (added, noise));
         }
         let mut maps = Vec::new();
         if let Some(map) = self.map_bumps(subject, scene, shading, bump)? {
@@ -46,7 +42,7 @@ impl Args {
             };
             maps.push(PlacedMap { map, projected, strength: self.bumps.strength.unwrap_or(1.0) });
         }
-        for (map, content) in &added {
+        for (map, content) in added {
             maps.push(self.added_bumps(map, content, scene, shading)?);
         }
         let bumps = SceneBumps { maps, noise, curvature: self.bumps.curvature() };
@@ -109,7 +105,7 @@ impl Args {
         scene: &Scene,
         shading: Shading,
     ) -> Result<PlacedMap> {
-        let placement = added.placement(content.width(), scene.repeats);
+        let placement = added.placement(content.size().0, scene.repeats);
         let named = || added.path.display().to_string();
         let map = match (content, self.samples()) {
             (AddedContent::Map(map), Some(_)) => slopes_of(map, placement).with_context(named)?,
@@ -136,11 +132,14 @@ impl Args {
         scene: &Scene,
         shading: Shading,
         bump: Option<Bump>,
-        (added, noise): (&[(&AddedMap, AddedContent)], Option<NoiseDetail>),
+        (added, noise): (&[Added<'_>], Option<NoiseDetail>),
     ) -> Result<Backend> {
         use roughcast_gpu::render::{DrawOptions, GpuPlacement, MAX_SOURCES};
 
-        let wrap = wrap_of(subject);
+        let wrap = match (subject, added.first()) {
+            (Subject::Nothing, Some((_, first))) => first.wrap(),
+            _ => wrap_of(subject),
+        };
         if let Some((other, _)) = added.iter().find(|(_, content)| content.wrap() != wrap) {
             let line = format!(
                 "--gpu samples all maps alike, and the first one is sampled with --wrap {wrap}: leave --gpu out"
@@ -179,7 +178,7 @@ impl Args {
             maps.push(PlacedGpuMap { map, placement, strength: self.bumps.strength.unwrap_or(1.0) });
         }
         for (map, content) in added {
-            let placement = GpuPlacement::from(map.placement(content.width(), scene.repeats));
+            let placement = GpuPlacement::from(map.placement(content.size().0, scene.repeats));
             let placement = match map.place {
                 Place::Frame(FrameChoice::Triplanar, _) => placement.triplanar(),
                 Place::Frame(..) => placement,
@@ -251,6 +250,10 @@ impl Args {
     /// The map of object-space normals among the subjects.
     fn object_normals<'s>(&self, subject: &'s Subject) -> Result<&'s Map> {
         match subject {
+            Subject::Map(map) if map.options.kind == Kind::Normal && map.image.channels() < 3 => Err(usage(
+                self.map_path(),
+                "--bump object-normal needs a map of three channels, x, y and z: give one, or use --bump normal",
+            )),
             Subject::Map(map) if map.options.kind == Kind::Normal => Ok(map),
             _ => Err(usage(
                 self.map_path(),
@@ -294,5 +297,6 @@ fn wrap_of(subject: &Subject) -> Wrap {
 
 /// The size of a texel in the scene, where a map repeats per unit of length.
 fn texel_size(subject: &Subject, scene: &Scene) -> f64 {
-    (subject.texels().0 as f64 * scene.repeats).recip()
+    let (width, _) = subject.texels().unwrap_or((1, 1));
+    (width as f64 * scene.repeats).recip()
 }

@@ -136,7 +136,8 @@ pub fn header(modules: &[&Module], parsed: &naga::Module, language: Language, pr
     commented.map(|line| format!("// {line}").trim_end().to_owned() + "\n").collect()
 }
 
-/// The variable for the texel of a layer. The normal texture's is called `bump`, to distinguish it from the normals computed from it.
+/// The variable for the texel of a layer. The normal texture's is called `bump`, to distinguish it from the normals
+/// computed from it.
 fn texel_variable(layer: &'static str) -> &'static str {
     if layer == "normal" { "bump" } else { layer }
 }

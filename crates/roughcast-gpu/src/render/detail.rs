@@ -176,20 +176,20 @@ impl GpuDetail {
         self
     }
 
-    /// The same bumps with all heights multiplied by a strength: slopes grow with it, and their covariances with its square. Below
-    /// zero, bumps become dents.
+    /// The same bumps with all heights multiplied by a strength: slopes grow with it, and their covariances with its
+    /// square. Below zero, bumps become dents.
     #[must_use]
     pub fn with_strength(mut self, strength: f32) -> Self {
         self.sources.iter_mut().for_each(|source| source.strength *= strength);
         self
     }
 
-    /// These bumps with others on top, shaded by this model: heights add, and the normal is perturbed once. Each keeps its placement
-    /// and its strength. The others' distributions count as single Gaussians. The counterpart of
+    /// These bumps with others on top, shaded by this model: heights add, and the normal is perturbed once. Each keeps
+    /// its placement and its strength. The others' distributions count as single Gaussians. The counterpart of
     /// `roughcast_scene::Combined`.
     ///
-    /// [`Renderer::prepare`](super::Renderer::prepare) draws as many sources as the device has groups of bindings to spare, three
-    /// on every device.
+    /// [`Renderer::prepare`](super::Renderer::prepare) draws as many sources as the device has groups of bindings to
+    /// spare, three on every device.
     #[must_use]
     pub fn plus(mut self, others: Self) -> Self {
         self.sources.extend(others.sources);

@@ -26,8 +26,8 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// Uploads a shape with its first two sets of texture coordinates. For `detail`, see [`Shape::triangles`]; meshes are used
-    /// unchanged.
+    /// Uploads a shape with its first two sets of texture coordinates. For `detail`, see [`Shape::triangles`]; meshes
+    /// are used unchanged.
     ///
     /// # Errors
     /// [`GpuError::BufferTooLarge`], [`GpuError::OutOfMemory`].
@@ -35,8 +35,9 @@ impl Geometry {
         Self::of_uv_sets(gpu, shape, detail, [0, 1]).await
     }
 
-    /// Uploads a shape with two of its sets of texture coordinates; a set that it does not have is zero everywhere. The first of the two
-    /// is that of a map of colours. Tangents are those of the shape's first set: place bumps on another one by derivatives.
+    /// Uploads a shape with two of its sets of texture coordinates; a set that it does not have is zero everywhere. The
+    /// first of the two is that of a map of colours. Tangents are those of the shape's first set: place bumps on
+    /// another one by derivatives.
     ///
     /// # Errors
     /// As [`Geometry::new`].
@@ -59,9 +60,9 @@ impl Geometry {
         })
     }
 
-    /// Moves the vertices, as a skinned or morphing mesh does every frame: to the positions and normals of a shape with the same
-    /// vertices in the same order, for everything that is drawn with this geometry. Its tangents need not be those of the pose:
-    /// bumps that are placed by derivatives do not use them.
+    /// Moves the vertices, as a skinned or morphing mesh does every frame: to the positions and normals of a shape with
+    /// the same vertices in the same order, for everything that is drawn with this geometry. Its tangents need not be
+    /// those of the pose: bumps that are placed by derivatives do not use them.
     ///
     /// # Errors
     /// [`GpuError::OtherVertices`] if the number of vertices is another one. Nothing is then changed.

@@ -326,8 +326,8 @@ fn key(
 }
 
 impl Drawing {
-    /// Changes how the lobe is evaluated and the texture filter, for the next frames. Nothing is uploaded again; a shader is compiled
-    /// only if the renderer has none yet for this kind of filter.
+    /// Changes how the lobe is evaluated and the texture filter, for the next frames. Nothing is uploaded again; a
+    /// shader is compiled only if the renderer has none yet for this kind of filter.
     ///
     /// # Errors
     /// As [`Renderer::prepare`]. The drawing is then unchanged.

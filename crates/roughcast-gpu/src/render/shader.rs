@@ -160,15 +160,15 @@ impl ShaderKey {
     }
 }
 
-/// The WGSL of a model with one to [`MAX_SOURCES`] sources of bumps: the vertex shader `project`, and the fragment shaders
-/// `radiance` (one colour target, alpha is coverage) and `parts` (the same, with the specular part in a second target), with the
-/// twins `mapped_radiance` and `mapped_parts`, which read the diffuse colour from a map.
+/// The WGSL of a model with one to [`MAX_SOURCES`] sources of bumps: the vertex shader `project`, and the fragment
+/// shaders `radiance` (one colour target, alpha is coverage) and `parts` (the same, with the specular part in a second
+/// target), with the twins `mapped_radiance` and `mapped_parts`, which read the diffuse colour from a map.
 ///
-/// Group 0: binding 0 is the view and the material's colours, 1 the lights, 2 the map of diffuse colours in linear light, which
-/// `radiance` and `parts` do not read, 3 [`roughcast::shading::ShadingOptions`], 4
+/// Group 0: binding 0 is the view and the material's colours, 1 the lights, 2 the map of diffuse colours in linear
+/// light, which `radiance` and `parts` do not read, 3 [`roughcast::shading::ShadingOptions`], 4
 /// [`roughcast::shading::GeometricFilter`]. Each source of bumps has a group of its own, from group 1 on: 0
-/// [`roughcast::texture::Packing`] or the noise, 1 how it is sampled and placed, 2 a sampler, and from 3 on its textures, those of a
-/// layout in the order of [`roughcast::texture::TexelReader::inputs`].
+/// [`roughcast::texture::Packing`] or the noise, 1 how it is sampled and placed, 2 a sampler, and from 3 on its
+/// textures, those of a layout in the order of [`roughcast::texture::TexelReader::inputs`].
 ///
 /// # Errors
 /// [`GpuError::Sources`] if there are too many sources or none; [`GpuError::Module`] if the library lacks a module that a

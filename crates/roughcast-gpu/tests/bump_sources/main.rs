@@ -104,8 +104,8 @@ fn noise_is_the_same_on_both() {
     }
 }
 
-/// The same for displaced facets, which are those of the triangles on the GPU and of the round shape on the CPU. Largest measured:
-/// 5.8e-3, on the sphere.
+/// The same for displaced facets, which are those of the triangles on the GPU and of the round shape on the CPU.
+/// Largest measured: 5.8e-3, on the sphere.
 const FACETS: f64 = 1e-2;
 
 #[test]
@@ -235,7 +235,7 @@ fn curvature_widens_alike() {
 }
 
 #[test]
-fn heights_that_are_no_numbers_leave_no_pixel_that_is_none() {
+fn heights_that_are_not_finite_give_finite_pictures() {
     let mut heights = vec![0.5_f32; 16 * 16];
     for (i, height) in heights.iter_mut().enumerate() {
         *height = match i % 5 {

@@ -10,8 +10,8 @@ use crate::{Footprint, Placement, Sampler};
 
 /// The heights of a map, filtered by a sampler and differentiated on the screen.
 ///
-/// Bumps that the filter removes are lost, as in the paper; a [`super::TextureDetail`] keeps them. Without a world height, bumps
-/// keep the slopes that they have in the map along the less stretched direction.
+/// Bumps that the filter removes are lost, as in the paper; a [`super::TextureDetail`] keeps them. Without a world
+/// height, bumps keep the slopes that they have in the map along the less stretched direction.
 #[derive(Clone, Debug)]
 pub struct HeightDetail {
     /// The heights.

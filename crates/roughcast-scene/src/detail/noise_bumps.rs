@@ -65,8 +65,8 @@ impl NoiseDetail {
         NUMERIC_STEP / finest
     }
 
-    /// Whether octaves that are finer than the pixel become roughness or are dropped, if their filter says so. Only the formula
-    /// of the gradient can do that, with the surface gradient.
+    /// Whether octaves that are finer than the pixel become roughness or are dropped, if their filter says so. Only the
+    /// formula of the gradient can do that, with the surface gradient.
     pub fn filters_octaves(&self) -> bool {
         (self.perturbation, self.derivative) == (Perturbation::SurfaceGradient, VolumeDerivative::Analytic)
     }

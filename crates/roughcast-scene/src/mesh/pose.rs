@@ -13,8 +13,9 @@ impl Mesh {
     ///
     /// The tangents are **not** those of the pose: the tangents of `self`, made perpendicular to the new normals, which
     /// turn with the surface only by chance. Place bumps by their derivatives, with
-    /// [`TangentSource::Derivatives`](crate::TangentSource::Derivatives), with a world height, or as noise or heights: none of
-    /// these uses tangents. For bumps in MikkTSpace's frame, compute its tangents for the pose with [`Mesh::new`].
+    /// [`TangentSource::Derivatives`](crate::TangentSource::Derivatives), with a world height, or as noise or heights:
+    /// none of these uses tangents. For bumps in MikkTSpace's frame, compute its tangents for the pose with
+    /// [`Mesh::new`].
     ///
     /// # Errors
     /// [`MeshFault::PoseCount`] and [`MeshFault::PoseNotFinite`] if the arrays do not fit the mesh or contain NaN or

@@ -1,4 +1,5 @@
-// Bumps on top of others: heights add, and the normal is perturbed once. The host ends the names of the second source with its number.
+// Bumps on top of others: heights add, and the normal is perturbed once. The host ends the names of the second source
+// with its number.
 fn combined_slope(at: ScenePoint) -> vec2f {
     return source_slope(at) + source_slope_2(at);
 }

@@ -1,5 +1,5 @@
-// Bump mapping from heights alone: Mikkelsen, Bump Mapping Unparametrized Surfaces on the GPU, 2010. The heights are in texels
-// of level 0. `height_differences` is one of several.
+// Bump mapping from heights alone: Mikkelsen, Bump Mapping Unparametrized Surfaces on the GPU, 2010. The heights are in
+// texels of level 0. `height_differences` is one of several.
 
 // The change of the height with u and v at level 0, of the bilinear surface between texels.
 fn bilinear_height_gradient(uv: vec2f) -> vec2f {

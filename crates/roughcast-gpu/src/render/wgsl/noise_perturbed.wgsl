@@ -1,4 +1,5 @@
-// Noise that perturbs the normal without a filter, as the paper compares it. `perturbed` and the derivatives are one of several.
+// Noise that perturbs the normal without a filter, as the paper compares it. `perturbed` and the derivatives are one of
+// several.
 
 // The slope of a normal of the front. One that points into the surface, as Perlin's may, becomes the steepest slope.
 fn slope_of_front(at: DetailPoint, normal: vec3f) -> vec2f {
