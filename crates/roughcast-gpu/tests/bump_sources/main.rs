@@ -154,6 +154,26 @@ fn textures_are_placed_alike_without_tangents() {
     }
 }
 
+/// The models whose roughness follows from moments: every one shades bumps on a mesh whose tangents are not used.
+#[test]
+fn every_model_shades_moments_without_tangents() {
+    let gpu = gpu();
+    let by_derivatives = Placement::default().with_tangent_source(TangentSource::Derivatives);
+    let (name, scene) = scenes(View::Mid).pop().expect("the mesh");
+    let mut pictures: Vec<Picture> = Vec::new();
+    for shading in [Shading::Lean, Shading::Clean, Shading::Variance, Shading::Ggx] {
+        let arrays = maps(shading, SampleType::F16);
+        let textures = BakedTextures::of_model(shading, &arrays).expect("its own textures");
+        let there = pollster::block_on(GpuDetail::of_model(&gpu, shading, &arrays)).expect("textures");
+        let there = by_gpu(&gpu, &scene, &there.placed(by_derivatives), &draw()).expect("a picture");
+        let here = by_cpu(&scene, shading, &textures.sampled(sampler()).placed(by_derivatives));
+        let same = compared(&here, &there);
+        assert!(same.mean < PLACED && same.covered > 1000, "{name}, {shading}: {same:?}");
+        assert!(pictures.iter().all(|other| compared(other, &there).mean > 0.0), "{shading}");
+        pictures.push(there);
+    }
+}
+
 #[test]
 fn projections_along_three_axes_are_the_same_on_both() {
     let arrays = maps(Shading::Lean, SampleType::F16);

@@ -29,7 +29,7 @@ fn wave_and_position(inputs: &mut Inputs) -> Vec<f32> {
     let vector = [number * turn.cos(), number * turn.sin()];
     let height = inputs.between(0.1, 1.0) / number.max(1.0);
     let position = [inputs.between(-4.0, 4.0), inputs.between(-4.0, 4.0)];
-    [&vector[..], &[height, inputs.between(0.0, 6.28)], &position].concat()
+    [&vector[..], &[height, inputs.between(0.0, std::f32::consts::TAU)], &position].concat()
 }
 
 pub fn wave_twins() -> Vec<Twin> {

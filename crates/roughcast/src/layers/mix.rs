@@ -122,6 +122,7 @@ pub fn correlated_layers(sum: Distribution, in_common: Covariance) -> Distributi
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::slope::Normal;
 
     fn layer(x: f32, y: f32, xx: f32, yy: f32, xy: f32) -> Distribution {
         let gaussian = Distribution::gaussian(Slope { x, y }, Covariance { xx, yy, xy });
