@@ -5,10 +5,11 @@ mod common;
 use common::{bare_mesh, names, run, scratch, text};
 use serde_json::Value;
 
-const FIGURES: [&str; 12] = [
+const FIGURES: [&str; 13] = [
     "lean-2",
     "lean-4",
     "lean-5",
+    "lean-10",
     "lean-13",
     "lean-14",
     "mikkelsen-1",

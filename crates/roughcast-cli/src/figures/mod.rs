@@ -6,6 +6,7 @@ mod curvature;
 mod deformation;
 mod deforming;
 mod given;
+mod lean_10;
 mod lean_13;
 mod lean_14;
 mod lean_2;
@@ -45,6 +46,7 @@ Figures:
   lean-2   far away bumps become roughness, and ridges a highlight with a direction
   lean-4   Blinn-Phong and Beckmann approach each other as the exponent grows
   lean-5   four models that look the same where nothing is filtered
+  lean-10  two layers that cancel, mixed in three ways
   lean-13  bumps with a direction, as the object moves away
   lean-14  a raised checkerboard: conventional bump maps alias, LEAN does not
   mikkelsen-1  the normal of displaced facets shows their edges, the surface gradient does not
@@ -87,6 +89,7 @@ enum Name {
     Lean2,
     Lean4,
     Lean5,
+    Lean10,
     Lean13,
     Lean14,
     Mikkelsen1,
@@ -104,6 +107,7 @@ impl Named for Name {
             Self::Lean2,
             Self::Lean4,
             Self::Lean5,
+            Self::Lean10,
             Self::Lean13,
             Self::Lean14,
             Self::Mikkelsen1,
@@ -121,6 +125,7 @@ impl Named for Name {
             Self::Lean2 => "lean-2",
             Self::Lean4 => "lean-4",
             Self::Lean5 => "lean-5",
+            Self::Lean10 => "lean-10",
             Self::Lean13 => "lean-13",
             Self::Lean14 => "lean-14",
             Self::Mikkelsen1 => "mikkelsen-1",
@@ -140,6 +145,7 @@ impl Name {
             Self::Lean2 => lean_2::make(),
             Self::Lean4 => Ok(lean_4::make()),
             Self::Lean5 => lean_5::make(),
+            Self::Lean10 => lean_10::make(),
             Self::Lean13 => lean_13::make(),
             Self::Lean14 => lean_14::make(),
             Self::Mikkelsen1 => mikkelsen_1::make(),
