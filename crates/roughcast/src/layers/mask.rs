@@ -49,7 +49,8 @@ impl Mul<f32> for MaskedMoments {
 
 /// The slopes of a layer where it is seen, as a Gaussian whose weight is the mask. All zero without a mask.
 pub fn masked_gaussian(layer: MaskedMoments) -> WeightedGaussian {
-    if layer.mask.is_nan() || layer.mask <= LEAST_MASK {
+    // NaN counts as no mask.
+    if layer.mask <= LEAST_MASK || layer.mask.is_nan() {
         return WeightedGaussian::default();
     }
     let mask = f64::from(layer.mask);
@@ -68,7 +69,7 @@ pub fn masked_gaussian(layer: MaskedMoments) -> WeightedGaussian {
 /// no layer is seen. The filtered normal is the unit normal of the mean slope.
 pub fn masked_layers(layers: [WeightedGaussian; MAX_GAUSSIANS]) -> Distribution {
     let sum: f32 = layers.iter().map(|layer| layer.weight.max(0.0)).sum();
-    if sum.is_nan() || sum <= LEAST_MASK {
+    if sum <= LEAST_MASK || sum.is_nan() {
         return Distribution::of_slope(Slope::default());
     }
     let seen = layers.into_iter().filter(|layer| layer.weight > 0.0);

@@ -89,7 +89,7 @@ pub fn blend_whiteout(base: Normal, detail: Normal) -> Normal {
 /// that points along -z counts as one along z.
 pub fn blend_reoriented(base: Normal, detail: Normal) -> Normal {
     let z = base.z + 1.0;
-    if z.is_nan() || z <= LEAST_NORMAL_Z {
+    if z <= LEAST_NORMAL_Z {
         return unit(detail);
     }
     let along = (detail.z * z - base.x * detail.x - base.y * detail.y) / z;
