@@ -58,8 +58,7 @@ pub fn geometric_covariance(
     if larger <= limit {
         return bent;
     }
-    // Also true for NaN.
-    if !(larger < LARGEST_FINITE) {
+    if larger.is_nan() || larger >= LARGEST_FINITE {
         return Covariance::default();
     }
     let root = filter.pixel_variance * (ax * by - ay * bx);
