@@ -377,6 +377,24 @@ fn maps_add_to_each_other_on_both_renderers() {
 }
 
 #[test]
+fn a_map_of_add_alone_is_drawn_as_the_first_map_is() {
+    let folder = scratch();
+    let map = map();
+    let map = text(&map);
+    let output = folder.path().join("picture.exr");
+    let drawn = |arguments: &[&str]| {
+        let common = ["render", "-o", text(&output), "--scene", "torus", "--size", "64x48"];
+        run([&common, arguments].concat()).expect_success();
+        radiance(&output)
+    };
+    let (mesh, triplanar) = (format!("{map},green=down"), format!("{map},green=down,frame=triplanar"));
+    for (added, frame) in [(mesh, "mesh"), (triplanar, "triplanar")] {
+        let (alone, first) = (drawn(&["--add", &added]), drawn(&[map, "--green", "down", "--frame", frame]));
+        assert!(apart(&first, &alone) < SAME, "{frame}: {}", apart(&first, &alone));
+    }
+}
+
+#[test]
 fn normals_of_a_mesh_are_computed_as_asked() {
     let folder = scratch();
     // Smooth and flat differ on a cube, whose file has flat normals.

@@ -114,14 +114,14 @@ pub enum NoiseError {
         got: u32,
     },
     /// A frequency that is too small or too large.
-    #[error("the frequency of noise must be from {:e} to {LARGEST_NOISE_FACTOR:e}, not {got}", LARGEST_NOISE_FACTOR.recip())]
+    #[error("the frequency of noise must be from {:e} to {LARGEST_NOISE_FACTOR:e}, not {got:e}", LARGEST_NOISE_FACTOR.recip())]
     Frequency {
         /// The number given.
         got: f64,
     },
     /// An amplitude that is too large.
     #[error(
-        "the amplitude of noise, and the amplitude times the frequency, must be at most {LARGEST_NOISE_FACTOR:e}, not {got}"
+        "the amplitude of noise, and the amplitude times the frequency, must be at most {LARGEST_NOISE_FACTOR:e}, not {got:e}"
     )]
     Amplitude {
         /// The one that is too large.
@@ -303,7 +303,7 @@ mod unit_tests {
         assert_eq!(too_steep.check(), Err(NoiseError::Amplitude { got: 1e18 }));
         assert_eq!(too_steep.with_amplitude(1e6).check(), Ok(()));
         let error = noise.with_frequency(0.0).check().expect_err("zero");
-        assert_eq!(error.to_string(), "the frequency of noise must be from 1e-15 to 1e15, not 0");
+        assert_eq!(error.to_string(), "the frequency of noise must be from 1e-15 to 1e15, not 0e0");
         let error = noise.with_octaves(25).check().expect_err("too many");
         assert_eq!(error.to_string(), "noise has 1 to 24 octaves, not 25");
     }
