@@ -69,10 +69,7 @@ impl PlaceSettings {
             (None, Some(FrameChoice::Triplanar), Some(_)) => {
                 Err("frame=triplanar uses no texture coordinates: leave out uv-set".to_owned())
             }
-            (None, Some(frame), set) => Ok(Place::Frame(frame, set.unwrap_or(0))),
-            // The tangents of a mesh are those of its first set.
-            (None, None, Some(set)) if set > 0 => Ok(Place::Frame(FrameChoice::Screen, set)),
-            (None, None, _) => Ok(Place::Frame(FrameChoice::Mesh, 0)),
+            (None, frame, set) => Ok(Place::Frame(frame.unwrap_or(FrameChoice::Mesh), set.unwrap_or(0))),
         }
     }
 }
@@ -140,11 +137,10 @@ impl AddedMap {
     /// How the map is placed, given its width in texels, in a scene whose textures repeat this often per unit of length.
     pub fn placement(&self, width: usize, repeats: f64) -> Placement {
         let (set, tangents, texel) = match self.place {
-            Place::Frame(FrameChoice::Mesh, set) => (set, TangentSource::Mesh, None),
-            Place::Frame(FrameChoice::Screen, set) => (set, TangentSource::Derivatives, None),
             Place::Frame(FrameChoice::Triplanar, _) => {
                 (0, TangentSource::Derivatives, Some((width as f64 * repeats).recip()))
             }
+            Place::Frame(frame, set) => (set, frame.tangent_source(set), None),
             // The bumps of a decal are as steep as its map says.
             Place::Box(decal) => (0, TangentSource::Derivatives, Some(decal.size / width as f64)),
         };
@@ -274,7 +270,7 @@ mod tests {
         assert_eq!((plain.path.to_str(), plain.strength), (Some("a,b=c/rust.png"), 1.0));
         assert_eq!((plain.place, plain.uv_set()), (Place::Frame(FrameChoice::Mesh, 0), Some(0)));
         let second = AddedMap::parse("rust.png,uv-set=1,strength=-0.5").expect("settings");
-        assert_eq!((second.strength, second.place), (-0.5, Place::Frame(FrameChoice::Screen, 1)));
+        assert_eq!((second.strength, second.place), (-0.5, Place::Frame(FrameChoice::Mesh, 1)));
         let decal = AddedMap::parse("logo.png,decal=1:2:-3:0.5:-x,kind=height").expect("settings");
         assert_eq!((decal.uv_set(), decal.kind), (None, Some(Kind::Height)));
         let placement = decal.placement(50, 7.0);

@@ -106,6 +106,16 @@ roughcast::named_enum! {
     }
 }
 
+impl FrameChoice {
+    /// Where the tangents of a map on this set of texture coordinates come from: those of a mesh are of its first set.
+    pub fn tangent_source(self, uv_set: usize) -> TangentSource {
+        match (self, uv_set) {
+            (Self::Mesh, 0) => TangentSource::Mesh,
+            _ => TangentSource::Derivatives,
+        }
+    }
+}
+
 /// What makes the surface bumpy.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = BUMPS)]
@@ -261,10 +271,7 @@ impl BumpArgs {
 
     /// How the map is placed, for a map that a texel of this size covers.
     pub fn placement(&self, texel: f64) -> Placement {
-        let tangents = match self.frame {
-            FrameChoice::Mesh => TangentSource::Mesh,
-            FrameChoice::Screen | FrameChoice::Triplanar => TangentSource::Derivatives,
-        };
+        let tangents = self.frame.tangent_source(self.uv_set);
         let placement = Placement::default().with_uv_set(self.uv_set).with_tangent_source(tangents);
         match (self.world_height, self.frame) {
             (Some(height), _) => placement.with_world_height_per_texel(f64::from(height)),

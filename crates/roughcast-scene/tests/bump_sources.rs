@@ -370,7 +370,7 @@ fn object_normals(side: usize) -> ObjectNormalMap {
 
 #[test]
 fn an_object_space_normal_map_is_the_bumps_that_it_was_made_from() {
-    let object = ObjectNormalDetail { normals: object_normals(512), sampler: Sampler::default() };
+    let object = ObjectNormalDetail { normals: object_normals(512), sampler: Sampler::default(), uv_set: 0 };
     let exact = NoiseDetail::new(noise());
     let (mut sum, mut steepest, mut count) = (0.0, 0.0_f64, 0);
     for_each_pixel(&Shape::Sphere(Sphere), 1e-3, |at| {
@@ -399,7 +399,7 @@ fn moments_of_object_space_normals_are_those_of_their_slopes() {
     /// Slopes are linearised about the mean: the third moments of slopes of up to 0.3 about it, and their effect on the mean.
     const LINEARISED: f32 = 0.1;
     let sampler = Sampler::default().with_level(Some(3.0));
-    let object = ObjectNormalDetail { normals: object_normals(SIDE), sampler };
+    let object = ObjectNormalDetail { normals: object_normals(SIDE), sampler, uv_set: 0 };
     let sphere = Shape::Sphere(Sphere);
     let mut widest = 0.0_f32;
     for (column, row) in (0..SIDE / COVERED).flat_map(|c| (8..24).map(move |r| (c, r))) {

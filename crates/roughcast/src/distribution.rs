@@ -199,6 +199,43 @@ impl Distribution {
         self.transformed([[factor, 0.0], [0.0, factor]]).with_power_of_length(factor * factor)
     }
 
+    /// As [`Distribution::scaled`], for bumps on a surface with a base roughness: if the covariances contain it, it keeps its slope
+    /// variance, `base_variance` per axis.
+    #[must_use]
+    pub fn scaled_bumps(self, factor: f32, base_variance: f32) -> Self {
+        match self.base {
+            Base::None => self.scaled(factor),
+            Base::Baked => self.without_base(base_variance).scaled(factor).with_base_variance(base_variance),
+        }
+    }
+
+    /// As [`Distribution::plus`], for bumps on one surface: if the covariances of both contain the base roughness, of the slope
+    /// variance `base_variance` per axis, it counts once.
+    #[must_use]
+    pub fn plus_bumps(self, other: Self, base_variance: f32) -> Self {
+        match self.base {
+            Base::None => self.plus(other),
+            Base::Baked => self.plus(other.without_base(base_variance)),
+        }
+    }
+
+    /// The distribution without the base roughness that its covariances contain, of this slope variance per axis. One that
+    /// does not contain it is unchanged. Rounding of stored moments may leave a covariance that is not valid; shading
+    /// repairs it.
+    #[must_use]
+    pub fn without_base(self, variance: f32) -> Self {
+        match self.base {
+            Base::None => self,
+            Base::Baked => self.widened(Covariance::isotropic(-variance)).with_base(Base::None),
+        }
+    }
+
+    /// The distribution with a base roughness of this slope variance per axis in its covariances.
+    #[must_use]
+    pub fn with_base_variance(self, variance: f32) -> Self {
+        self.widened(Covariance::isotropic(variance)).with_base(Base::Baked)
+    }
+
     /// The distribution with a power of the length of its filtered normal, which falls as variances grow: 0 leaves a unit normal, 2
     /// the normal of two independent sources of the same bumps.
     #[must_use]
@@ -306,6 +343,26 @@ mod tests {
         }
         assert_eq!(one.plus(one.with_base(Base::Baked)).base(), Base::Baked);
         assert_eq!(one.with_base(Base::Baked).plus(one).base(), Base::Baked);
+    }
+
+    #[test]
+    fn a_base_roughness_is_neither_scaled_nor_counted_twice() {
+        const BASE: f32 = 0.125;
+        let bumps =
+            Distribution::gaussian(Slope { x: 0.5, y: -0.25 }, Covariance { xx: 0.5, yy: 0.25, xy: 0.125 });
+        let rough = bumps.with_base_variance(BASE);
+        assert_eq!(rough.without_base(BASE), bumps);
+        for factor in [0.0, 0.5, -2.0] {
+            assert_eq!(bumps.scaled_bumps(factor, BASE), bumps.scaled(factor));
+            assert_eq!(rough.scaled_bumps(factor, BASE), bumps.scaled(factor).with_base_variance(BASE));
+        }
+        let both = bumps.plus(bumps);
+        assert_eq!(bumps.plus_bumps(bumps, BASE), both);
+        for sum in
+            [rough.plus_bumps(bumps, BASE), bumps.plus_bumps(rough, BASE), rough.plus_bumps(rough, BASE)]
+        {
+            assert_eq!(sum, both.with_base_variance(BASE));
+        }
     }
 
     #[test]

@@ -154,3 +154,38 @@ fn distribution_sum(one: Distribution, other: Distribution) -> Distribution {
         moved_gaussian(one.fourth, whole.mean, sigma),
     );
 }
+
+// The distribution without the base roughness that its variances include, of this slope variance per axis. One that does not
+// include it is unchanged.
+fn without_base(distribution: Distribution, variance: f32) -> Distribution {
+    let included = select(0.0, variance, distribution.base == MAPS_WITH_BASE);
+    var bumps = widened_distribution(distribution, vec3f(-included, -included, 0.0));
+    bumps.base = MAPS_WITHOUT_BASE;
+    return bumps;
+}
+
+// The distribution with a base roughness of this slope variance per axis in its variances.
+fn with_base_variance(distribution: Distribution, variance: f32) -> Distribution {
+    var rough = widened_distribution(distribution, vec3f(variance, variance, 0.0));
+    rough.base = MAPS_WITH_BASE;
+    return rough;
+}
+
+// As scaled_distribution, for bumps on a surface with a base roughness: if the variances include it, it keeps its slope variance,
+// `base_variance` per axis.
+fn scaled_bumps(distribution: Distribution, factor: f32, base_variance: f32) -> Distribution {
+    let scaled = scaled_distribution(without_base(distribution, base_variance), factor);
+    if distribution.base == MAPS_WITH_BASE {
+        return with_base_variance(scaled, base_variance);
+    }
+    return scaled;
+}
+
+// As distribution_sum, for bumps on one surface: if the variances of both include the base roughness, it counts once.
+fn sum_of_bumps(one: Distribution, other: Distribution, base_variance: f32) -> Distribution {
+    let included = select(0.0, base_variance, one.base == MAPS_WITH_BASE);
+    if included > 0.0 {
+        return distribution_sum(one, without_base(other, included));
+    }
+    return distribution_sum(one, other);
+}

@@ -78,10 +78,3 @@ fn masked_layers(first: WeightedGaussian, second: WeightedGaussian, third: Weigh
         parts.fourth,
     );
 }
-
-// A layer without the base roughness that its maps include, of this slope variance per axis.
-fn without_base(layer: Distribution, variance: f32) -> Distribution {
-    let included = select(0.0, variance, layer.base == MAPS_WITH_BASE);
-    let bumps = widened_distribution(layer, vec3f(-included, -included, 0.0));
-    return Distribution(bumps.normal, MAPS_WITHOUT_BASE, bumps.first, bumps.second, bumps.third, bumps.fourth);
-}

@@ -22,7 +22,7 @@ fn surface_basis(sigma_s: vec3f, sigma_t: vec3f, normal: vec3f) -> mat2x3f {
     let det = dot(sigma_s, r1);
     let least = LEAST_SINE * length(sigma_s) * length(sigma_t);
     // False for NaN.
-    if abs(det) > least {
+    if abs(det) > least && abs(det) < LONGEST_SQUARED {
         return mat2x3f(r1 / det, r2 / det);
     }
     return mat2x3f(vec3f(0.0), vec3f(0.0));

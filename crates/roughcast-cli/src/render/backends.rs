@@ -81,7 +81,7 @@ impl Args {
             (Some(Bump::ObjectNormal), subject) => {
                 let map = self.object_normals(subject)?;
                 let normals = ObjectNormalMap::of(&map.image, map.options.range).with_context(named)?;
-                MapBumps::ObjectNormals(ObjectNormalDetail { normals, sampler })
+                MapBumps::ObjectNormals(ObjectNormalDetail { normals, sampler, uv_set: 0 })
             }
             (Some(Bump::Normal), Subject::Map(map)) if self.samples().is_some() => {
                 slopes_of(map, placement).with_context(named)?

@@ -19,6 +19,9 @@ use super::common::scenes::{maps, scene, scenes};
 use super::common::{gpu, gpu_of_the_web};
 use super::{OTHERS, PLACED, assert_same, by_gpu, compared, draw, noise, sampler};
 
+/// Half floats of a base roughness, which lie within 2^-11 of it, and triangles for round shapes.
+const BASE: f64 = 2e-3;
+
 fn textures() -> (Vec<TextureArray>, BakedTextures) {
     let arrays = maps(Shading::Lean, SampleType::F16);
     let textures = BakedTextures::of_model(Shading::Lean, &arrays).expect("its own textures");
@@ -171,7 +174,7 @@ fn object_space_normals_are_the_same_on_both() {
         let mut scene = scene(shape, View::Mid);
         scene.repeats = 1.0;
         let normals = ObjectNormalMap::of(&image, NormalRange::Signed).expect("three channels");
-        let here = ObjectNormalDetail { normals, sampler: sampler() };
+        let here = ObjectNormalDetail { normals, sampler: sampler(), uv_set: 0 };
         let there = GpuDetail::of_object_normals(&gpu, Shading::Lean, &image, NormalRange::Signed);
         let there = pollster::block_on(there).expect("textures");
         let pictures = assert_same(&gpu, ("object-space normals", &scene), &here, &there, PLACED);
@@ -199,4 +202,40 @@ fn a_flat_source_adds_nothing() {
     let picture = by_gpu(&gpu, &scene, &flat.clone().plus(flat), &draw()).expect("a picture");
     let smooth = by_cpu(&scene, Shading::Lean, &Combined::new(Vec::new()));
     assert!(compared(&smooth, &picture).mean < super::SAME_SHAPES);
+}
+
+#[test]
+fn a_base_roughness_in_the_textures_is_neither_scaled_nor_added_twice() {
+    let arrays = maps(Shading::Ggx, SampleType::F16);
+    let textures = BakedTextures::of_model(Shading::Ggx, &arrays).expect("its own textures");
+    let gpu = gpu();
+    let of_model = pollster::block_on(GpuDetail::of_model(&gpu, Shading::Ggx, &arrays)).expect("textures");
+    for shape in [Shape::Sphere(Sphere), Shape::Torus(Torus::default())] {
+        let mut scene = scene(shape, View::Mid);
+        let source = textures.sampled(sampler());
+        // Without any height, only the base is left.
+        let smooth = by_cpu(&scene, Shading::Ggx, &Combined::new(Vec::new()));
+        let nothing = by_cpu(&scene, Shading::Ggx, &Combined::new(vec![part(&source, 0.0)]));
+        assert!(compared(&smooth, &nothing).mean < BASE, "{:?}", compared(&smooth, &nothing));
+        let there = by_gpu(&gpu, &scene, &of_model.clone().with_strength(0.0), &draw()).expect("a picture");
+        assert!(compared(&smooth, &there).mean < BASE, "{:?}", compared(&smooth, &there));
+        let twice = Combined::new(vec![part(&source, 1.0), part(&source, 0.0)]);
+        let once = by_cpu(&scene, Shading::Ggx, &source);
+        assert!(compared(&once, &by_cpu(&scene, Shading::Ggx, &twice)).mean < BASE);
+        let there = of_model.clone().plus(of_model.clone().with_strength(0.0));
+        let there = by_gpu(&gpu, &scene, &there, &draw()).expect("a picture");
+        assert!(compared(&once, &there).mean < PLACED, "{:?}", compared(&once, &there));
+        // Three projections have one base together.
+        scene.repeats = 4.0 / scene.shape.bounds().radius;
+        let placement = Placement::default()
+            .with_tangent_source(TangentSource::Derivatives)
+            .with_world_height_per_texel(1e-9);
+        let flat = source.placed(placement);
+        let projected = by_cpu(&scene, Shading::Ggx, &Triplanar::new(&flat));
+        let there = of_model.clone().placed(GpuPlacement::from(placement).triplanar());
+        let there = by_gpu(&gpu, &scene, &there, &draw()).expect("a picture");
+        for picture in [projected, there] {
+            assert!(compared(&smooth, &picture).mean < PLACED, "{:?}", compared(&smooth, &picture));
+        }
+    }
 }

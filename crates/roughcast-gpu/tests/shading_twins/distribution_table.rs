@@ -205,6 +205,38 @@ pub fn distribution_twins() -> Vec<Twin> {
             rust: |a, _, _| distribution_words(&distribution(a).plus(distribution(&a[WORDS..]))),
         },
         Twin {
+            name: "with_base_variance",
+            gives: Gives::Numbers,
+            call: "put_distribution(with_base_variance(distribution(0u), f(28u)));",
+            arguments: |inputs| [any(inputs), vec![0.1 * inputs.unit()]].concat(),
+            rust: |a, _, _| distribution_words(&distribution(a).with_base_variance(a[WORDS])),
+        },
+        Twin {
+            name: "scaled_bumps",
+            gives: Gives::Numbers,
+            call: "put_distribution(scaled_bumps(distribution(0u), f(28u), f(29u)));",
+            arguments: |inputs| [any(inputs), vec![4.0 * inputs.unit() - 2.0, 0.01 * inputs.unit()]].concat(),
+            rust: |a, _, _| distribution_words(&distribution(a).scaled_bumps(a[WORDS], a[WORDS + 1])),
+        },
+        Twin {
+            name: "sum_of_bumps",
+            gives: Gives::Numbers,
+            call: "put_distribution(sum_of_bumps(distribution(0u), distribution(28u), f(56u)));",
+            arguments: |inputs| {
+                let fewer = 1 + inputs.below(4);
+                let more = fewer + inputs.below(5 - fewer);
+                let [one, other] = [more, fewer].map(|count| {
+                    let base = if inputs.below(2) == 0 { Base::None } else { Base::Baked };
+                    distribution_words(&inputs.mixture(count).with_base(base))
+                });
+                [&one[..], &other, &[0.01 * inputs.unit()]].concat()
+            },
+            rust: |a, _, _| {
+                let [one, other] = [a, &a[WORDS..]].map(distribution);
+                distribution_words(&one.plus_bumps(other, a[2 * WORDS]))
+            },
+        },
+        Twin {
             name: "base_in_map",
             gives: Gives::Numbers,
             call: "put(base_in_map(u32(f(0u) + 0.5), o()));",

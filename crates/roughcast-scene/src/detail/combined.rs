@@ -9,8 +9,8 @@ use crate::Sampler;
 /// The sum of several independent sources of bumps, each with a strength that scales its heights.
 ///
 /// The surface gradient is linear, so the normal is perturbed once, by the sum (Mikkelsen 2010, section 4). Mean slopes and
-/// covariances add; a strength multiplies slopes, and its square multiplies covariances. A base roughness baked into
-/// one of the sources should be in one alone, with a strength of one.
+/// covariances add; a strength multiplies slopes, and its square multiplies covariances. The base roughness of the surface is
+/// neither scaled nor added twice, if sources have it in their covariances.
 #[derive(Clone)]
 pub struct Combined<'a> {
     parts: Vec<Strengthened<'a>>,
@@ -25,6 +25,11 @@ pub struct Strengthened<'a> {
     pub strength: f32,
 }
 
+/// The slope variance per axis of the base roughness that sources may have in their covariances.
+pub(super) fn base_variance(options: &ShadingOptions) -> f32 {
+    options.specular_power.recip()
+}
+
 impl Detail for Strengthened<'_> {
     fn slope(&self, at: &DetailPoint<'_>) -> Slope {
         self.detail.slope(at) * self.strength
@@ -35,7 +40,7 @@ impl Detail for Strengthened<'_> {
         if self.strength == 1.0 {
             return distribution;
         }
-        distribution.scaled(self.strength)
+        distribution.scaled_bumps(self.strength, base_variance(options))
     }
 
     fn options(&self, options: ShadingOptions) -> ShadingOptions {
@@ -61,7 +66,9 @@ impl Detail for Combined<'_> {
 
     fn distribution(&self, at: &DetailPoint<'_>, options: &ShadingOptions) -> Distribution {
         let parts = self.parts.iter().map(|part| part.distribution(at, options));
-        parts.reduce(Distribution::plus).unwrap_or_else(|| Distribution::of_slope(Slope::default()))
+        parts
+            .reduce(|sum, part| sum.plus_bumps(part, base_variance(options)))
+            .unwrap_or_else(|| Distribution::of_slope(Slope::default()))
     }
 
     fn options(&self, options: ShadingOptions) -> ShadingOptions {

@@ -42,14 +42,15 @@ impl ObjectNormalMap {
     }
 }
 
-/// An object-space normal map on a surface, by the first set of texture coordinates. The scene's world space is the
-/// object's.
+/// An object-space normal map on a surface. The scene's world space is the object's.
 #[derive(Clone, Debug)]
 pub struct ObjectNormalDetail {
     /// The normals.
     pub normals: ObjectNormalMap,
     /// The texture filter.
     pub sampler: Sampler,
+    /// The set of texture coordinates.
+    pub uv_set: usize,
 }
 
 impl ObjectNormalDetail {
@@ -66,14 +67,15 @@ impl ObjectNormalDetail {
 impl Detail for ObjectNormalDetail {
     fn slope(&self, at: &DetailPoint<'_>) -> Slope {
         let finest = self.sampler.with_filter(crate::Filter::Trilinear).with_level(Some(0.0));
-        let (normal, _) = self.normals.sampled(&finest, at.uv(0), &Footprint::default());
+        let (normal, _) = self.normals.sampled(&finest, at.uv(self.uv_set), &Footprint::default());
         Self::slope_of(at, normal)
     }
 
     /// The slope of the mean normal, and the covariance of the normals seen from it: a slope is `(n·t, n·b) / (n·m)` with
     /// the surface's normal m, which is linearised about the mean.
     fn distribution(&self, at: &DetailPoint<'_>, _options: &ShadingOptions) -> Distribution {
-        let (mean, spread) = self.normals.sampled(&self.sampler, at.uv(0), &at.footprint(0));
+        let (mean, spread) =
+            self.normals.sampled(&self.sampler, at.uv(self.uv_set), &at.footprint(self.uv_set));
         let slope = Self::slope_of(at, mean);
         let hit = at.hit();
         let along = hit.frame.normal().dot(mean).abs();

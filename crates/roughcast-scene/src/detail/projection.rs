@@ -5,8 +5,10 @@
 
 use glam::{DAffine3, DVec2, DVec3};
 use roughcast::shading::ShadingOptions;
+use roughcast::texture::Base;
 use roughcast::{Distribution, Normal, Slope, normal_from_slope};
 
+use super::combined::base_variance;
 use super::{Detail, DetailPoint};
 use crate::{Hit, Sampler, TRIPLANAR_SHARPNESS, UvPoint, UvSets};
 
@@ -66,19 +68,24 @@ impl Detail for Triplanar<'_> {
 
     fn distribution(&self, at: &DetailPoint<'_>, options: &ShadingOptions) -> Distribution {
         let hit = at.hit();
-        let (mut sum, mut length) = (None, 0.0);
+        let (mut sum, mut length, mut base) = (None, 0.0, Base::None);
         for (weight, point) in self.projections(hit).iter().filter(|(weight, _)| *weight > LEAST_WEIGHT) {
             let projected = Hit { uv_sets: UvSets::of_points(std::slice::from_ref(point)), ..*hit };
             let weight = *weight as f32;
             let part = self.detail.distribution(&at.with_hit(&projected), options);
             length += weight * part.normal().length();
-            let part = part.scaled(weight);
+            base = part.base();
+            let part = part.without_base(base_variance(options)).scaled(weight);
             sum = Some(sum.map_or(part, |sum: Distribution| sum.plus(part)));
         }
         let sum = sum.unwrap_or_else(|| Distribution::of_slope(Slope::default()));
         // Blending heights does not shorten the filtered normal more than filtering did.
         let Normal { x, y, z } = normal_from_slope(sum.whole().mean);
-        sum.with_normal(Normal { x: x * length, y: y * length, z: z * length })
+        let sum = sum.with_normal(Normal { x: x * length, y: y * length, z: z * length });
+        match base {
+            Base::None => sum,
+            Base::Baked => sum.with_base_variance(base_variance(options)),
+        }
     }
 
     fn options(&self, options: ShadingOptions) -> ShadingOptions {
@@ -143,7 +150,7 @@ impl Detail for Decal<'_> {
             return Distribution::of_slope(Slope::default());
         };
         let hit = Hit { uv_sets: UvSets::of_points(std::slice::from_ref(&point)), ..*at.hit() };
-        self.detail.distribution(&at.with_hit(&hit), options).scaled(strength)
+        self.detail.distribution(&at.with_hit(&hit), options).scaled_bumps(strength, base_variance(options))
     }
 
     fn options(&self, options: ShadingOptions) -> ShadingOptions {

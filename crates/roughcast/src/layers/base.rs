@@ -2,7 +2,7 @@
 
 use super::LayerError;
 use crate::distribution::Distribution;
-use crate::moments::{Covariance, Moments};
+use crate::moments::Moments;
 use crate::roughness::Base;
 use crate::texture::{MomentLevel, TextureInfo};
 
@@ -19,11 +19,7 @@ pub fn without_base(distribution: Distribution, variance: f32) -> Result<Distrib
     if !(variance.is_finite() && variance >= 0.0) {
         return Err(LayerError::VaryingBase);
     }
-    let mut bumps = distribution.with_base(Base::None);
-    for gaussian in bumps.gaussians_mut() {
-        gaussian.covariance = gaussian.covariance - Covariance::isotropic(variance);
-    }
-    Ok(bumps)
+    Ok(distribution.without_base(variance))
 }
 
 /// A decoded level without the base roughness that its texture contains.
@@ -47,6 +43,7 @@ pub fn level_without_base(level: MomentLevel, info: &TextureInfo) -> Result<Mome
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::moments::Covariance;
     use crate::slope::Slope;
     use crate::texture::{Layout, Part};
 

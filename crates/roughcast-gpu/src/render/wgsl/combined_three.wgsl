@@ -4,6 +4,7 @@ fn combined_slope(at: ScenePoint) -> vec2f {
 }
 
 fn combined_distribution(at: ScenePoint) -> Distribution {
-    let two = distribution_sum(source_distribution(at), source_distribution_2(at));
-    return distribution_sum(two, source_distribution_3(at));
+    let base = 1.0 / options.specular_power;
+    let two = sum_of_bumps(source_distribution(at), source_distribution_2(at), base);
+    return sum_of_bumps(two, source_distribution_3(at), base);
 }

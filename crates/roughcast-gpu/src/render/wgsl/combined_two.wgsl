@@ -5,5 +5,5 @@ fn combined_slope(at: ScenePoint) -> vec2f {
 }
 
 fn combined_distribution(at: ScenePoint) -> Distribution {
-    return distribution_sum(source_distribution(at), source_distribution_2(at));
+    return sum_of_bumps(source_distribution(at), source_distribution_2(at), 1.0 / options.specular_power);
 }

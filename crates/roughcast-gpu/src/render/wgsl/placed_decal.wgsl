@@ -34,7 +34,7 @@ fn placed_distribution(at: DetailPoint) -> Distribution {
     let inside = projected_distribution(decal_point(at, local));
     let strength = decal_strength(at, local);
     if strength > 0.0 {
-        return scaled_distribution(inside, strength);
+        return scaled_bumps(inside, strength, 1.0 / options.specular_power);
     }
     return distribution_of_slope(vec2f(0.0));
 }

@@ -4,5 +4,5 @@ fn source_slope(at: ScenePoint) -> vec2f {
 }
 
 fn source_distribution(at: ScenePoint) -> Distribution {
-    return scaled_distribution(placed_distribution(source_point(at)), source_options.strength);
+    return scaled_bumps(placed_distribution(source_point(at)), source_options.strength, 1.0 / options.specular_power);
 }
