@@ -11,7 +11,7 @@ use roughcast_gpu::render::{Geometry, GpuDetail, GpuPlacement, RenderTarget, Ren
 use roughcast_gpu::{Gpu, GpuError};
 use roughcast_scene::{
     BakedTextures, Combined, Decal, Detail, Mesh, NoiseDetail, ObjectNormalDetail, ObjectNormalMap,
-    Placement, Scene, Shape, Sphere, Strengthened, TangentSource, Torus, TriangleMesh, View,
+    Placement, Scene, Shape, Sphere, Strengthened, TangentSource, Torus, TriangleMesh, Triplanar, View,
 };
 
 use super::common::drawn::by_cpu;

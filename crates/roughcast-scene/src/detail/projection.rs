@@ -82,10 +82,7 @@ impl Detail for Triplanar<'_> {
         // Blending heights does not shorten the filtered normal more than filtering did.
         let Normal { x, y, z } = normal_from_slope(sum.whole().mean);
         let sum = sum.with_normal(Normal { x: x * length, y: y * length, z: z * length });
-        match base {
-            Base::None => sum,
-            Base::Baked => sum.with_base_variance(base_variance(options)),
-        }
+        if base == Base::Baked { sum.with_base_variance(base_variance(options)) } else { sum }
     }
 
     fn options(&self, options: ShadingOptions) -> ShadingOptions {
