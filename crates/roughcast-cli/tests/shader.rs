@@ -19,8 +19,8 @@ fn names() -> Vec<String> {
     let names =
         entries.iter().map(|entry| entry["name"].as_str().expect("every export has a name").to_owned());
     let names: Vec<_> = names.collect();
-    // Reflectance, and three modules of bumps.
-    assert_eq!(names.len(), Shading::ALL.len() + 4, "{names:?}");
+    // Reflectance, five modules of bumps, and two that mix them.
+    assert_eq!(names.len(), Shading::ALL.len() + 8, "{names:?}");
     names
 }
 

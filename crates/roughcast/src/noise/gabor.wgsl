@@ -81,8 +81,10 @@ fn gabor_sample(noise: GaborNoise, p: vec2f) -> vec3f {
         let offset = vec2i(place % 3 - 1, place / 3 - 1);
         let hash = gabor_cell_hash(noise, vec2i(cell) + offset);
         let count = gabor_impulse_count(noise, hash);
-        for (var index = 0u; index < count; index++) {
+        var index = 0u;
+        while index < count {
             heights += gabor_kernel(noise, hash, index, cells - cell - vec2f(offset));
+            index += 1u;
         }
     }
     return noise.kernel_height * vec3f(noise.cells * heights.xy, heights.z);
