@@ -205,8 +205,9 @@ pub fn slope_matrix(
 /// shading normal after a bump, when more bumps follow. The ray starts at `origin`; the length of `direction` does not
 /// matter. Zero if the ray does not meet the plane.
 pub fn position_derivative(position: DVec3, normal: DVec3, origin: DVec3, direction: DVec3) -> DVec3 {
-    let distance = normal.dot(position - origin) / normal.dot(direction);
-    finite_or_flat((origin - position) + direction * distance)
+    // The difference of two distant points, direction * distance - offset, written as one product.
+    let offset = position - origin;
+    finite_or_flat(normal.cross(direction.cross(offset)) / normal.dot(direction))
 }
 
 /// Two unit vectors perpendicular to a unit normal and to each other.

@@ -126,8 +126,9 @@ fn slope_matrix(gradients: mat2x3f, height_per_uv: vec2f, tangent: vec3f, bitang
 // The change of the position to where the ray of an adjacent pixel meets the tangent plane: a derivative of the position where
 // there are no derivative instructions. Zero if the ray does not meet the plane.
 fn position_derivative(position: vec3f, normal: vec3f, origin: vec3f, direction: vec3f) -> vec3f {
-    let distance = dot(normal, position - origin) / dot(normal, direction);
-    return finite_or_flat((origin - position) + direction * distance);
+    // The difference of two distant points, direction * distance - offset, written as one product.
+    let offset = position - origin;
+    return finite_or_flat(cross(normal, cross(direction, offset)) / dot(normal, direction));
 }
 
 // Two unit vectors perpendicular to a unit normal and to each other, as columns.
