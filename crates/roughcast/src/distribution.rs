@@ -209,6 +209,18 @@ impl Distribution {
         }
     }
 
+    /// As [`Distribution::transformed`], for bumps on a surface with a base roughness: if the covariances contain it, it keeps
+    /// its slope variance, `base_variance` per axis, in the new frame.
+    #[must_use]
+    pub fn transformed_bumps(self, matrix: SlopeMatrix, base_variance: f32) -> Self {
+        match self.base {
+            Base::None => self.transformed(matrix),
+            Base::Baked => {
+                self.without_base(base_variance).transformed(matrix).with_base_variance(base_variance)
+            }
+        }
+    }
+
     /// As [`Distribution::plus`], for bumps on one surface: if the covariances of both contain the base roughness, of the slope
     /// variance `base_variance` per axis, it counts once.
     #[must_use]
@@ -355,6 +367,10 @@ mod tests {
         for factor in [0.0, 0.5, -2.0] {
             assert_eq!(bumps.scaled_bumps(factor, BASE), bumps.scaled(factor));
             assert_eq!(rough.scaled_bumps(factor, BASE), bumps.scaled(factor).with_base_variance(BASE));
+            let matrix = [[factor, 0.5], [0.0, 1.0]];
+            let moved = bumps.transformed(matrix);
+            assert_eq!(bumps.transformed_bumps(matrix, BASE), moved);
+            assert_eq!(rough.transformed_bumps(matrix, BASE), moved.with_base_variance(BASE));
         }
         let both = bumps.plus(bumps);
         assert_eq!(bumps.plus_bumps(bumps, BASE), both);

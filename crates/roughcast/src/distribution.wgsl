@@ -164,28 +164,25 @@ fn without_base(distribution: Distribution, variance: f32) -> Distribution {
     return bumps;
 }
 
-// The distribution with a base roughness of this slope variance per axis in its variances.
-fn with_base_variance(distribution: Distribution, variance: f32) -> Distribution {
-    var rough = widened_distribution(distribution, vec3f(variance, variance, 0.0));
-    rough.base = MAPS_WITH_BASE;
-    return rough;
-}
-
 // As scaled_distribution, for bumps on a surface with a base roughness: if the variances include it, it keeps its slope variance,
 // `base_variance` per axis.
 fn scaled_bumps(distribution: Distribution, factor: f32, base_variance: f32) -> Distribution {
-    let scaled = scaled_distribution(without_base(distribution, base_variance), factor);
-    if distribution.base == MAPS_WITH_BASE {
-        return with_base_variance(scaled, base_variance);
-    }
-    return scaled;
+    let included = select(0.0, base_variance, distribution.base == MAPS_WITH_BASE);
+    let kept = included * (1.0 - factor * factor);
+    return widened_distribution(scaled_distribution(distribution, factor), vec3f(kept, kept, 0.0));
+}
+
+// As transformed_distribution, for bumps on a surface with a base roughness: if the variances include it, it keeps its slope
+// variance, `base_variance` per axis, in the new frame.
+fn transformed_bumps(distribution: Distribution, new_from_old: mat2x2f, base_variance: f32) -> Distribution {
+    let included = select(0.0, base_variance, distribution.base == MAPS_WITH_BASE);
+    let squared = new_from_old * transpose(new_from_old);
+    let kept = included * vec3f(1.0 - squared[0].x, 1.0 - squared[1].y, -squared[0].y);
+    return widened_distribution(transformed_distribution(distribution, new_from_old), kept);
 }
 
 // As distribution_sum, for bumps on one surface: if the variances of both include the base roughness, it counts once.
 fn sum_of_bumps(one: Distribution, other: Distribution, base_variance: f32) -> Distribution {
-    let included = select(0.0, base_variance, one.base == MAPS_WITH_BASE);
-    if included > 0.0 {
-        return distribution_sum(one, without_base(other, included));
-    }
-    return distribution_sum(one, other);
+    let twice = select(0.0, base_variance, min(one.base, other.base) == MAPS_WITH_BASE);
+    return widened_distribution(distribution_sum(one, other), vec3f(-twice, -twice, 0.0));
 }

@@ -205,18 +205,21 @@ pub fn distribution_twins() -> Vec<Twin> {
             rust: |a, _, _| distribution_words(&distribution(a).plus(distribution(&a[WORDS..]))),
         },
         Twin {
-            name: "with_base_variance",
-            gives: Gives::Numbers,
-            call: "put_distribution(with_base_variance(distribution(0u), f(28u)));",
-            arguments: |inputs| [any(inputs), vec![0.1 * inputs.unit()]].concat(),
-            rust: |a, _, _| distribution_words(&distribution(a).with_base_variance(a[WORDS])),
-        },
-        Twin {
             name: "scaled_bumps",
             gives: Gives::Numbers,
             call: "put_distribution(scaled_bumps(distribution(0u), f(28u), f(29u)));",
             arguments: |inputs| [any(inputs), vec![4.0 * inputs.unit() - 2.0, 0.01 * inputs.unit()]].concat(),
             rust: |a, _, _| distribution_words(&distribution(a).scaled_bumps(a[WORDS], a[WORDS + 1])),
+        },
+        Twin {
+            name: "transformed_bumps",
+            gives: Gives::Numbers,
+            call: "put_distribution(transformed_bumps(distribution(0u), mat2x2f(f2(28u), f2(30u)), f(32u)));",
+            arguments: |inputs| [any(inputs), matrix(inputs), vec![0.01 * inputs.unit()]].concat(),
+            rust: |a, _, _| {
+                let matrix = matrix_of(&a[WORDS..]);
+                distribution_words(&distribution(a).transformed_bumps(matrix, a[WORDS + 4]))
+            },
         },
         Twin {
             name: "sum_of_bumps",

@@ -4,6 +4,7 @@ use roughcast::shading::{FootprintRatio, Shading, ShadingOptions, Wanted};
 use roughcast::texture::{MAX_TEXTURES, Packing, TexelReader, TextureArray, TextureInfo};
 use roughcast::{Distribution, Slope};
 
+use super::combined::base_variance;
 use super::inputs::{DetailError, TextureInputs, model_inputs, texture_inputs};
 use super::{Detail, DetailPoint};
 use crate::filter::Lookup;
@@ -113,7 +114,7 @@ impl Detail for TextureDetail<'_> {
         // Changed in place: copying a distribution right after it is written stalls the processor.
         let mut seen = reader.read_pixel(&texels[..textures.len()], &ratio, packing, options);
         if let Some(matrix) = at.slope_matrix(&self.placement, self.textures.size()) {
-            seen = seen.transformed(matrix);
+            seen = seen.transformed_bumps(matrix, base_variance(options));
         }
         seen
     }

@@ -31,24 +31,21 @@ fn placed_slope(at: DetailPoint) -> vec2f {
     return weights.x * projected_slope(x) + weights.y * projected_slope(y) + weights.z * projected_slope(z);
 }
 
-// A projection whose heights are multiplied by its weight, without the base roughness that its variances include.
-fn weighted_projection(projected: Distribution, weight: f32) -> Distribution {
-    let bumps = without_base(projected, 1.0 / options.specular_power);
-    return transformed_distribution(bumps, mat2x2f(weight, 0.0, 0.0, weight));
+fn weighted_projection(at: DetailPoint, weight: f32) -> Distribution {
+    return transformed_distribution(projected_distribution(at), mat2x2f(weight, 0.0, 0.0, weight));
 }
 
 fn placed_distribution(at: DetailPoint) -> Distribution {
     let weights = projection_weights(at.frame[2]);
-    let x = projected_distribution(projected_along_x(at));
-    let y = projected_distribution(projected_along_y(at));
-    let z = projected_distribution(projected_along_z(at));
-    let two = distribution_sum(weighted_projection(x, weights.x), weighted_projection(y, weights.y));
-    var sum = distribution_sum(two, weighted_projection(z, weights.z));
+    let x = weighted_projection(projected_along_x(at), weights.x);
+    let y = weighted_projection(projected_along_y(at), weights.y);
+    let z = weighted_projection(projected_along_z(at), weights.z);
+    var sum = distribution_sum(distribution_sum(x, y), z);
     // Blending heights does not shorten the filtered normal more than filtering did.
     let shortened = dot(weights, vec3f(length(x.normal), length(y.normal), length(z.normal)));
     sum.normal = slope_normal(whole_gaussian(sum).mean) * shortened;
-    if x.base == MAPS_WITH_BASE {
-        return with_base_variance(sum, 1.0 / options.specular_power);
-    }
-    return sum;
+    // The base roughness, if the variances include it, is not a height: it has kept the sum of the squared weights.
+    let included = select(0.0, 1.0 / options.specular_power, sum.base == MAPS_WITH_BASE);
+    let lost = included * (1.0 - dot(weights, weights));
+    return widened_distribution(sum, vec3f(lost, lost, 0.0));
 }

@@ -4,5 +4,5 @@ fn projected_slope(at: DetailPoint) -> vec2f {
 }
 
 fn projected_distribution(at: DetailPoint) -> Distribution {
-    return transformed_distribution(detail_distribution(at), placement_matrix(at));
+    return transformed_bumps(detail_distribution(at), placement_matrix(at), 1.0 / options.specular_power);
 }
