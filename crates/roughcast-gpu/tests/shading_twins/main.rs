@@ -145,7 +145,7 @@ fn far_results_allowed(name: &str) -> f64 {
         "wave_slope" | "gerstner_part" => 0.006,
         "wave_distribution" => 0.3,
         // Kernels near their ends.
-        "gabor_kernel" | "gabor_sample" => 0.02,
+        "gabor_kernel" | "gabor_kernels" | "gabor_sample" => 0.02,
         // Means and products that nearly cancel, and normals with a component near zero.
         "cross_moments" | "blend_partial_derivatives" => 3e-4,
         "blend_reoriented" => 1e-4,

@@ -198,6 +198,24 @@ fn hash_twins() -> Vec<Twin> {
     ]
 }
 
+/// A kernel of the cell whose hash is that of word 8: gradient and value.
+fn kernel(a: &[f32], index: u32, at: DVec2) -> [f64; 3] {
+    let first = mixed(whole(a[8]) as u32).wrapping_add(65 + 4 * index);
+    let word = |i: u32| unit_of(mixed(first.wrapping_add(i)));
+    let x = at - DVec2::new(word(0), word(1));
+    if x.length_squared() >= 1.0 {
+        return [0.0; 3];
+    }
+    let turn = f64::from(a[2]) + f64::from(a[3]) * (2.0 * word(3) - 1.0);
+    let across = DVec2::from_angle(turn);
+    // The envelope is 1/20 at a distance of 1.
+    let envelope = (2.0 * word(2) - 1.0) * 20.0_f64.powf(-x.length_squared());
+    let frequency = TAU * f64::from(a[1]);
+    let (sin, cos) = (frequency * x.dot(across)).sin_cos();
+    let gradient = -envelope * (2.0 * 20.0_f64.ln() * cos * x + frequency * sin * across);
+    [gradient.x, gradient.y, envelope * cos]
+}
+
 fn gabor_twins() -> Vec<Twin> {
     vec![
         Twin {
@@ -210,20 +228,25 @@ fn gabor_twins() -> Vec<Twin> {
                 [gabor_words(inputs), place.to_vec(), at.to_vec()].concat()
             },
             rust: |a, _, _| {
-                let first = mixed(whole(a[8]) as u32).wrapping_add(65 + 4 * whole(a[9]) as u32);
-                let word = |i: u32| unit_of(mixed(first.wrapping_add(i)));
-                let x = pair(&a[10..]) - DVec2::new(word(0), word(1));
-                if x.length_squared() >= 1.0 {
-                    return vec![0.0; 3];
-                }
-                let turn = f64::from(a[2]) + f64::from(a[3]) * (2.0 * word(3) - 1.0);
-                let across = DVec2::from_angle(turn);
-                // The envelope is 1/20 at a distance of 1.
-                let envelope = (2.0 * word(2) - 1.0) * 20.0_f64.powf(-x.length_squared());
-                let frequency = TAU * f64::from(a[1]);
-                let (sin, cos) = (frequency * x.dot(across)).sin_cos();
-                let gradient = -envelope * (2.0 * 20.0_f64.ln() * cos * x + frequency * sin * across);
-                singles(&[gradient.x / 8.0, gradient.y / 8.0, envelope * cos / 8.0])
+                let [x, y, value] = kernel(a, whole(a[9]) as u32, pair(&a[10..]));
+                singles(&[x / 8.0, y / 8.0, value / 8.0])
+            },
+        },
+        Twin {
+            name: "gabor_kernels",
+            gives: Gives::Noise,
+            call: "put3(gabor_kernels(gabor(0u), gabor_hash(u32(f(8u) + 0.5)), u32(f(9u) + 0.5), f2(10u)) / 8.0);",
+            arguments: |inputs| {
+                let place = [short_hash(inputs), inputs.below(8) as f32];
+                let at = [inputs.between(-0.3, 1.3), inputs.between(-0.3, 1.3)];
+                [gabor_words(inputs), place.to_vec(), at.to_vec()].concat()
+            },
+            rust: |a, _, _| {
+                let sum = (0..whole(a[9]) as u32).fold([0.0; 3], |sum, index| {
+                    let one = kernel(a, index, pair(&a[10..]));
+                    std::array::from_fn(|i| sum[i] + one[i] / 8.0)
+                });
+                singles(&sum)
             },
         },
         Twin {

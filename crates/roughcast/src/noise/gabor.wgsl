@@ -69,6 +69,15 @@ fn gabor_kernel(noise: GaborNoise, hash: u32, index: u32, at: vec2f) -> vec3f {
     return envelope * vec3f(-gradient, wave.x);
 }
 
+// The sum of the kernels of the cell with this hash, of which there are `count`.
+fn gabor_kernels(noise: GaborNoise, hash: u32, count: u32, at: vec2f) -> vec3f {
+    var heights = vec3f(0.0);
+    for (var index = 0u; index < count; index++) {
+        heights += gabor_kernel(noise, hash, index, at);
+    }
+    return heights;
+}
+
 // The height at a position, in z, and its gradient in xy.
 fn gabor_sample(noise: GaborNoise, p: vec2f) -> vec3f {
     let cells = p * noise.cells;
@@ -81,11 +90,7 @@ fn gabor_sample(noise: GaborNoise, p: vec2f) -> vec3f {
         let offset = vec2i(place % 3 - 1, place / 3 - 1);
         let hash = gabor_cell_hash(noise, vec2i(cell) + offset);
         let count = gabor_impulse_count(noise, hash);
-        var index = 0u;
-        while index < count {
-            heights += gabor_kernel(noise, hash, index, cells - cell - vec2f(offset));
-            index += 1u;
-        }
+        heights += gabor_kernels(noise, hash, count, cells - cell - vec2f(offset));
     }
     return noise.kernel_height * vec3f(noise.cells * heights.xy, heights.z);
 }
