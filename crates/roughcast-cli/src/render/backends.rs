@@ -7,12 +7,12 @@ use roughcast::shading::Shading;
 use roughcast::texture::TextureArray;
 use roughcast::{Kind, Wrap};
 use roughcast_pipeline::{Map, bake_for};
-#[cfg(feature = "gpu")]
-use roughcast_scene::height_texture;
 use roughcast_scene::{
-    BakedTextures, HeightDetail, HeightMap, NoiseDetail, ObjectNormalDetail, ObjectNormalMap, Placement,
-    Sampler, Scene, SlopeDetail, SlopeMap,
+    BakedTextures, HeightDetail, HeightMap, ObjectNormalDetail, ObjectNormalMap, Placement, Sampler, Scene,
+    SlopeDetail, SlopeMap,
 };
+#[cfg(feature = "gpu")]
+use roughcast_scene::{NoiseDetail, height_texture};
 
 use super::{Added, Args, FilterChoice, Subject};
 use crate::added::{AddedContent, AddedMap, Place};
